@@ -1,0 +1,33 @@
+"""Parameter studies of locating-bearing track rollers: forces, tractions, stresses, fatigue life.
+
+`Case`, `solve` and `load_study` are the way in. Heavy parts are imported when they are first used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_WHERE = {
+    "Case": "trackroller.case",
+    "InputError": "trackroller.errors",
+    "solve": "trackroller.solver",
+    "load_study": "trackroller.study.config",
+    "load_database": "trackroller.materials",
+}
+__all__ = ["Case", "InputError", "__version__", "load_database", "load_study", "solve"]
+
+if TYPE_CHECKING:
+    from trackroller.case import Case
+    from trackroller.errors import InputError
+    from trackroller.materials import load_database
+    from trackroller.solver import solve
+    from trackroller.study.config import load_study
+
+
+def __getattr__(name: str) -> Any:
+    if name in _WHERE:
+        return getattr(importlib.import_module(_WHERE[name]), name)
+    raise AttributeError(f"module 'trackroller' has no attribute {name!r}")

@@ -1,0 +1,289 @@
+"""One roller in one situation (`Case`), and many of them as arrays (`CaseTable`)."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.errors import InputError, unknown_name
+from trackroller.geometry import curvatures, rolling_radius
+from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
+
+if TYPE_CHECKING:
+    from trackroller.materials import Material, MaterialDatabase
+
+FIELDS = (*PARAMETERS, *MATERIAL_FIELDS)
+
+
+def _number(name: str, value: Any) -> float:
+    parameter = PARAMETERS[name]
+    if value is None and parameter.allow_missing:
+        return math.nan
+    if isinstance(value, bool):
+        raise InputError(name, value, parameter.allowed())
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(name, value, parameter.allowed()) from None
+
+
+@dataclass(frozen=True)
+class Case:
+    """One locating-bearing track roller on its guideway; the defaults are the paper's driven example.
+
+    Units and signs are those of `trackroller.parameters.PARAMETERS`. A material is a name of the database
+    or a mapping with its values. `friction_coefficient=None` takes the typical value of the material
+    pair ('upper' or 'lower' take the bounds). Raises `InputError` for a value outside its range and for
+    surfaces that conform or interlock.
+    """
+
+    axis_distance: float = PARAMETERS["axis_distance"].default
+    guide_profile_radius: float = PARAMETERS["guide_profile_radius"].default
+    roller_profile_radius: float = PARAMETERS["roller_profile_radius"].default
+    guide_curve_radius: float = PARAMETERS["guide_curve_radius"].default
+    contact_angle: float = PARAMETERS["contact_angle"].default
+    radial_force: float = PARAMETERS["radial_force"].default
+    axial_force: float = PARAMETERS["axial_force"].default
+    motor_force: float = PARAMETERS["motor_force"].default
+    friction_coefficient: float | str | None = PARAMETERS["friction_coefficient"].default
+    velocity: float = PARAMETERS["velocity"].default
+    guide_overrollings_per_hour: float | None = None
+    roller_material: Any = "1.7225-normalised"
+    guide_material: Any = "1.7225-normalised"
+
+    def __post_init__(self) -> None:
+        columns: dict[str, np.ndarray] = {}
+        for name, parameter in PARAMETERS.items():
+            value = getattr(self, name)
+            if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
+                columns[name] = np.array([math.nan])
+                continue
+            if value is not None and isinstance(value, float) and math.isnan(value):
+                raise InputError(name, value, parameter.allowed())
+            number = _number(name, value)
+            if not parameter.accepts(number):
+                raise InputError(name, value, parameter.allowed())
+            object.__setattr__(self, name, None if math.isnan(number) else number)
+            columns[name] = np.array([number])
+        for name in MATERIAL_FIELDS:
+            _check_material_kind(name, getattr(self, name))
+        problem = geometry_problem(columns)
+        if problem is not None:
+            raise problem
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Case:
+        """Case from a mapping with the same keys; unknown keys are refused with the nearest right one."""
+        if not isinstance(values, Mapping):
+            raise InputError("case", values, "a case is a mapping of parameter names to values")
+        for key in values:
+            if key not in FIELDS:
+                raise unknown_name("case field", str(key), FIELDS)
+        return cls(**{str(k): v for k, v in values.items()})
+
+    def as_dict(self) -> dict[str, Any]:
+        """The case as a plain mapping, one entry a field."""
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+
+def _check_material_kind(name: str, value: Any) -> None:
+    from trackroller.materials import Material
+
+    if not isinstance(value, (str, Mapping, Material)) or value == "":
+        raise InputError(name, value, "a material is a name of the database or a mapping with its values",
+                         "`trackroller materials list` shows the names.")  # fmt: skip
+
+
+def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
+    """The first physical contradiction among the geometry of cases, or None.
+
+    Checks that the rolling radius is positive and that both relative curvatures are positive: else the
+    surfaces conform or interlock and there is no point contact.
+    """
+    get = {name: np.atleast_1d(np.asarray(columns[name], dtype=float)) for name in (
+        "axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius",
+        "contact_angle")}  # fmt: skip
+    get = dict(zip(get, np.broadcast_arrays(*get.values()), strict=True))
+    alpha = np.deg2rad(get["contact_angle"])
+    radius = rolling_radius(get["axis_distance"], get["guide_profile_radius"], alpha)
+    bad = np.flatnonzero(~(radius > 0))
+    if bad.size:
+        i = bad[0]
+        limit = get["guide_profile_radius"][i] * np.cos(alpha[i])
+        return InputError("axis_distance", float(get["axis_distance"][i]),
+                          f"the rolling radius A_T - r_C,G cos(alpha) = {radius[i]:.6g} mm must be > 0",
+                          f"Use an axis_distance above {limit:.6g} mm.")  # fmt: skip
+    k_x, k_y = curvatures(get["roller_profile_radius"], get["guide_profile_radius"],
+                          get["guide_curve_radius"], radius, alpha)  # fmt: skip
+    bad = np.flatnonzero(~(k_x > 0))
+    if bad.size:
+        i = bad[0]
+        groove = get["guide_profile_radius"][i]
+        return InputError("roller_profile_radius", float(get["roller_profile_radius"][i]),
+                          f"the surfaces conform or interlock: 1/r_C,TR + 1/r_C,G = {k_x[i]:.6g} 1/mm must be > 0",
+                          f"Use a groove wider than the guide (roller_profile_radius below {-groove:.6g} mm)"
+                          " or a convex roller (> 0).")  # fmt: skip
+    bad = np.flatnonzero(~(k_y > 0))
+    if bad.size:
+        i = bad[0]
+        return InputError("guide_curve_radius", float(get["guide_curve_radius"][i]),
+                          "the surfaces conform or interlock: cos(alpha)/r_A + cos(alpha)/r_Curve = "
+                          f"{k_y[i]:.6g} 1/mm must be > 0",
+                          f"Use an inner curve wider than the roller (guide_curve_radius below {-radius[i]:.6g} mm),"
+                          " a straight (inf) or an outer curve (> 0).")  # fmt: skip
+    return None
+
+
+@dataclass(frozen=True)
+class MaterialArrays:
+    """Material values of one body along the case axis, each of shape (n,)."""
+
+    name: np.ndarray
+    youngs_modulus: np.ndarray
+    poisson_ratio: np.ndarray
+    tensile_strength: np.ndarray
+    fatigue_limit: np.ndarray
+    cycles_at_tensile_strength: np.ndarray
+    cycles_at_fatigue_limit: np.ndarray
+
+    def take(self, index: np.ndarray) -> MaterialArrays:
+        """The rows `index`."""
+        return MaterialArrays(*(getattr(self, f.name)[index] for f in dataclasses.fields(self)))
+
+
+@dataclass(frozen=True)
+class CaseTable:
+    """Cases as arrays of shape (n,), units as in `PARAMETERS`; the friction coefficient is resolved."""
+
+    axis_distance: np.ndarray
+    guide_profile_radius: np.ndarray
+    roller_profile_radius: np.ndarray
+    guide_curve_radius: np.ndarray
+    contact_angle: np.ndarray
+    radial_force: np.ndarray
+    axial_force: np.ndarray
+    motor_force: np.ndarray
+    friction_coefficient: np.ndarray
+    velocity: np.ndarray
+    guide_overrollings_per_hour: np.ndarray
+    roller: MaterialArrays
+    guide: MaterialArrays
+
+    def __len__(self) -> int:
+        return len(self.axis_distance)
+
+    def take(self, index: np.ndarray) -> CaseTable:
+        """The rows `index`."""
+        numbers = {name: getattr(self, name)[index] for name in PARAMETERS}
+        return CaseTable(**numbers, roller=self.roller.take(index), guide=self.guide.take(index))
+
+
+def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
+    """Columns of raw values (object arrays for materials) from anything `solve` accepts."""
+    if hasattr(cases, "data_vars"):
+        return _columns_of_dataset(cases)
+    if isinstance(cases, (Case, Mapping)):
+        cases = [cases]
+    if not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)):
+        raise InputError("cases", cases, "a Case, a mapping, a list of them or an xarray.Dataset")
+    rows = [c if isinstance(c, Case) else Case.from_dict(c) for c in cases]
+    columns = {}
+    for name in FIELDS:
+        column = np.empty(len(rows), dtype=object)
+        column[:] = [getattr(row, name) for row in rows]
+        columns[name] = column
+    return columns, len(rows)
+
+
+def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
+    n = design.sizes.get("case", 1)
+    columns = {}
+    for name in design.data_vars:
+        if name not in FIELDS:
+            raise unknown_name("design variable", str(name), FIELDS)
+    default = Case().as_dict()
+    for name in FIELDS:
+        if name in design.data_vars:
+            variable = design[name]
+            if set(variable.dims) - {"case"}:
+                raise InputError(name, tuple(variable.dims), "a design has the dimension 'case' only")
+            values = variable.values.astype(object)
+        else:
+            values = np.array(default[name], dtype=object)
+        column = np.empty(n, dtype=object)
+        column[:] = np.broadcast_to(values, (n,))
+        columns[name] = column
+    return columns, n
+
+
+def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.ndarray]:
+    numbers = {}
+    for name, parameter in PARAMETERS.items():
+        raw = columns[name]
+        try:
+            numbers[name] = raw.astype(float)  # None becomes NaN
+        except (TypeError, ValueError):
+            words = FRICTION_LEVELS if name == "friction_coefficient" else ()
+            numbers[name] = np.array([math.nan if isinstance(v, str) and v in words else _number(name, v)
+                                      for v in raw], dtype=float).reshape(n)  # fmt: skip
+        bad = np.flatnonzero(~parameter.accepts(numbers[name]))
+        if bad.size:
+            raise InputError(f"{name} (case {bad[0]})", raw[bad[0]], parameter.allowed())
+    return numbers
+
+
+def _material_arrays(column: np.ndarray, database: MaterialDatabase) -> tuple[MaterialArrays, list[Material]]:
+    cache: dict[str, Material] = {}
+    materials = []
+    for value in column:
+        key = value if isinstance(value, str) else repr(value)
+        if key not in cache:
+            cache[key] = database.material(value)
+        materials.append(cache[key])
+
+    def values(attribute: str) -> np.ndarray:
+        return np.array([getattr(m, attribute) for m in materials], dtype=float)
+
+    return MaterialArrays(
+        name=np.array([m.name for m in materials], dtype=object),
+        youngs_modulus=values("youngs_modulus"),
+        poisson_ratio=values("poisson_ratio"),
+        tensile_strength=values("tensile_strength"),
+        fatigue_limit=values("fatigue_strength_ratio") * values("tensile_strength"),
+        cycles_at_tensile_strength=values("cycles_at_tensile_strength"),
+        cycles_at_fatigue_limit=values("cycles_at_fatigue_limit"),
+    ), materials
+
+
+def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
+    """Validated arrays of the cases, with materials and friction taken from the database.
+
+    Parameters
+    ----------
+    cases : `Case`, mapping, list of them, or xarray.Dataset with dimension `case`
+    database : the materials; the built-in and the user's own if not given
+
+    Raises `InputError` for the first bad value, unknown name or contradicting geometry.
+    """
+    from trackroller.materials import load_database
+
+    database = load_database() if database is None else database
+    columns, n = _as_columns(cases)
+    numbers = _checked_numbers(columns, n)
+    problem = geometry_problem(numbers) if n else None
+    if problem is not None:
+        raise problem
+    roller, roller_materials = _material_arrays(columns["roller_material"], database)
+    guide, guide_materials = _material_arrays(columns["guide_material"], database)
+    friction = numbers["friction_coefficient"].copy()
+    for i in np.flatnonzero(np.isnan(friction)):
+        level = columns["friction_coefficient"][i]
+        level = level if isinstance(level, str) else "typical"
+        friction[i] = database.friction(roller_materials[i], guide_materials[i], level=level).value
+    numbers["friction_coefficient"] = friction
+    return CaseTable(**numbers, roller=roller, guide=guide)

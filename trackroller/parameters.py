@@ -1,0 +1,106 @@
+"""The one list of parameters and options.
+
+Validation, study schema, command-line help, dataset attributes and the documentation table are made
+from it. Inside the solver everything is in N, mm, MPa and rad; degrees, m/min and hours only here.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number that describes a case.
+
+    `lower` and `upper` bound it; `open_lower` and `open_upper` exclude the bound itself;
+    `allow_infinite` admits +-inf, `allow_missing` admits NaN or None; `nonzero` excludes 0.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    default: float
+    long_name: str
+    meaning: str
+    lower: float = -math.inf
+    upper: float = math.inf
+    open_lower: bool = False
+    open_upper: bool = False
+    allow_infinite: bool = False
+    allow_missing: bool = False
+    nonzero: bool = False
+
+    @property
+    def units(self) -> str:
+        """Unit as CF writes it."""
+        return {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1"}.get(self.unit, self.unit)
+
+    def allowed(self) -> str:
+        """What is accepted, in words."""
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        parts = []
+        if math.isfinite(self.lower):
+            parts.append(f"{'>' if self.open_lower else '>='} {self.lower:g}{unit}")
+        if math.isfinite(self.upper):
+            parts.append(f"{'<' if self.open_upper else '<='} {self.upper:g}{unit}")
+        if self.nonzero:
+            parts.append("not 0")
+        parts.append("finite or inf" if self.allow_infinite else "finite")
+        return f"{self.long_name} [{self.unit}] must be a number, " + ", ".join(parts)
+
+    def accepts(self, value: np.ndarray | float) -> np.ndarray:
+        """Elementwise: is the value allowed?"""
+        v = np.asarray(value, dtype=float)
+        good = ~np.isnan(v) if self.allow_infinite else np.isfinite(v)
+        with np.errstate(invalid="ignore"):
+            good &= (v > self.lower) if self.open_lower else (v >= self.lower)
+            good &= (v < self.upper) if self.open_upper else (v <= self.upper)
+            if self.nonzero:
+                good &= v != 0
+        return good | np.isnan(v) if self.allow_missing else good
+
+
+_ALL = (
+    Parameter("axis_distance", "A_T", "mm", 21.75, "axis distance",
+              "roller axis to the centre of the guide contour", 0.0, open_lower=True),
+    Parameter("guide_profile_radius", "r_C,G", "mm", 6.0, "guide profile radius",
+              "radius of the convex guide contour", 0.0, open_lower=True),
+    Parameter("roller_profile_radius", "r_C,TR", "mm", -7.0, "roller profile radius",
+              "< 0 concave groove, > 0 convex, inf straight", allow_infinite=True, nonzero=True),
+    Parameter("guide_curve_radius", "r_Curve", "mm", 220.0, "guide curve radius",
+              "curvature of the track: inf straight, > 0 convex towards the roller (outer wheel), "
+              "< 0 concave (inner wheel)", allow_infinite=True, nonzero=True),
+    Parameter("contact_angle", "alpha", "deg", 30.0, "contact angle",
+              "inclination of the contact normals", 0.0, 90.0, open_lower=True, open_upper=True),
+    Parameter("radial_force", "F_rad", "N", -200.0, "radial force",
+              "< 0 presses the roller on the guide", upper=0.0, open_upper=True),
+    Parameter("axial_force", "F_ax", "N", 30.0, "axial force", "along +x_R"),
+    Parameter("motor_force", "F_Motor", "N", -30.0, "motor force",
+              "< 0 driving, 0 free rolling, > 0 braking"),
+    Parameter("friction_coefficient", "mu", "-", 0.3, "friction coefficient",
+              "Coulomb coefficient of both contacts; not given: from the friction database", 0.0, 2.0,
+              allow_missing=True),
+    Parameter("velocity", "v", "m/min", 60.0, "mean travel speed",
+              "for friction power and life in hours only", 0.0, open_lower=True),
+    Parameter("guide_overrollings_per_hour", "n_G", "1/h", math.nan, "overrollings of a guide point per hour",
+              "decides the life of the guide in hours; not given: hours are NaN", 0.0, open_lower=True,
+              allow_missing=True),
+)  # fmt: skip
+
+PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL}
+
+CONTACT_MODELS = ("sliding", "fastsim", "kalker")
+SPIN_MODELS = ("concentric", "edge", "skewed")
+ACCURACIES = ("preview", "standard", "reference")
+HERTZ = ("exact", "published")
+STRESS_BODIES = ("both", "published")
+LIFE_RULES = ("elementary", "haibach", "unlimited")
+OUTPUT_GROUPS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
+DEFAULT_OUTPUTS = ("forces", "contact", "peak_stress", "life")
+REGIMES = ("rolling", "full_slip", "lift_off", "failed")
+MATERIAL_FIELDS = ("roller_material", "guide_material")
+FRICTION_LEVELS = ("typical", "upper", "lower")
