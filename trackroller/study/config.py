@@ -1,0 +1,348 @@
+"""The study file: typed, and refused with a remedy before anything runs."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.parameters import (
+    ACCURACIES,
+    CONTACT_MODELS,
+    DEFAULT_OUTPUTS,
+    FRICTION_LEVELS,
+    HERTZ,
+    LIFE_RULES,
+    MATERIAL_FIELDS,
+    OUTPUT_GROUPS,
+    PARAMETERS,
+    SPIN_MODELS,
+    STRESS_BODIES,
+)
+from trackroller.study import expressions
+from trackroller.study.factors import LISTS, parse
+from trackroller.study.sampling import METHODS
+from trackroller.study.yamlfile import parse_mapping, read_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import MaterialDatabase
+
+CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS)
+OPTION_FACTORS: dict[str, tuple[str, ...]] = {"contact_model": CONTACT_MODELS, "spin_model": SPIN_MODELS}
+FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
+NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+
+
+def check_name(name: str, where: str = "name") -> str:
+    """A name that can be a folder's: it can neither leave the results folder nor hide in it."""
+    if not isinstance(name, str) or not NAME.fullmatch(name) or ".." in name or name.endswith("."):
+        raise InputError(where, name, "letters, digits, '.', '_' and '-', at most 64, a letter or digit first",
+                         "It names the results folder: no path parts.")  # fmt: skip
+    return name
+
+
+def _choice(value: Any, where: str, options: tuple[str, ...]) -> str:
+    if not isinstance(value, str) or value not in options:
+        raise unknown_name(where, value, options)
+    return value
+
+
+class StudyFile(BaseModel):
+    """What stands in a study file; see the fields' descriptions."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, title="trackroller study")
+
+    name: str = Field(description="names the results folder; letters, digits, '.', '_', '-'")
+    description: str = Field("", description="one sentence at the head of the report")
+    base: dict[str, Any] = Field({}, description="values of all cases; what is not given takes its default")
+    factors: dict[str, dict[str, Any]] = Field({}, description="what is varied, a list or a distribution each")
+    design: str = Field("grid", description="how the factors are combined")
+    samples: int = Field(1024, ge=1, description="rows, trajectories or base samples of a sampled design")
+    seed: int = Field(1, ge=0, le=2**32 - 2, description="same seed, same design")
+    table: str | None = Field(None, description="CSV of cases for design: table, beside the study file")
+    second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
+    levels: int | None = Field(None, description="morris: number of levels")
+    inner: Literal["lhs", "sobol"] | None = Field(None, description="nested: how the inside is sampled")
+    outputs: tuple[str, ...] = Field(DEFAULT_OUTPUTS, description="groups of results, computed only if asked")
+    contact_model: str | tuple[str, ...] = Field("sliding", description="one, or a list as a factor")
+    spin_model: str | tuple[str, ...] = Field("skewed", description="one, or a list; for sliding only")
+    accuracy: str | float = Field("standard", description="preview, standard, reference or a tolerance")
+    hertz: str = Field("exact", description="exact elliptic integrals or the published table")
+    stress_bodies: str = Field("both", description="each body with its own nu, or as published")
+    life_rule: str = Field("elementary", description="below the fatigue limit: line goes on, Haibach, or no failure")
+    chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases a job; chosen if not given")
+
+    @field_validator("name", mode="before")
+    @classmethod
+    def _name(cls, value: Any) -> Any:
+        return check_name(str(value) if isinstance(value, (int, float)) else value)
+
+    @field_validator("design")
+    @classmethod
+    def _design(cls, value: str) -> str:
+        return _choice(value, "design", METHODS)
+
+    @field_validator("outputs")
+    @classmethod
+    def _outputs(cls, value: tuple[str, ...]) -> tuple[str, ...]:
+        if not value:
+            raise InputError("outputs", [], f"at least one of {', '.join(OUTPUT_GROUPS)}")
+        for name in value:
+            _choice(name, "outputs", OUTPUT_GROUPS)
+        if len(set(value)) < len(value):
+            raise InputError("outputs", list(value), "each group may stand once")
+        return value
+
+    @field_validator("contact_model", "spin_model")
+    @classmethod
+    def _models(cls, value: str | tuple[str, ...], info: Any) -> str | tuple[str, ...]:
+        several = (value,) if isinstance(value, str) else value
+        if not several or len(set(several)) < len(several):
+            raise InputError(info.field_name, list(several), "a list without repetition that is not empty")
+        for name in several:
+            _choice(name, info.field_name, OPTION_FACTORS[info.field_name])
+        return several[0] if len(several) == 1 else value
+
+    @field_validator("hertz", "stress_bodies", "life_rule")
+    @classmethod
+    def _options(cls, value: str, info: Any) -> str:
+        options = {"hertz": HERTZ, "stress_bodies": STRESS_BODIES, "life_rule": LIFE_RULES}
+        return _choice(value, info.field_name, options[info.field_name])
+
+    @field_validator("accuracy", mode="before")
+    @classmethod
+    def _accuracy(cls, value: Any) -> Any:
+        if isinstance(value, str):
+            return _choice(value, "accuracy", ACCURACIES)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < 1:
+            raise InputError("accuracy", value, f"{', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
+        return float(value)
+
+    @field_validator("base", mode="before")
+    @classmethod
+    def _base(cls, value: Any) -> Any:
+        if not isinstance(value, Mapping):
+            raise InputError("base", value, "a mapping of parameters to values")
+        return {key: _base_value(key, entry) for key, entry in value.items()}
+
+    @field_validator("factors", mode="before")
+    @classmethod
+    def _factors(cls, value: Any) -> Any:
+        if not isinstance(value, Mapping):
+            raise InputError("factors", value, "a mapping of factors to their values")
+        return {key: _factor(key, spec, value) for key, spec in value.items()}
+
+
+def _base_value(key: Any, value: Any) -> Any:
+    if key == "material_pair":
+        return list(_pair(value, "base.material_pair"))
+    if key not in CASE_FIELDS:
+        raise unknown_name("base", str(key), (*CASE_FIELDS, "material_pair"))
+    if key in MATERIAL_FIELDS:
+        return _material_name(value, f"base.{key}")
+    return _number(key, value, f"base.{key}")
+
+
+def _material_name(value: Any, where: str) -> str:
+    if not isinstance(value, str) or not value:
+        raise InputError(where, value, "the name of a material in the database",
+                         "Put a material of your own into config/materials.yaml (`trackroller materials add`).")  # fmt: skip
+    return value
+
+
+def _pair(value: Any, where: str) -> tuple[str, str]:
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        raise InputError(where, value, "a pair [roller material, guide material]")
+    return _material_name(value[0], where), _material_name(value[1], where)
+
+
+def _number(name: str, value: Any, where: str) -> Any:
+    """A value of parameter `name` as a float (or a word of the friction levels, or None)."""
+    parameter = PARAMETERS[name]
+    if value is None and parameter.allow_missing:
+        return None
+    if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
+        return value
+    if isinstance(value, (list, dict, bool)) or value is None:
+        raise InputError(where, value, parameter.allowed())
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        remedy = ""
+        if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
+            remedy = f"Did you mean '{close}'?"
+        raise InputError(where, value, parameter.allowed(), remedy) from None
+    if math.isnan(number) or not parameter.accepts(number):
+        raise InputError(where, value, parameter.allowed())
+    return number
+
+
+def _factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
+    where = f"factors.{key}"
+    if key not in FACTOR_NAMES:
+        if not isinstance(key, str) or not key.isidentifier() or not _used(key, factors):
+            raise unknown_name("factors", str(key), FACTOR_NAMES)
+        parse(key, spec)
+        return dict(spec)
+    if isinstance(spec, Mapping):
+        spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
+    factor = parse(key, spec)
+    if key not in PARAMETERS and factor.kind != "values":
+        raise InputError(where, factor.kind, "names are given as {values: [...]}")
+    if key in PARAMETERS:
+        for level in (*factor.levels, *(factor.numbers if factor.kind == "uniform" else ())):
+            _number(key, level, f"{where}.{factor.kind}")
+    return dict(spec)
+
+
+def _used(name: str, factors: Mapping[Any, Any]) -> bool:
+    """Is the name an auxiliary factor, there for an expression of another one?"""
+    texts = [s["expression"] for s in factors.values() if isinstance(s, Mapping) and "expression" in s]
+    return any(isinstance(t, str) and name in expressions.names(t, "factors") for t in texts)
+
+
+def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
+    """Entries of a factor's list in their own type: numbers as floats, pairs checked, names as texts."""
+    if not isinstance(value, list):
+        return value
+    if kind != "values":
+        return [_to_float(v) for v in value]
+    if key in PARAMETERS:
+        return [_number(key, v, where) for v in value]
+    if key == "material_pair":
+        return [list(_pair(v, where)) for v in value]
+    if key in OPTION_FACTORS:
+        return [_choice(v, where, OPTION_FACTORS[key]) for v in value]
+    return [_material_name(v, where) for v in value]
+
+
+def _to_float(value: Any) -> Any:
+    try:
+        return float(value) if isinstance(value, str) else value
+    except ValueError:
+        return value
+
+
+def _translate(error: ValidationError) -> InputError:
+    """The first of pydantic's findings in our own words."""
+    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")  # a misspelt key explains the rest
+    detail = found[0]
+    context = detail.get("ctx", {}).get("error")
+    if isinstance(context, InputError):
+        return context
+    where = ".".join(str(part) for part in detail["loc"]) or "study"
+    if detail["type"] == "extra_forbidden":
+        return unknown_name("study key", where, StudyFile.model_fields)
+    if detail["type"] == "missing":
+        return InputError(where, None, "every study needs this key", f"Add a line '{where}: ...'.")
+    return InputError(where, detail.get("input"), detail["msg"])
+
+
+@dataclass(frozen=True)
+class Study:
+    """A checked study: the typed file, where it lies, and the materials it uses."""
+
+    config: StudyFile
+    path: Path | None = None
+    database: Any = field(default=None, compare=False, repr=False)
+
+    @property
+    def name(self) -> str:
+        """Name of the study and of its results folder."""
+        return self.config.name
+
+    @cached_property
+    def factors(self) -> dict[str, dict[str, Any]]:
+        """All factors, lists of contact or spin models among them."""
+        extra = {
+            name: {"values": list(value)}
+            for name in OPTION_FACTORS
+            if not isinstance(value := getattr(self.config, name), str)
+        }
+        return {**self.config.factors, **extra}
+
+    @cached_property
+    def materials(self) -> MaterialDatabase:
+        """The material database (built-in, with the user's own over it)."""
+        from trackroller.materials import load_database
+
+        return load_database() if self.database is None else self.database
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Keyword arguments of `solve`; those that are factors are missing."""
+        names = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule")
+        values = {name: getattr(self.config, name) for name in names if name not in self.factors}
+        return values
+
+    def merged(self) -> str:
+        """The study as YAML with every default written out."""
+        data = self.config.model_dump(mode="json", exclude_none=True)
+        return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
+
+    def design(self) -> xr.Dataset:
+        """The cases: dimension `case`, one variable a parameter, materials by name."""
+        from trackroller.study.design import build
+
+        return build(self)
+
+
+def parse_study(data: Mapping[str, Any], path: Path | None = None, database: Any = None) -> Study:
+    """A study from a mapping with the keys of a study file; raises `InputError` for whatever is wrong."""
+    try:
+        config = StudyFile.model_validate(dict(data))
+    except ValidationError as error:
+        raise _translate(error) from None
+    study = Study(config, path, database)
+    _cross_check(study)
+    return study
+
+
+def load_study(path: str | Path, database: Any = None) -> Study:
+    """Read and check a study file.
+
+    Parameters
+    ----------
+    path : the YAML file
+    database : materials; the built-in with the user's own over it if not given
+
+    Raises `InputError` (naming field, value, what is allowed and the nearest right name) for a file that is
+    missing or not YAML, unknown keys or names, values out of bounds, contradicting geometry.
+    """
+    path = Path(path)
+    return parse_study(parse_mapping(read_text(path, "study file"), "study file"), path, database)
+
+
+def _cross_check(study: Study) -> None:
+    config = study.config
+    for name in OPTION_FACTORS:
+        if name in config.factors and not isinstance(getattr(config, name), str):
+            raise InputError(name, getattr(config, name), f"{name} stands among the factors too", "Keep one.")
+    both = {*study.factors, *config.base} & {"material_pair"}
+    single = {*study.factors, *config.base} & set(MATERIAL_FIELDS)
+    if both and single:
+        raise InputError("material_pair", sorted(single), "give the pair or the single materials, not both")
+    if doubled := set(config.base) & set(study.factors):
+        name = min(doubled)
+        raise InputError(f"base.{name}", config.base[name], f"{name} is a factor too", "Remove one of them.")
+    if (config.design == "table") != (config.table is not None):
+        raise InputError("table", config.table, "design: table and the path of a CSV belong together")
+    if config.design == "grid":
+        for name, spec in study.factors.items():
+            if not set(spec) & {*LISTS, "expression"}:
+                raise InputError(f"factors.{name}", spec, "a grid needs values, linspace or logspace",
+                                 "Or choose a sampled design: lhs, sobol, saltelli, morris.")  # fmt: skip
+    from trackroller.study.design import check_geometry, check_materials
+
+    check_materials(study)
+    check_geometry(study)
