@@ -1,0 +1,206 @@
+"""From a solved study to plain columns: which outputs an analysis looks at, and which rows it may use."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError, unknown_name
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+
+BOOKKEEPING = {"regime", "converged", "residual", "validity", "error_estimate", "reason", "material_pair"}
+FIELDS = {"x", "y", "z", "grid"}
+
+# what an engineer asks for first: name -> (variable, selection, how contacts are joined, scale, words)
+DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
+    "roller_life_hours": ("roller_life_hours", {}, "min", "log10", "life of the roller"),
+    "guide_life_hours": ("guide_life_hours", {}, "min", "log10", "life of the guide"),
+    "roller_life_cycles": ("life_cycles", {"body": "roller"}, "min", "log10", "life of the roller in cycles"),
+    "guide_life_cycles": ("life_cycles", {"body": "guide"}, "min", "log10", "life of the guide in cycles"),
+    "roller_peak_stress": ("peak_stress", {"body": "roller"}, "max", "natural", "peak stress in the roller"),
+    "guide_peak_stress": ("peak_stress", {"body": "guide"}, "max", "natural", "peak stress in the guide"),
+    "max_pressure": ("max_pressure", {}, "max", "natural", "highest contact pressure"),
+    "friction_power": ("friction_power", {}, "sum", "natural", "friction power of both contacts"),
+    "friction_energy": ("friction_energy_per_distance", {}, "sum", "natural", "friction work per distance"),
+    "normal_force_1": ("normal_force", {"contact": 1}, "sum", "natural", "normal force in contact 1"),
+    "normal_force_2": ("normal_force", {"contact": 2}, "sum", "natural", "normal force in contact 2"),
+    "drilling_torque": ("drilling_torque", {}, "sum", "natural", "drilling torque"),
+    "slip": ("slip", {}, "sum", "natural", "longitudinal slip"),
+}
+_JOIN: dict[str, Any] = {"min": np.nanmin, "max": np.nanmax, "sum": np.nansum}
+
+
+@dataclass(frozen=True)
+class Output:
+    """One analysed output: `values` shape (n,), on `scale`, NaN where `excluded` says why and how often."""
+
+    name: str
+    values: np.ndarray
+    units: str
+    long_name: str
+    scale: str
+    excluded: dict[str, int] = field(default_factory=dict)
+
+
+def read_study(ds: xr.Dataset) -> dict[str, Any]:
+    """The study file as stored in the result (YAML or JSON under the attribute `study`), {} if none is."""
+    text = ds.attrs.get("study", "")
+    if isinstance(text, Mapping):
+        return dict(text)
+    if not text:
+        return {}
+    import yaml
+
+    try:
+        found = json.loads(text) if str(text).lstrip().startswith("{") else yaml.safe_load(text)
+    except ValueError:
+        found = yaml.safe_load(text)
+    return dict(found) if isinstance(found, Mapping) else {}
+
+
+def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
+    """Dimensions that count cases: `case`, or the factors of an unstacked grid in the study's order."""
+    if "case" in ds.dims:
+        return ("case",)
+    return tuple(name for name in factors if name in ds.dims)
+
+
+def flat(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
+    """A variable as (rows, ...) with the case dimensions joined in order."""
+    var = ds[name]
+    missing = [d for d in dims if d not in var.dims]
+    if missing:
+        var = var.expand_dims({d: ds.sizes[d] for d in missing})
+    rest = [d for d in var.dims if d not in dims]
+    values = var.transpose(*dims, *rest).values
+    return values.reshape(int(np.prod([ds.sizes[d] for d in dims])), *values.shape[len(dims) :])
+
+
+def _available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
+    known = set(factors) | set(PARAMETERS) | set(MATERIAL_FIELDS) | BOOKKEEPING
+    return [
+        str(name)
+        for name, var in ds.data_vars.items()
+        if name not in known and set(dims) & set(var.dims) and var.dtype.kind in "fiu"
+        and not (set(var.dims) - set(dims)) & FIELDS - set(factors)
+    ]  # fmt: skip
+
+
+def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
+    """Names of the outputs analysed by default: the engineer's list, else every scalar result."""
+    free = _available(ds, factors, dims)
+    names = [n for n, (var, *_) in DEFAULTS.items() if var in free and np.isfinite(ds[var]).any()]
+    for body in ("roller", "guide"):  # hours say what cycles say, where both are there
+        if f"{body}_life_hours" in names and f"{body}_life_cycles" in names:
+            names.remove(f"{body}_life_cycles")
+    if not names or not {"peak_stress", "normal_force"} & set(free):
+        used = {DEFAULTS[n][0] for n in names}
+        names += [n for n in free if n not in used and set(ds[n].dims) <= set(dims)]
+    return names
+
+
+def _raw(
+    ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]
+) -> tuple[np.ndarray, str, str, str]:
+    """Values (n,), units, words and scale of a default output, a variable, or `variable[contact,body]`."""
+    if name in DEFAULTS and DEFAULTS[name][0] in ds:
+        variable, choice, join, scale, words = DEFAULTS[name]
+    else:
+        match = re.fullmatch(r"(\w+)(?:\[([^\]]+)\])?", name)
+        if not match or match[1] not in options:
+            raise unknown_name(
+                "analysis.outputs", name, [*options, *(n for n in DEFAULTS if DEFAULTS[n][0] in ds)]
+            )
+        variable, join = match[1], ""
+        keys = [key.strip() for key in (match[2] or "").split(",") if key.strip()]
+        choice = {"contact" if k.isdigit() else "body": int(k) if k.isdigit() else k for k in keys}
+        scale = "log10" if "life" in variable else "natural"
+        words = str(ds[variable].attrs.get("long_name", variable)) + (f" ({match[2]})" if match[2] else "")
+    try:
+        part = ds.sel({k: v for k, v in choice.items() if k in ds[variable].dims})
+    except KeyError:
+        raise InputError("analysis.outputs", name, "contacts are 1 and 2, bodies roller and guide") from None
+    values = flat(part, variable, dims).astype(float)
+    if values.ndim > 1 and not join:
+        raise InputError("analysis.outputs", name, "one number a case is wanted",
+                         f"Choose a contact and body, such as {variable}[1,roller].")  # fmt: skip
+    if values.ndim > 1:
+        values = values.reshape(len(values), -1)
+        empty = np.isnan(values).all(axis=1)
+        values = np.where(empty, np.nan, _JOIN[join](np.where(empty[:, None], 0.0, values), axis=1))
+    return values, str(ds[variable].attrs.get("units", "1")), words, scale
+
+
+def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
+    """Index into `REGIMES` of each row, shape (n,); a row without a known regime counts as failed.
+
+    Results that carry no regime (another solver's) count as rolling.
+    """
+    rows = int(np.prod([ds.sizes[d] for d in dims]))
+    if "regime" not in ds:
+        return np.zeros(rows, dtype=int)
+    values = flat(ds, "regime", dims).astype(float)
+    bad = ~np.isin(values, range(len(REGIMES)))
+    return np.where(bad, REGIMES.index("failed"), np.where(bad, 0, values)).astype(int)
+
+
+def outputs(ds: xr.Dataset, factors: Iterable[str], names: Iterable[str] | None = None,
+            keep: Iterable[str] = ("rolling",), natural: Iterable[str] = ()) -> list[Output]:  # fmt: skip
+    """Columns to analyse.
+
+    Parameters
+    ----------
+    ds : a gathered study, along `case` or unstacked
+    factors : names of the study's factors, in order
+    names : names of `DEFAULTS`, scalar variables, or `variable[contact,body]`; None: `default_names`
+    keep : regimes whose rows are used; the others become NaN and are counted
+    natural : outputs to take on the natural scale although lives are taken as log10
+
+    Returns
+    -------
+    list of Output. For each regime but rolling that occurs an indicator `full_slip`, `lift_off`, `failed`
+    (1 where it occurs, no row left out) is added, so that what drives it is analysed and not hidden.
+    """
+    factors = list(factors)
+    dims = case_dims(ds, factors)
+    if not dims:
+        raise InputError("study", list(ds.sizes), "a dimension `case`, or one dimension a factor")
+    keep = tuple(keep)
+    for name in keep:
+        if name not in REGIMES:
+            raise unknown_name("analysis.keep", name, REGIMES)
+    regime = regimes(ds, dims)
+    usable = np.isin(regime, [REGIMES.index(name) for name in keep])
+    lost = {n.replace("_", " "): int((regime == i).sum()) for i, n in enumerate(REGIMES)
+            if n not in keep and (regime == i).any()}  # fmt: skip
+    converged = flat(ds, "converged", dims) != 0 if "converged" in ds else np.ones(len(regime), dtype=bool)
+    if count := int((usable & ~converged).sum()):
+        lost["not converged"] = count
+    usable &= converged
+    options, natural = _available(ds, factors, dims), set(natural)
+    found = []
+    for name in list(names) if names is not None else default_names(ds, factors, dims):
+        values, units, words, scale = _raw(ds, name, dims, options)
+        excluded, scale = dict(lost), "natural" if name in natural else scale
+        values = np.where(usable, values, np.nan)
+        if count := int((usable & np.isinf(values)).sum()):
+            excluded["unlimited"] = count
+        if count := int((usable & np.isnan(values)).sum()):
+            excluded["undefined"] = count
+        values = np.where(np.isfinite(values), values, np.nan)
+        if scale == "log10":
+            if count := int((values <= 0).sum()):
+                excluded["not positive"] = count
+            values = np.log10(np.where(values > 0, values, np.nan))
+        found.append(Output(name, values, units, words, scale, excluded))
+    for i, name in enumerate(REGIMES):
+        if i and (regime == i).any() and names is None:
+            words = f"occurrence of {name.replace('_', ' ')}"
+            found.append(Output(name, (regime == i).astype(float), "1", words, "natural"))
+    return found
