@@ -1,0 +1,301 @@
+"""Derives the half-space stress kernels from the Boussinesq-Cerruti potentials and writes `kernels.py`.
+
+Regenerate with ``python -m trackroller.halfspace.potentials``.
+
+With Omega = z ln(R + z) - R, R = sqrt(x^2 + y^2 + z^2) (eq. (2) of the paper, point load at the origin) the
+displacements of the half-space z >= 0 under tractions q = (q_x, q_y, q_z) acting on the body are, with
+Q_i = q_i Omega and psi_1 = dQ_x/dx + dQ_y/dy + dQ_z/dz (Johnson 1985, sec. 3.2; eq. (5) is the x component),
+
+    4 pi G u_x = 2 d2Q_x/dz2 - d2Q_z/dxdz + 2 nu dpsi_1/dx - z d2psi_1/dxdz
+    4 pi G u_y = 2 d2Q_y/dz2 - d2Q_z/dydz + 2 nu dpsi_1/dy - z d2psi_1/dydz
+    4 pi G u_z =   d2Q_z/dz2 + (1 - 2 nu) dpsi_1/dz - z d2psi_1/dz2
+
+and Hooke's law, eq. (4), gives 2 pi sigma = sym grad (4 pi G u) + 2 nu d2psi_1/dz2 1 once the dilatation is
+known to be div (4 pi G u) = 2 (1 - 2 nu) d2psi_1/dz2 (`check_dilatation` proves it, so that nu = 0.5 is regular).
+E cancels and every component is A + nu B.
+
+Uniform and bilinear loads follow from the antiderivatives of Omega. `double_antiderivative` finds
+W with d4W/dx2dy2 = Omega, so that d2W/dxdy serves rectangles with uniform traction (Love 1929) and W itself
+tractions interpolated bilinearly: their stresses are sums over corners of one function, weighted with first or
+second differences of the nodal tractions. All functions used are smooth for z > 0 and have their right limits at z = 0.
+
+The algebra runs in a polynomial ring over the rationals in x, y, z, R, 1/R, 1/(R+z), 1/(x^2+z^2), 1/(y^2+z^2) and
+
+    Lx = asinh(x / sqrt(y^2+z^2)),  Ly = asinh(y / sqrt(x^2+z^2)),  Lz = ln(R + z),
+    Ax = atan(y/x) - atan(y z/(x R)) = atan2(x y (R-z), x^2 R + y^2 z),  Ay the same with x and y exchanged,
+
+each with its known partial derivatives (a differential ring), which is exact and takes a second.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import sympy as sp
+from sympy import QQ
+from sympy.polys.matrices import DomainMatrix
+from sympy.polys.rings import ring
+
+COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+LOADS = ("x", "y", "z")
+KERNELS = ("point_kernel", "uniform_corner", "bilinear_corner")
+
+_RING, x, y, z, R, iR, iS, iP, iQ, Lx, Ly, Lz, Ax, Ay = ring("x y z R iR iS iP iQ Lx Ly Lz Ax Ay", QQ)
+_X, _Y, _Z, _R, _IR, _IS, _IP, _IQ = range(8)
+Element = Any  # sympy's PolyElement has no useful static type
+
+_DERIVATIVES: dict[str, dict[Element, Element]] = {
+    "x": {
+        x: _RING(1), R: x * iR, iR: -x * iR**3, iS: -x * iR * iS**2, iP: -2 * x * iP**2,
+        Lx: iR, Ly: -x * y * iR * iP, Lz: x * iR * iS, Ax: -y * iR * iS + y * z * iR * iP, Ay: y * iR * iS,
+    },
+    "y": {
+        y: _RING(1), R: y * iR, iR: -y * iR**3, iS: -y * iR * iS**2, iQ: -2 * y * iQ**2,
+        Ly: iR, Lx: -x * y * iR * iQ, Lz: y * iR * iS, Ay: -x * iR * iS + x * z * iR * iQ, Ax: x * iR * iS,
+    },
+    "z": {
+        z: _RING(1), R: z * iR, iR: -z * iR**3, iS: -iR * iS, iP: -2 * z * iP**2, iQ: -2 * z * iQ**2,
+        Lz: iR, Lx: -x * z * iR * iQ, Ly: -y * z * iR * iP, Ax: -x * y * iR * iP, Ay: -x * y * iR * iQ,
+    },
+}  # fmt: skip
+
+# Rewriting rules (factors to find, replacement), tried in this order until none applies.
+_RULES: list[tuple[dict[int, int], Element]] = [
+    ({_R: 1, _IR: 1}, _RING(1)),
+    ({_R: 2}, x**2 + y**2 + z**2),
+    ({_R: 1, _IS: 1}, 1 - z * iS),
+    ({_IP: 1, _X: 2}, 1 - z**2 * iP),
+    ({_IQ: 1, _Y: 2}, 1 - z**2 * iQ),
+    ({_IP: 1, _IR: 1, _Y: 2}, R * iP - iR),
+    ({_IQ: 1, _IR: 1, _X: 2}, R * iQ - iR),
+    ({_IR: 1, _IS: 1, _Z: 1}, iR - iS),
+    ({_IS: 1, _X: 2}, R - z - y**2 * iS),
+    ({_IR: 1, _X: 2}, R - y**2 * iR - z**2 * iR),
+]
+
+
+def _rule_for(monomial: tuple[int, ...]) -> tuple[dict[int, int], Element] | None:
+    for factors, replacement in _RULES:
+        if all(monomial[i] >= k for i, k in factors.items()):
+            return factors, replacement
+    return None
+
+
+def normal_form(f: Element) -> Element:
+    """The element with every relation between R, 1/R, 1/(R+z), ... used up (so that equal functions look equal)."""
+    done, todo = _RING(0), f
+    while todo:
+        nxt = _RING(0)
+        for monomial, coefficient in todo.terms():
+            rule = _rule_for(monomial)
+            if rule is None:
+                done += _RING.from_dict({monomial: coefficient})
+                continue
+            rest = list(monomial)
+            for i, k in rule[0].items():
+                rest[i] -= k
+            nxt += _RING.from_dict({tuple(rest): coefficient}) * rule[1]
+        todo = nxt
+    return done
+
+
+def derivative(f: Element, along: str) -> Element:
+    """Partial derivatives of `f` along each letter of `along`, in turn: `derivative(f, "xxz")`."""
+    for letter in along:
+        f = normal_form(sum((f.diff(g) * dg for g, dg in _DERIVATIVES[letter].items()), _RING(0)))
+    return f
+
+
+def omega() -> Element:
+    """Omega = z ln(R + z) - R, eq. (2)."""
+    return z * Lz - R
+
+
+def _monomials(degree: int, parity_x: int, parity_y: int) -> list[Element]:
+    return [
+        x**i * y**j * z ** (degree - i - j)
+        for i in range(parity_x, degree + 1, 2)
+        for j in range(parity_y, degree + 1 - i, 2)
+    ]
+
+
+# Points with rational R, so that the equations for the coefficients are exact.
+_QUADRUPLES = [
+    (1, 2, 2, 3), (2, 3, 6, 7), (1, 4, 8, 9), (4, 4, 7, 9), (2, 6, 9, 11), (6, 6, 7, 11), (3, 4, 12, 13),
+    (2, 5, 14, 15), (2, 10, 11, 15), (1, 12, 12, 17), (8, 9, 12, 17), (1, 6, 18, 19), (6, 6, 17, 19),
+    (6, 10, 15, 19), (4, 5, 20, 21), (4, 8, 19, 21), (4, 13, 16, 21),
+]  # fmt: skip
+
+
+def _values_at(f: Element, point: tuple[int, int, int, int]) -> dict[tuple[int, ...], Any]:
+    """Coefficients of the transcendental monomials of `f` at a point with rational R."""
+    a, b, c, r = map(QQ, point)
+    values = (a, b, c, r, 1 / r, 1 / (r + c), 1 / (a * a + c * c), 1 / (b * b + c * c))
+    found: dict[tuple[int, ...], Any] = {}
+    for monomial, coefficient in f.terms():
+        for value, power in zip(values, monomial, strict=False):
+            coefficient *= value**power
+        key = monomial[len(values):]
+        found[key] = found.get(key, QQ(0)) + coefficient
+    return found
+
+
+@cache
+def double_antiderivative() -> Element:
+    """W, even in x and y and homogeneous of degree 5 (but for the logarithm), with d4W/dx2dy2 = Omega.
+
+    Undetermined coefficients: Omega times four lengths can only consist of the terms listed, and their
+    coefficients follow from linear equations over the rationals.
+    """
+    terms = (
+        [R * m for m in _monomials(4, 0, 0)]
+        + [Lx * m for m in _monomials(5, 1, 0)]
+        + [Ly * m for m in _monomials(5, 0, 1)]
+        + [Lz * m for m in _monomials(5, 0, 0)]
+        + [Ax * m for m in _monomials(5, 1, 1)]
+        + [Ay * m for m in _monomials(5, 1, 1)]
+        + [x**2 * y**2 * z]
+    )
+    images = [derivative(t, "xxyy") for t in terms] + [omega()]
+    rows = []
+    for a, b, c, r in _QUADRUPLES:
+        for point in ((a, b, c, r), (c, a, b, r)):
+            values = [_values_at(f, point) for f in images]
+            rows += [[v.get(key, QQ(0)) for v in values] for key in sorted(set().union(*values))]
+    reduced, pivots = DomainMatrix(rows, (len(rows), len(images)), QQ).rref()
+    if pivots[-1] >= len(terms):
+        raise ArithmeticError("Omega has no antiderivative of the assumed form")
+    w = sum((reduced[i, len(terms)].element * terms[p] for i, p in enumerate(pivots)), _RING(0))
+    if derivative(w, "xxyy") != normal_form(omega()):
+        raise ArithmeticError("the antiderivative found does not give Omega back")
+    return w
+
+
+def displacements(potential: Element, load: str) -> tuple[dict[str, Element], dict[str, Element]]:
+    """4 pi G u for unit traction along `load`, as (A, B) with u = A + nu B, per component."""
+    psi_1 = derivative(potential, load)
+    psi = derivative(psi_1, "z")
+    a, b = {}, {}
+    for i in LOADS:
+        a[i] = -z * derivative(psi, i)
+        b[i] = 2 * derivative(psi_1, i)
+        if load == i != "z":
+            a[i] += 2 * derivative(potential, "zz")
+        if load == "z":
+            a[i] += derivative(potential, "zz") if i == "z" else -derivative(potential, "z" + i)
+        if i == "z":
+            a[i] += psi
+            b[i] = -2 * psi
+    return {i: normal_form(a[i]) for i in LOADS}, {i: normal_form(b[i]) for i in LOADS}
+
+
+def check_dilatation(load: str) -> bool:
+    """Whether div(4 pi G u) = 2 (1 - 2 nu) d(psi)/dz holds for the point load: then nu/(1 - 2 nu) cancels."""
+    a, b = displacements(omega(), load)
+    psi_z = derivative(omega(), load + "zz")
+    div_a = sum((derivative(a[i], i) for i in LOADS), _RING(0))
+    div_b = sum((derivative(b[i], i) for i in LOADS), _RING(0))
+    return normal_form(div_a - 2 * psi_z) == 0 and normal_form(div_b + 4 * psi_z) == 0
+
+
+def stresses(potential: Element, load: str) -> tuple[list[Element], list[Element]]:
+    """2 pi sigma for unit traction along `load`, as (A, B) in the order of COMPONENTS."""
+    a, b = displacements(potential, load)
+    psi_z = derivative(potential, load + "zz")
+    parts: tuple[list[Element], list[Element]] = ([], [])
+    for i, j in COMPONENTS:
+        for part, u in zip(parts, (a, b), strict=True):
+            part.append((derivative(u[i], j) + derivative(u[j], i)) / 2)
+        if i == j:
+            parts[1][-1] += 2 * psi_z
+    return [normal_form(f) for f in parts[0]], [normal_form(f) for f in parts[1]]
+
+
+def _without_polynomials(f: Element, differences: int) -> Element:
+    """Drops polynomials of degree < `differences` in x or in y, which the corner differences cancel."""
+    keep = {m: c for m, c in f.terms() if any(m[_R:]) or min(m[_X], m[_Y]) >= differences}
+    return _RING.from_dict(keep)
+
+
+@cache
+def kernel_elements(name: str) -> tuple[Element, ...]:
+    """The 36 elements of a kernel: A of the 18 (load, component) pairs, load slowest, then B."""
+    w = double_antiderivative()
+    potential = {"point_kernel": omega(), "uniform_corner": derivative(w, "xy"), "bilinear_corner": w}[name]
+    split = [stresses(potential, load) for load in LOADS]
+    found = [f for part in (0, 1) for one in split for f in one[part]]
+    differences = KERNELS.index(name)
+    return tuple(_without_polynomials(f, differences) if differences else f for f in found)
+
+
+_HEADER = '''"""Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
+
+Written by `python -m trackroller.halfspace.potentials`, which explains the derivation.
+Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, xz, yz,
+then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
+FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.
+"""
+
+from math import asinh, atan2, log, sqrt
+
+import numba
+
+FLOOR = 1e-10
+'''
+
+_COMMON = """    x2, y2, z2 = x * x, y * y, z * z
+    R = sqrt(x2 + y2 + z2)
+    iR = 1.0 / R if R > 0.0 else 0.0
+    S = R + z
+    iS = 1.0 / S if S > 0.0 else 0.0
+"""
+_CORNER = """    P = x2 + z2
+    Q = y2 + z2
+    iP = 1.0 / P if P > 0.0 else 0.0
+    iQ = 1.0 / Q if Q > 0.0 else 0.0
+    Lx = asinh(x / max(sqrt(Q), FLOOR))
+    Ly = asinh(y / max(sqrt(P), FLOOR))
+    Lz = log(max(S, FLOOR))
+    t = x * y * (x2 + y2) * iS
+    Ax = atan2(t, x2 * R + y2 * z)
+    Ay = atan2(t, y2 * R + x2 * z)
+"""
+_TITLES = {
+    "point_kernel": "Stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
+    "uniform_corner": "Corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless.",
+    "bilinear_corner": "Corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
+}
+
+
+def function_source(name: str) -> str:
+    """Python source of one kernel function, common subexpressions taken out."""
+    expressions = [f.as_expr() / (2 * sp.pi) for f in kernel_elements(name)]
+    powers, reduced = sp.cse(expressions, symbols=sp.numbered_symbols("t"), optimizations="basic", order="canonical")
+    code = _COMMON + ("" if name == "point_kernel" else _CORNER)
+    if not any("iP" in map(str, e.free_symbols) or "iQ" in map(str, e.free_symbols) for e in expressions):
+        code = "\n".join(s for s in code.split("\n") if not s.strip().startswith(("iP", "iQ")))
+    printer = sp.printing.pycode
+    lines = [f"    {symbol} = {printer(value.evalf(17))}" for symbol, value in powers]
+    values = ",\n        ".join(printer(e.evalf(17)) for e in reduced)
+    return (
+        f'\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\ndef {name}(x, y, z):\n    """{_TITLES[name]}"""\n'
+        + code + "\n".join(lines) + f"\n    return (\n        {values},\n    )\n"
+    )  # fmt: skip
+
+
+def module_source() -> str:
+    """The whole text of `kernels.py`."""
+    if not all(check_dilatation(load) for load in LOADS):
+        raise ArithmeticError("the dilatation is not proportional to 1 - 2 nu")
+    return _HEADER + "".join(function_source(name) for name in KERNELS)
+
+
+def main() -> None:
+    """Write `kernels.py` beside this file."""
+    Path(__file__).with_name("kernels.py").write_text(module_source(), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
