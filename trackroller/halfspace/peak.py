@@ -1,0 +1,226 @@
+"""The largest von Mises stress over the closed half-space below a sliding Hertzian ellipse.
+
+A coarse scan over surface and depth finds seeds, both bodies sharing its stress evaluations; from each seed a
+pattern search with quadratic models climbs, the surface and the edge of the patch being admissible; the summit
+is evaluated again with finer quadrature. Stresses per unit p_max, depth in units of the smaller semi-axis.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit, prange
+
+from trackroller.contact.sliding import clustered_rule
+from trackroller.halfspace.ellipse import A, B, stress_at
+
+
+@dataclass(frozen=True)
+class PeakSettings:
+    """Quadrature points of scan, climb, polish and summit, number of seeds climbed and of finalists polished,
+    the smallest step of the polish, and the part of the relative error that no other sign shows."""
+
+    scan: int
+    climb: int
+    polish: int
+    summit: int
+    seeds: int
+    finalists: int
+    step: float
+    floor: float
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Peak von Mises stress and its place; arrays (n, 2), second axis roller and guide.
+
+    `stress` per unit p_max, `x`, `y`, `z` [mm], `error` the estimated relative error.
+    """
+
+    stress: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    error: np.ndarray
+
+
+def _scan_points() -> np.ndarray:
+    """Points (rho cos, rho sin, depth) in normalised coordinates."""
+    rows = [(0.0, 0.0, 0.0)]
+    for rho, count in ((0.35, 8), (0.65, 8), (0.88, 10), (1.0, 10)):
+        angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 8)) / count
+        rows += [(rho * math.cos(t), rho * math.sin(t), 0.0) for t in angles]
+    for depth in (0.12, 0.3, 0.5, 0.75):
+        rows.append((0.0, 0.0, depth))
+        for rho, count in ((0.4, 6), (0.8, 6)):
+            angles = 2 * np.pi * (np.arange(count) + 0.5 * (rho == 0.4)) / count
+            rows += [(rho * math.cos(t), rho * math.sin(t), depth) for t in angles]
+    return np.array(rows)
+
+
+SCAN = _scan_points()
+
+
+@njit(cache=True, inline="always")
+def _von_mises(parts, nu, sign):
+    """von Mises stress, eq. (6), from stress parts (4, 6)."""
+    s0 = parts[0, 0] + nu * parts[1, 0] + sign * (parts[2, 0] + nu * parts[3, 0])
+    s1 = parts[0, 1] + nu * parts[1, 1] + sign * (parts[2, 1] + nu * parts[3, 1])
+    s2 = parts[0, 2] + nu * parts[1, 2] + sign * (parts[2, 2] + nu * parts[3, 2])
+    t0 = parts[0, 3] + nu * parts[1, 3] + sign * (parts[2, 3] + nu * parts[3, 3])
+    t1 = parts[0, 4] + nu * parts[1, 4] + sign * (parts[2, 4] + nu * parts[3, 4])
+    t2 = parts[0, 5] + nu * parts[1, 5] + sign * (parts[2, 5] + nu * parts[3, 5])
+    return math.sqrt(0.5 * ((s0 - s1) ** 2 + (s2 - s0) ** 2 + (s1 - s2) ** 2)
+                     + 3.0 * (t0 * t0 + t1 * t1 + t2 * t2))  # fmt: skip
+
+
+@njit(cache=True, inline="always")
+def _value(patch, nu, sign, u, rule, rule_w, waves, waves_w, parts):
+    c = min(patch[A], patch[B])
+    stress_at(patch, u[0] * patch[A], u[1] * patch[B], u[2] * c, waves, waves_w, rule, rule_w, parts)
+    return _von_mises(parts, nu, sign)
+
+
+@njit(cache=True, inline="always")
+def _project(u):
+    r = math.hypot(u[0], u[1])
+    if r > 1.0:
+        u[0] /= r
+        u[1] /= r
+    u[2] = max(u[2], 0.0)
+
+
+@njit(cache=True)
+def _climb(patch, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, smallest):
+    """Pattern search from u with value f: a parabola along radius, circumference and depth in turn."""
+    h = np.array([first, 1.6 * first, first])
+    trial, axis = np.empty(3), np.empty(3)
+    gained = 0.0
+    for _sweep in range(12):
+        before = f
+        r = math.hypot(u[0], u[1])
+        cx, cy = (u[0] / r, u[1] / r) if r > 1e-9 else (1.0, 0.0)
+        moved = 0.0
+        for k in range(3):
+            axis[0], axis[1], axis[2] = (cx, cy, 0.0) if k == 0 else ((-cy, cx, 0.0) if k == 1 else (0.0, 0.0, 1.0))
+            u0, v0, w0, f0 = u[0], u[1], u[2], f
+            f_side = np.empty(2)
+            for side in range(2):
+                step = h[k] if side == 0 else -h[k]
+                trial[0], trial[1], trial[2] = u0 + step * axis[0], v0 + step * axis[1], w0 + step * axis[2]
+                _project(trial)
+                same = abs(trial[0] - u0) + abs(trial[1] - v0) + abs(trial[2] - w0) < 1e-12
+                f_side[side] = f0 if same else _value(patch, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
+                if f_side[side] > f:
+                    f = f_side[side]
+                    u[:] = trial
+            curve = f_side[0] - 2.0 * f0 + f_side[1]
+            if curve < 0.0:
+                step = 0.5 * h[k] * (f_side[1] - f_side[0]) / curve
+                step = min(max(step, -2.0 * h[k]), 2.0 * h[k])
+                if abs(step) > 0.05 * h[k] and abs(abs(step) - h[k]) > 0.05 * h[k]:
+                    trial[0], trial[1], trial[2] = u0 + step * axis[0], v0 + step * axis[1], w0 + step * axis[2]
+                    _project(trial)
+                    value = _value(patch, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
+                    if value > f:
+                        f = value
+                        u[:] = trial
+            distance = abs(u[0] - u0) + abs(u[1] - v0) + abs(u[2] - w0)
+            moved = max(moved, distance / h[k])
+            if distance < 0.5 * h[k]:
+                h[k] *= 0.35
+        gained = f - before
+        if np.max(h) < smallest or (gained < 1e-6 * f and moved < 1e-9 and np.max(h) < 4 * smallest):
+            break
+    return f, gained
+
+
+@njit(cache=True)
+def _seeds(values, count, chosen):
+    """Indices of the best scan points that lie apart from each other; returns how many."""
+    found = 0
+    best = values.max()
+    taken = np.zeros(values.size)
+    while found < count:
+        k, top = -1, 0.85 * best
+        for i in range(values.size):
+            if taken[i] == 0.0 and values[i] > top:
+                k, top = i, values[i]
+        if k < 0:
+            break
+        chosen[found] = k
+        found += 1
+        for i in range(values.size):
+            d = ((SCAN[i, 0] - SCAN[k, 0]) ** 2 + (SCAN[i, 1] - SCAN[k, 1]) ** 2 + (SCAN[i, 2] - SCAN[k, 2]) ** 2)
+            if d < 0.25:
+                taken[i] = 1.0
+    return found
+
+
+@njit(cache=True)
+def _one_peak(patch, nu, rules, seeds, finalists, smallest, floor, out):
+    s_rule, s_w, c_rule, c_w, p_rule, p_w, f_rule, f_w, waves, waves_w = rules
+    count = SCAN.shape[0]
+    parts = np.empty((4, 6))
+    scan = np.empty((2, count))
+    c = min(patch[A], patch[B])
+    for i in range(count):
+        stress_at(patch, SCAN[i, 0] * patch[A], SCAN[i, 1] * patch[B], SCAN[i, 2] * c, s_rule, s_w, s_rule, s_w, parts)
+        scan[0, i], scan[1, i] = _von_mises(parts, nu[0], 1.0), _von_mises(parts, nu[1], -1.0)
+    chosen = np.empty(seeds, np.int64)
+    tops, values = np.empty((seeds, 3)), np.empty(seeds)
+    for body in range(2):
+        sign = 1.0 if body == 0 else -1.0
+        found = _seeds(scan[body], seeds, chosen)
+        for s in range(found):
+            u = tops[s]
+            u[:] = SCAN[chosen[s]]
+            f = _value(patch, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
+            values[s], _ = _climb(patch, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06)
+        order = np.argsort(-values[:found])
+        best = gained_best = -1.0
+        for k in range(min(found, finalists)):
+            u = tops[order[k]]
+            if values[order[k]] < 0.97 * values[order[0]]:
+                break
+            if k > 0 and np.sum((u - tops[order[0]]) ** 2) < 0.01:
+                continue  # the same summit
+            f = _value(patch, nu[body], sign, u, p_rule, p_w, waves, waves_w, parts)
+            f, gained = _climb(patch, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest)
+            if f > best:
+                best, gained_best = f, gained
+                out[body, 1], out[body, 2], out[body, 3] = u[0] * patch[A], u[1] * patch[B], u[2] * c
+        stress_at(patch, out[body, 1], out[body, 2], out[body, 3], f_rule, f_w, f_rule, f_w, parts)
+        f = _von_mises(parts, nu[body], sign)
+        out[body, 0] = f
+        out[body, 4] = (2.0 * abs(f - best) + 2.0 * gained_best) / f + floor
+
+
+@njit(cache=True, parallel=True)
+def _all_peaks(patches, nu, rules, seeds, finalists, smallest, floor, out):
+    for i in prange(patches.shape[0]):
+        _one_peak(patches[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
+
+
+def find_peaks(patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSettings) -> Peak:
+    """Peak von Mises stress of roller and guide under n patches.
+
+    Parameters
+    ----------
+    patches : rows of `ellipse.patch_rows`, shape (n, 9)
+    poisson_ratio : of roller and guide, shape (n, 2)
+    settings : quadrature and search effort
+
+    Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error holds the change from the climb's quadrature
+    to the summit's and the last gain of the climb.
+    """
+    n = len(patches)
+    out = np.empty((n, 2, 5))
+    orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
+    rules = tuple(array for order in orders for array in clustered_rule(order))
+    _all_peaks(np.ascontiguousarray(patches), np.ascontiguousarray(poisson_ratio, dtype=float), rules,
+               settings.seeds, settings.finalists, settings.step, settings.floor, out)  # fmt: skip
+    return Peak(*np.moveaxis(out, 2, 0))
+
