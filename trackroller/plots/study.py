@@ -1,0 +1,55 @@
+"""All figures of a gathered study: each drawn only when the study has what it needs."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from trackroller.plots import style
+from trackroller.plots.study_life import life_against_friction, main_effects
+from trackroller.plots.study_loads import forces_against_axial, stress_against_fit
+from trackroller.plots.study_maps import life_map, regime_map
+from trackroller.plots.study_view import StudyView
+
+log = logging.getLogger(__name__)
+FIGURES: tuple[Callable[[StudyView], Any], ...] = (
+    life_against_friction, stress_against_fit, life_map, forces_against_axial, main_effects, regime_map,
+)  # fmt: skip
+
+
+def draw_all(study_nc: Path, out_dir: Path) -> list[style.FigureInfo]:
+    """Draw the figures of a study as SVG and PNG and write their captions to `index.json`.
+
+    Parameters
+    ----------
+    study_nc : gathered study, a grid unstacked into its factors or with one dimension `case`
+    out_dir : folder for the figures, made when missing
+
+    Returns
+    -------
+    What was drawn, in the order of the report. A figure that cannot be drawn is left out with a logged
+    warning: a picture never fails a run.
+    """
+    import xarray as xr
+
+    with xr.open_dataset(study_nc) as ds:
+        view = StudyView.of(ds.load())
+    infos = []
+    with style.look(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
+        for draw in FIGURES:
+            try:
+                drawn = draw(view)
+                if drawn is None:
+                    continue
+                figure, info = drawn
+                style.save(figure, Path(out_dir), info.name)
+            except Exception as problem:
+                log.warning("figure %s was not drawn: %s", draw.__name__, problem, exc_info=True)
+                continue
+            infos.append(info)
+    style.write_index(infos, Path(out_dir))
+    return infos

@@ -1,0 +1,184 @@
+"""One look for all figures: 85 mm columns, colours and marks that survive grey print and colour blindness.
+
+Figures are built without pyplot, so that drawing needs no display and leaves the caller's own figures alone.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trackroller.parameters import PARAMETERS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+COLUMN_MM = 85.0  # width of a column of a two-column page
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*")
+LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
+REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")
+REGIME_COLOURS = ("#f2f2f2", "#f0c36d", "#5b8db8", "#4d4d4d")
+REGIME_HATCHES = ("", "////", "xxxx", "")
+UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°", "m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm"}
+SYMBOLS = {
+    "A_T": r"$A_\mathrm{T}$", "r_C,G": r"$r_\mathrm{C,G}$", "r_C,TR": r"$r_\mathrm{C,TR}$",
+    "r_Curve": r"$r_\mathrm{Curve}$", "alpha": r"$\alpha$", "F_rad": r"$F_\mathrm{rad}$",
+    "F_ax": r"$F_\mathrm{ax}$", "F_Motor": r"$F_\mathrm{Motor}$", "mu": r"$\mu$", "v": r"$v$",
+    "n_G": r"$n_\mathrm{G}$",
+}  # fmt: skip
+
+_RC = {
+    "font.size": 7.5, "axes.titlesize": 8.0, "axes.labelsize": 7.5, "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0, "legend.fontsize": 7.0, "legend.title_fontsize": 7.0, "figure.titlesize": 8.5,
+    "axes.linewidth": 0.7, "lines.linewidth": 1.2, "lines.markersize": 4.0, "grid.linewidth": 0.4,
+    "xtick.major.width": 0.7, "ytick.major.width": 0.7, "xtick.minor.width": 0.5, "ytick.minor.width": 0.5,
+    "xtick.major.size": 3.0, "ytick.major.size": 3.0, "hatch.linewidth": 0.6, "patch.linewidth": 0.6,
+    "font.family": ["DejaVu Sans"], "mathtext.fontset": "dejavusans", "axes.formatter.use_mathtext": True,
+    "legend.frameon": False, "svg.fonttype": "path", "svg.hashsalt": "trackroller", "savefig.dpi": 300,
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FigureInfo:
+    """A drawn figure: file stem, what it shows (caption), and the one thing to take from it (sentence)."""
+
+    name: str
+    caption: str
+    sentence: str
+
+
+@contextlib.contextmanager
+def look() -> Iterator[None]:
+    """The common style for everything drawn inside; restored afterwards."""
+    import matplotlib
+    import seaborn
+
+    style = dict(seaborn.axes_style("ticks"))
+    style.update({"axes.grid": True, "grid.color": "0.88"})
+    with matplotlib.rc_context({**style, **_RC}):
+        yield
+
+
+def palette(count: int) -> list[Any]:
+    """`count` colours that colour-blind readers tell apart."""
+    import seaborn
+
+    return list(seaborn.color_palette("colorblind", max(count, 1)))
+
+
+def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> Figure:
+    """An empty figure of true printed size [mm] whose parts are laid out without overlap."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), layout="constrained")
+    figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03)  # type: ignore[union-attr]
+    return figure
+
+
+def head(figure: Figure, title: str, subtitle: str = "", width_mm: float = COLUMN_MM) -> None:
+    """Title and, in smaller letters, what was held; wrapped so that nothing runs out of the figure."""
+    per_mm = 0.80  # letters of 7 pt a millimetre takes, with a reserve for wide ones
+    lines = textwrap.wrap(title, int(width_mm * 0.66))
+    small = textwrap.wrap(subtitle, int(width_mm * per_mm)) if subtitle else []
+    figure.suptitle("\n".join(lines + small), x=0.02, ha="left", fontsize=7.2, linespacing=1.25)
+
+
+def finish(figure: Figure) -> None:
+    """Take the right and upper spines away where there is no twin axis."""
+    for axes in figure.axes:
+        for side in ("top", "right"):
+            if side in axes.spines:
+                axes.spines[side].set_visible(axes.get_label() == "<colorbar>")
+
+
+def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
+    """Write `name`.svg and `name`.png; both whole or not at all. Result: the two paths."""
+    out_dir.mkdir(parents=True, exist_ok=True)
+    paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
+    for path in paths:
+        part = path.with_name(f".{path.name}.part")
+        metadata = {"Date": None} if path.suffix == ".svg" else None  # the same data gives the same file
+        figure.savefig(part, format=path.suffix[1:], metadata=metadata)
+        part.replace(path)
+    return paths
+
+
+def write_index(infos: Sequence[FigureInfo], out_dir: Path, name: str = "index.json") -> Path:
+    """Captions and sentences of the figures in `out_dir`, for the report."""
+    out_dir.mkdir(parents=True, exist_ok=True)
+    path = out_dir / name
+    part = path.with_name(f".{name}.part")
+    part.write_text(json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    part.replace(path)
+    return path
+
+
+def unit_text(units: str) -> str:
+    """A CF unit as a reader expects it."""
+    return UNITS.get(units, units)
+
+
+def with_unit(text: str, units: str) -> str:
+    """Axis label: quantity and its unit in brackets."""
+    return f"{text} [{unit_text(units)}]"
+
+
+def plain(name: str) -> str:
+    """A name without underscores."""
+    return name.replace("_", " ")
+
+
+def factor_label(name: str, units: str | None = None) -> str:
+    """Axis label of a factor: long name, symbol, unit."""
+    parameter = PARAMETERS.get(name)
+    if parameter is None:
+        return f"{plain(name)} [{unit_text(units)}]" if units else plain(name)
+    text = parameter.long_name[0].upper() + parameter.long_name[1:]
+    return with_unit(f"{text} {SYMBOLS.get(parameter.symbol, parameter.symbol)}", parameter.unit)
+
+
+def number(value: float) -> str:
+    """A number in at most four figures, thousands as 12 300 and large ones as 1.2e+09."""
+    if value is None or math.isnan(value):
+        return "–"
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    size = abs(value)
+    if size >= 1e6 or (0 < size < 1e-3):
+        mantissa, exponent = f"{value:.1e}".split("e")
+        return f"{mantissa.replace('-', '−')}·10{str(int(exponent)).translate(_RAISED)}"
+    if size >= 1e4:
+        return f"{float(f'{value:.3g}'):,.0f}".replace(",", " ").replace("-", "−")
+    return f"{value:.4g}".replace("-", "−")
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def level_text(name: str, value: Any, unit: bool = True) -> str:
+    """A level of a factor in words: 'straight' for an infinite curve, 'driven' for a motor force below 0."""
+    if isinstance(value, str):
+        return _pair(value)
+    value = float(value)
+    if name == "motor_force" and unit:
+        if value == 0:
+            return "free rolling"
+        return f"{'driven' if value < 0 else 'braked'} ({number(value)} N)"
+    if name == "guide_curve_radius" and unit:
+        if math.isinf(value):
+            return "straight"
+        return f"{'outer' if value > 0 else 'inner'} curve {number(abs(value))} mm"
+    if not unit or name not in PARAMETERS or PARAMETERS[name].unit == "-":
+        return number(value)
+    return f"{number(value)} {unit_text(PARAMETERS[name].unit)}".replace(" °", "°")
+
+
+def _pair(label: str) -> str:
+    parts = label.split(" / ")
+    return f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)
