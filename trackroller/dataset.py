@@ -1,0 +1,127 @@
+"""Results as labelled, unit-carrying xarray data sets; the one table of result variables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.parameters import REGIMES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One result: output group, dimensions behind `case`, CF unit, symbol of the paper and meaning."""
+
+    name: str
+    group: str
+    dims: tuple[str, ...]
+    units: str
+    symbol: str
+    long_name: str
+
+
+_C, _CB = ("contact",), ("contact", "body")
+_PATCH = ("contact", "y", "x")
+_XZ, _YZ = ("contact", "body", "section_z", "section_x"), ("contact", "body", "section_z", "section_y")
+
+_ALL = (
+    Variable("normal_force", "forces", _C, "N", "F_N", "normal force"),
+    Variable("lateral_force", "forces", _C, "N", "F_T", "friction force on the roller across the rolling direction"),
+    Variable("driving_force", "forces", _C, "N", "F_A", "friction force on the roller in the rolling direction"),
+    Variable("spin_moment", "forces", _C, "N mm", "M_R", "friction moment on the roller about the contact normal"),
+    Variable("rolling_radius_shift", "forces", (), "mm", "r_Delta0", "deviation of the rolling radius"),
+    Variable("slip", "forces", (), "1", "xi", "longitudinal slip r_Delta0/r_A, > 0 braking"),
+    Variable("drilling_torque", "forces", (), "N mm", "(M_R1 - M_R2) sin(alpha)", "torque that drilling friction takes"),
+    Variable("tilting_moment", "forces", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)"),
+    Variable("yaw_moment", "forces", (), "N mm", "M_zR", "moment about the radial direction, eq. (12)"),
+    Variable("transmitted_force", "forces", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track"),
+    Variable("semi_axis_lateral", "contact", _C, "mm", "a", "semi-axis of the contact ellipse across the rolling direction"),
+    Variable("semi_axis_rolling", "contact", _C, "mm", "b", "semi-axis of the contact ellipse in the rolling direction"),
+    Variable("max_pressure", "contact", _C, "MPa", "p_max", "largest contact pressure"),
+    Variable("max_shear", "contact", _C, "MPa", "tau_max", "largest surface shear traction"),
+    Variable("spin_pole_lateral", "contact", _C, "mm", "x_spin", "lateral position of the spin pole"),
+    Variable("spin_pole_rolling", "contact", _C, "mm", "y_spin", "position of the spin pole in the rolling direction"),
+    Variable("stick_area_fraction", "contact", _C, "1", "A_stick/A", "share of the patch that sticks"),
+    Variable("friction_power", "friction_work", _C, "W", "P_f", "friction power at the travel speed"),
+    Variable("friction_energy_per_distance", "friction_work", _C, "J m-1", "W_f", "friction energy per distance travelled"),
+    Variable("peak_stress", "peak_stress", _CB, "MPa", "sigma_DEH,max", "largest von Mises stress of the body"),
+    Variable("peak_x", "peak_stress", _CB, "mm", "x_C", "lateral position of the peak stress"),
+    Variable("peak_y", "peak_stress", _CB, "mm", "y_C", "position of the peak stress in the rolling direction"),
+    Variable("peak_z", "peak_stress", _CB, "mm", "z_C", "depth of the peak stress"),
+    Variable("life_cycles", "life", _CB, "1", "N", "overrollings to failure"),
+    Variable("life_hours", "life", _CB, "h", "L_h", "life in hours of travel"),
+    Variable("roller_life_hours", "life", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
+    Variable("guide_life_hours", "life", (), "h", "L_h,G", "hours to the first failure of the guide"),
+    Variable("patch_x", "tractions", ("contact", "x"), "mm", "x_C", "lateral position in the patch"),
+    Variable("patch_y", "tractions", ("contact", "y"), "mm", "y_C", "position in the patch in the rolling direction"),
+    Variable("pressure", "tractions", _PATCH, "MPa", "p", "contact pressure"),
+    Variable("shear_lateral", "tractions", _PATCH, "MPa", "tau_x", "shear on the roller across the rolling direction"),
+    Variable("shear_rolling", "tractions", _PATCH, "MPa", "tau_y", "shear on the roller in the rolling direction"),
+    Variable("slip_lateral", "tractions", _PATCH, "1", "v_x/v", "slip velocity of the roller over travel speed, lateral"),
+    Variable("slip_rolling", "tractions", _PATCH, "1", "v_y/v", "slip velocity of the roller over travel speed, rolling"),
+    Variable("friction_energy_density", "tractions", _PATCH, "J m-1 mm-2", "|tau||v|/v",
+             "friction energy per area and distance travelled"),
+    Variable("xz_x", "subsurface", ("contact", "body", "section_x"), "mm", "x_C", "x in the lateral section"),
+    Variable("xz_z", "subsurface", ("contact", "body", "section_z"), "mm", "z_C", "depth in the lateral section"),
+    Variable("yz_y", "subsurface", ("contact", "body", "section_y"), "mm", "y_C", "y in the rolling section"),
+    Variable("yz_z", "subsurface", ("contact", "body", "section_z"), "mm", "z_C", "depth in the rolling section"),
+    Variable("von_mises_xz", "subsurface", _XZ, "MPa", "sigma_DEH", "von Mises stress in the lateral section through the peak"),
+    Variable("von_mises_yz", "subsurface", _YZ, "MPa", "sigma_DEH", "von Mises stress in the rolling section through the peak"),
+    Variable("stress_xz", "subsurface", ("component", *_XZ), "MPa", "sigma_ij", "stress components in the lateral section"),
+    Variable("stress_yz", "subsurface", ("component", *_YZ), "MPa", "sigma_ij", "stress components in the rolling section"),
+    Variable("residual", "status", (), "1", "", "largest imbalance of forces and torque over the load"),
+    Variable("error_estimate", "status", _CB, "1", "", "estimated relative error of the peak stress"),
+)  # fmt: skip
+
+VARIABLES: dict[str, Variable] = {v.name: v for v in _ALL}
+
+VALIDITY_BITS = {
+    "half_space": "a or b above 0.3 of the smallest radius of curvature: the bodies are no half-spaces",
+    "yield": "p_max above 1.6 R_m of a body (R_m taken for the yield strength): plastic flow under the surface",
+    "static": "peak stress above R_m of the body: static failure, the Woehler line is run beyond its end",
+    "conformal": "the patch reaches the edge of the groove or the middle of the guide",
+    "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, the wedge may lock",
+    "large_slip": "longitudinal slip above 10 %: friction heat and wear decide",
+    "deep_life": "peak stress below the fatigue limit: life rests on the rule chosen beyond the knee",
+}
+
+
+def build(values: Mapping[str, np.ndarray], regime: np.ndarray, converged: np.ndarray, validity: np.ndarray,
+          attrs: Mapping[str, Any], single: bool) -> xr.Dataset:  # fmt: skip
+    """Data set with dimension `case` (dropped for a `single` case) from arrays whose first axis is the case."""
+    import xarray as xr
+
+    variables: dict[str, Any] = {}
+    for name, array in values.items():
+        v = VARIABLES[name]
+        meta = {"units": v.units, "long_name": v.long_name}
+        if v.symbol:
+            meta["symbol"] = v.symbol
+        variables[name] = (("case", *v.dims), array, meta)
+    variables["regime"] = ("case", regime.astype(np.int8), {
+        "long_name": "regime of the case", "flag_values": np.arange(len(REGIMES), dtype=np.int8),
+        "flag_meanings": " ".join(REGIMES), "units": "1"})  # fmt: skip
+    variables["converged"] = ("case", converged.astype(np.int8), {
+        "long_name": "equilibrium found to a relative residual of 1e-10", "units": "1",
+        "flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"})  # fmt: skip
+    variables["validity"] = ("case", validity.astype(np.int32), {
+        "long_name": "where the model leaves its ground", "units": "1",
+        "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
+        "flag_meanings": " ".join(VALIDITY_BITS),
+        "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items())})  # fmt: skip
+    coords: dict[str, Any] = {
+        "contact": ("contact", np.array([1, 2], dtype=np.int32),
+                    {"long_name": "contact, 1 at +x_R, 2 at -x_R", "units": "1"}),
+        "body": ("body", np.array(["roller", "guide"]), {"long_name": "body"}),
+    }  # fmt: skip
+    if any(name.startswith("stress_") for name in values):
+        coords["component"] = ("component", np.array(["xx", "yy", "zz", "xy", "yz", "zx"]),
+                               {"long_name": "stress component"})  # fmt: skip
+    ds = xr.Dataset(variables, coords=coords, attrs=dict(attrs))
+    return ds.isel(case=0) if single else ds

@@ -1,0 +1,311 @@
+"""The stages of a solution: each takes the `Results` so far and adds its own quantities.
+
+Arrays have the case as first axis (n,), then contact (2) and body (2: roller, guide).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller import equilibrium as eq
+from trackroller import fatigue
+from trackroller.case import CaseTable
+from trackroller.contact import sliding
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.hertz import contact_modulus, shape
+from trackroller.dataset import VALIDITY_BITS
+from trackroller.geometry import curvatures, lever_arms, rolling_radius
+from trackroller.halfspace.ellipse import patch_rows, stress_parts
+from trackroller.halfspace.peak import find_peaks
+
+if TYPE_CHECKING:
+    from trackroller.solver import Options
+
+LIFE_CONVENTIONS = (
+    "Woehler line N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is taken "
+    "as the amplitude (as published); below sigma_D: elementary runs the line on, haibach uses the slope 2k - 1, "
+    "unlimited gives inf; roller: one overrolling per revolution; guide: overrollings per hour are the user's input"
+)
+SIGN_CONVENTIONS = (
+    "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
+    "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"
+)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A block of cases with what follows from geometry and material alone."""
+
+    table: CaseTable
+    loads: eq.Loads
+    elastic: Elastic
+    n: int
+
+
+@dataclass
+class Results:
+    """Quantities found so far for one block."""
+
+    scene: Scene
+    balance: eq.Equilibrium
+    regime: np.ndarray
+    converged: np.ndarray
+    ellipse: Ellipse  # arrays (2 n,): contact 1 of all cases, then contact 2
+    slip: Slip
+    friction: np.ndarray
+    good: np.ndarray  # (2 n,) patches that exist
+    bits: np.ndarray
+    values: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @classmethod
+    def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
+        normal = balance.normal_force.T.reshape(-1)
+        s = scene.loads.shape
+        two = lambda v: np.concatenate([v, v])  # noqa: E731
+        sine = np.sin(scene.loads.contact_angle)
+        ellipse = type(s)(two(s.lateral), two(s.rolling), two(s.pressure)).at(normal)
+        slip = Slip(np.concatenate([sine, -sine]), two(np.cos(scene.loads.contact_angle)),
+                    two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius), two(balance.shift))  # fmt: skip
+        out = cls(scene, balance, balance.regime, balance.converged, ellipse, slip, two(scene.loads.friction),
+                  np.isfinite(normal), np.zeros(scene.n, np.int32))  # fmt: skip
+        out.values["residual"] = balance.residual
+        return out
+
+    def by_contact(self, flat: np.ndarray) -> np.ndarray:
+        """(2 n, ...) -> (n, 2, ...)."""
+        return np.moveaxis(flat.reshape(2, self.scene.n, *flat.shape[1:]), 0, 1)
+
+    @property
+    def slides_along(self) -> np.ndarray:
+        """Direction of the traction along y_C in full slip, 0 in rolling; shape (2 n,)."""
+        along = np.where(self.regime == eq.FULL_SLIP, -np.sign(self.scene.loads.motor_force), 0.0)
+        return np.concatenate([along, along])
+
+    def full(self, flat_good: np.ndarray) -> np.ndarray:
+        """Values of the existing patches spread to all, NaN elsewhere, shape (n, 2, ...)."""
+        out = np.full((2 * self.scene.n, *flat_good.shape[1:]), np.nan)
+        out[self.good] = flat_good
+        return self.by_contact(out)
+
+
+def prepare(table: CaseTable, options: Options) -> Scene:
+    """Curvatures, Hertz shape and loads of a block."""
+    alpha = np.deg2rad(table.contact_angle)
+    r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, alpha)
+    k_x, k_y = curvatures(table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, r_a, alpha)
+    bodies = (table.roller.youngs_modulus, table.roller.poisson_ratio,
+              table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
+    hertz = shape(k_x, k_y, contact_modulus(*bodies), options.hertz)
+    loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
+                     table.guide_profile_radius, r_a, hertz)  # fmt: skip
+    return Scene(table, loads, Elastic.of_pair(*bodies), len(table))
+
+
+def contact_law(scene: Scene, options: Options) -> eq.ContactLaw:
+    """The contact model as the equilibrium calls it."""
+    settings = options.settings
+    if options.contact_model == "sliding":
+
+        def slide(ellipse: Ellipse, slip: Slip, mu: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+            nodes = settings.force_nodes if fine else settings.coarse_nodes
+            return sliding.resultants(ellipse, slip, mu, spin_model=options.spin_model, nodes=nodes)
+
+        return slide
+    from trackroller.contact import fastsim, kalker  # type: ignore[attr-defined]
+
+    module = {"fastsim": fastsim, "kalker": kalker}[options.contact_model]
+
+    def roll(ellipse: Ellipse, slip: Slip, mu: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+        return module.resultants(ellipse, slip, mu, scene.elastic.take(rows), fine)
+
+    return roll
+
+
+def forces(results: Results) -> None:
+    """Forces of both contacts and the resulting moments, eqs (8)-(14)."""
+    f, b, loads, v = results.balance.forces, results.balance, results.scene.loads, results.values
+    table = results.scene.table
+    v["normal_force"], v["lateral_force"] = b.normal_force, f.lateral_force
+    v["driving_force"], v["spin_moment"] = f.driving_force, f.spin_moment
+    v["rolling_radius_shift"], v["slip"] = b.shift, b.shift / loads.rolling_radius
+    sine, cosine = np.sin(loads.contact_angle), np.cos(loads.contact_angle)
+    h_n, h_t = lever_arms(table.axis_distance, table.guide_profile_radius, loads.contact_angle)
+    m, a, t, n = f.spin_moment, f.driving_force, f.lateral_force, b.normal_force
+    v["drilling_torque"] = (m[:, 0] - m[:, 1]) * sine
+    v["tilting_moment"] = h_n * (n[:, 0] - n[:, 1]) + h_t * (t[:, 0] + t[:, 1])
+    v["yaw_moment"] = -((m[:, 0] + m[:, 1]) * cosine + (a[:, 0] - a[:, 1]) * loads.rolling_radius * sine)
+    v["transmitted_force"] = a[:, 0] + a[:, 1]
+
+
+def contact(results: Results, options: Options) -> None:
+    """Ellipse, pressure, shear and spin pole of both contacts."""
+    v, e = results.values, results.ellipse
+    v["semi_axis_lateral"] = results.by_contact(e.semi_axis_lateral)
+    v["semi_axis_rolling"] = results.by_contact(e.semi_axis_rolling)
+    v["max_pressure"] = results.by_contact(e.max_pressure)
+    v["max_shear"] = results.by_contact(results.friction * e.max_pressure)
+    pole_x = results.slip.pole_lateral
+    with np.errstate(invalid="ignore"):
+        ratio = pole_x / e.semi_axis_lateral
+        pole_y = np.where(np.abs(ratio) < 1, -e.semi_axis_rolling * np.sqrt(np.maximum(1 - ratio**2, 0)), 0.0)
+    if options.spin_model == "concentric":
+        pole_y = np.zeros_like(pole_y)
+    pole_y = np.where(np.isfinite(pole_x), pole_y, np.nan)
+    v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
+    v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
+
+
+def friction_work(results: Results, options: Options) -> None:
+    """Friction power int |tau| |v| at the travel speed and per distance."""
+    good, table = results.good, results.scene.table
+    per_distance = np.full(2 * results.scene.n, np.nan)
+    rolls = good & (results.slides_along == 0)
+    per_omega = sliding.friction_power(results.ellipse.take(rolls), results.slip.take(rolls), results.friction[rolls],
+                                       spin_model=options.spin_model, nodes=options.settings.force_nodes)  # fmt: skip
+    per_distance[rolls] = per_omega / results.slip.rolling_radius[rolls]
+    w = results.by_contact(per_distance)
+    results.values["friction_energy_per_distance"] = w
+    results.values["friction_power"] = w * (table.velocity / 60.0)[:, None]
+
+
+def _patches(results: Results, options: Options) -> np.ndarray:
+    good = results.good
+    return patch_rows(results.ellipse.take(good), results.slip.take(good), results.friction[good],
+                      sliding.spin_model_index(options.spin_model), results.slides_along[good])  # fmt: skip
+
+
+def _poisson(results: Results, options: Options) -> np.ndarray:
+    table = results.scene.table
+    nu = np.stack([table.roller.poisson_ratio, table.guide.poisson_ratio], axis=1)
+    if options.stress_bodies == "published":
+        nu = np.repeat(nu.mean(axis=1, keepdims=True), 2, axis=1)
+    return np.concatenate([nu, nu])
+
+
+def peak_stress(results: Results, options: Options) -> None:
+    """Peak von Mises stress of each contact and body, its place and error estimate."""
+    good = results.good
+    peak = find_peaks(_patches(results, options), _poisson(results, options)[good], options.settings.peak)
+    scale = results.ellipse.max_pressure[good][:, None]
+    fields = {"peak_stress": peak.stress * scale, "peak_x": peak.x, "peak_y": peak.y, "peak_z": peak.z,
+              "error_estimate": peak.error}  # fmt: skip
+    for name, value in fields.items():
+        full = results.full(value)
+        if options.stress_bodies == "published":
+            full = np.repeat(full[:, :, :1], 2, axis=2)
+        results.values[name] = full
+
+
+def life(results: Results, options: Options) -> None:
+    """Overrollings and hours to failure from the peak stress."""
+    table, v = results.scene.table, results.values
+    per_body = []
+    for j, m in enumerate((table.roller, table.guide)):
+        column = lambda a: a[:, None]  # noqa: E731
+        per_body.append(fatigue.life_cycles(
+            v["peak_stress"][:, :, j], column(m.tensile_strength), column(m.fatigue_limit),
+            column(m.cycles_at_tensile_strength), column(m.cycles_at_fatigue_limit), rule=options.life_rule))  # fmt: skip
+    v["life_cycles"] = np.stack(per_body, axis=2)
+    roller = fatigue.roller_hours(per_body[0], table.velocity[:, None], results.scene.loads.rolling_radius[:, None])
+    guide = fatigue.guide_hours(per_body[1], table.guide_overrollings_per_hour[:, None])
+    v["life_hours"] = np.stack([roller, guide], axis=2)
+    v["roller_life_hours"], v["guide_life_hours"] = roller.min(axis=1), guide.min(axis=1)
+
+
+def surface_tractions(results: Results, options: Options) -> SurfaceTractions:
+    """Tractions of the existing patches on a grid."""
+    good = results.good
+    ellipse, slip, mu = results.ellipse.take(good), results.slip.take(good), results.friction[good]
+    along = results.slides_along[good]
+    rolling = Slip(slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius,
+                   np.where(along == 0, slip.shift, 0.0))  # fmt: skip
+    t = sliding.tractions(ellipse, rolling, mu, spin_model=options.spin_model, points=options.settings.traction_points)
+    full = (along != 0)[:, None, None]
+    bound = mu[:, None, None] * t.pressure
+    return SurfaceTractions(t.x, t.y, t.pressure, np.where(full, 0.0, t.shear_lateral),
+                            np.where(full, along[:, None, None] * bound, t.shear_rolling),
+                            np.where(full, np.nan, t.slip_lateral), np.where(full, np.nan, t.slip_rolling), t.stick)  # fmt: skip
+
+
+def tractions(results: Results, options: Options) -> None:
+    """Pressure, shear, slip and friction energy over the patches."""
+    t = surface_tractions(results, options)
+    fields = {"patch_x": t.x, "patch_y": t.y, "pressure": t.pressure, "shear_lateral": t.shear_lateral,
+              "shear_rolling": t.shear_rolling, "slip_lateral": t.slip_lateral, "slip_rolling": t.slip_rolling,
+              "friction_energy_density": np.hypot(t.shear_lateral, t.shear_rolling)
+              * np.hypot(t.slip_lateral, t.slip_rolling)}  # fmt: skip
+    results.values.update({name: results.full(value) for name, value in fields.items()})
+
+
+def subsurface(results: Results, options: Options) -> None:
+    """All stress components on the two section planes through each peak."""
+    m, n = options.settings.section_points, results.scene.n
+    depth_points = (m + 1) // 2
+    shape_xz = (n, 2, 2, depth_points, m)
+    v = results.values
+    for name in ("von_mises_xz", "von_mises_yz"):
+        v[name] = np.full(shape_xz, np.nan)
+    for name in ("stress_xz", "stress_yz"):
+        v[name] = np.full((n, 6, *shape_xz[1:]), np.nan)
+    for name, count in (("xz_x", m), ("xz_z", depth_points), ("yz_y", m), ("yz_z", depth_points)):
+        v[name] = np.full((n, 2, 2, count), np.nan)
+    rows = _patches(results, options)
+    nu = _poisson(results, options)
+    order = options.settings.peak.polish
+    for row, flat in enumerate(np.flatnonzero(results.good)):
+        j, i = divmod(flat, n)
+        e = results.ellipse
+        a, b, p = e.semi_axis_lateral[flat], e.semi_axis_rolling[flat], e.max_pressure[flat]
+        across, along = np.linspace(-1.5 * a, 1.5 * a, m), np.linspace(-1.5 * b, 1.5 * b, m)
+        depth = np.linspace(0.0, 1.0, depth_points) ** 1.5 * 2.0 * min(a, b)
+        for body in (0, 1):
+            x0, y0 = v["peak_x"][i, j, body], v["peak_y"][i, j, body]
+            sign = -1.0 if body == 1 and options.stress_bodies == "both" else 1.0
+            planes = (("xz", across, np.full(m, y0)), ("yz", np.full(m, x0), along))
+            for plane, xs, ys in planes:
+                points = np.stack([np.tile(xs, depth_points), np.tile(ys, depth_points), np.repeat(depth, m)], axis=1)
+                parts = stress_parts(rows[row], points, max(order, 12), order)
+                s = p * (parts[:, 0] + nu[flat, body] * parts[:, 1]
+                         + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3]))  # fmt: skip
+                v[f"stress_{plane}"][i, :, j, body] = s.T.reshape(6, depth_points, m)
+                v[f"von_mises_{plane}"][i, j, body] = von_mises(s).reshape(depth_points, m)
+            v["xz_x"][i, j, body], v["yz_y"][i, j, body] = across, along
+            v["xz_z"][i, j, body] = v["yz_z"][i, j, body] = depth
+
+
+def von_mises(s: np.ndarray) -> np.ndarray:
+    """Equivalent stress, eq. (6), of components (..., 6) in the order xx, yy, zz, xy, yz, zx."""
+    normal = (s[..., 0] - s[..., 1]) ** 2 + (s[..., 2] - s[..., 0]) ** 2 + (s[..., 1] - s[..., 2]) ** 2
+    return np.sqrt(0.5 * normal + 3.0 * (s[..., 3] ** 2 + s[..., 4] ** 2 + s[..., 5] ** 2))
+
+
+def validity(results: Results) -> None:
+    """Bits that warn where the model leaves its ground, see `dataset.VALIDITY_BITS`."""
+    table, loads, v = results.scene.table, results.scene.loads, results.values
+    bit = {name: 1 << i for i, name in enumerate(VALIDITY_BITS)}
+    r_g, alpha = table.guide_profile_radius, loads.contact_angle
+    smallest = np.min(np.abs([table.roller_profile_radius, r_g, loads.rolling_radius / np.cos(alpha),
+                              table.guide_curve_radius / np.cos(alpha)]), axis=0)  # fmt: skip
+    a = np.max(v["semi_axis_lateral"], axis=1)
+    size = np.maximum(a, np.max(v["semi_axis_rolling"], axis=1))
+    strength = np.minimum(table.roller.tensile_strength, table.guide.tensile_strength)
+
+    def warn(name: str, condition: np.ndarray) -> None:
+        results.bits |= np.where(condition, bit[name], 0).astype(np.int32)
+
+    with np.errstate(invalid="ignore"):
+        warn("half_space", size > 0.3 * smallest)
+        # ASSUME: the database holds no yield strength, so R_m stands for it
+        warn("yield", np.max(v["max_pressure"], axis=1) > 1.6 * strength)
+        warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
+        grip = np.abs(v["lateral_force"]) >= v["normal_force"] * np.tan(alpha)[:, None]
+        warn("jamming", np.any(grip, axis=1))
+        warn("large_slip", np.abs(v["slip"]) > 0.1)
+        if "peak_stress" in v:
+            limits = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)[:, None, :]
+            knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)[:, None, :]
+            warn("static", np.any(v["peak_stress"] > limits, axis=(1, 2)))
+            warn("deep_life", np.any(v["peak_stress"] < knee, axis=(1, 2)))
