@@ -100,16 +100,27 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
     return MaterialDatabase(materials, friction, (*(over.files if over else ()), file))
 
 
-def _sections(text: str, file: str) -> dict[str, Any]:
-    """The checked sections of a file, empty where it has none."""
+def _parsed(text: str, file: str) -> Any:
+    """Plain data of a YAML text, or an `InputError` that tells the line."""
     try:
         data = yaml.safe_load(text)
-        node = yaml.compose(text, Loader=yaml.SafeLoader) if file != BUILTIN else None
-    except yaml.YAMLError as error:
+        if file != BUILTIN:
+            _refuse_repeated_keys(yaml.compose(text, Loader=yaml.SafeLoader), file)
+    except InputError:
+        raise
+    except RecursionError:
+        allowed = "it must be YAML that is not nested deeply and does not hold itself"
+        raise InputError("materials file", file, allowed) from None
+    except (yaml.YAMLError, ValueError) as error:
         reason = " ".join(str(error).split())
-        raise InputError("materials file", file, f"it must be YAML: {reason}",
-                         "Mend the line; texts with ': ' or ' #' in them need quotes.") from None  # fmt: skip
-    _refuse_repeated_keys(node, file)
+        remedy = "Mend the line; texts with ': ' or ' #' in them need quotes."
+        raise InputError("materials file", file, f"it must be YAML: {reason}", remedy) from None
+    return data
+
+
+def _sections(text: str, file: str) -> dict[str, Any]:
+    """The checked sections of a file, empty where it has none."""
+    data = _parsed(text, file)
     data = {} if data is None else data
     if not isinstance(data, Mapping):
         allowed = f"its top level must be a mapping with {', '.join(SECTIONS)}"
@@ -171,6 +182,10 @@ class _Parser:
             entry = {"value": entry}
         for key in entry:
             if key not in VALUE_KEYS:
+                if entry[key] is None:  # {source: a, b} is read as a key b without a value
+                    raise InputError(
+                        field, str(key), "it stands alone in the mapping", "Quote texts with a comma."
+                    )
                 raise unknown_name(f"{field}: key", str(key), VALUE_KEYS)
         if "value" not in entry:
             remedy = f"Write {{value: ..., unit: {prop.unit}}}."

@@ -1,0 +1,198 @@
+"""Writes a material into the user's file: comments stay, and the file is never half-written."""
+
+from __future__ import annotations
+
+import io
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from trackroller.errors import InputError, unknown_name
+from trackroller.material_properties import PROPERTIES
+from trackroller.materials import Material
+from trackroller.materials_file import TEXTS, VALUE_KEYS, build_database, read_database
+
+HEADER = """\
+# Your own materials and friction coefficients, laid over the built-in ones.
+"""
+FIELDS = (*PROPERTIES, *TEXTS, "source", "placeholder")
+
+
+def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
+    """Write a material into the user's file and return it as it will be read.
+
+    Comments, order and every other entry of the file stay. The file is written beside and then put in
+    place at once, after the new text has been read back and checked. A missing file is made.
+
+    Parameters
+    ----------
+    path : the user's materials file
+    name : of the material; the name of a built-in one changes single values of it
+    replace : change the values given here of a material that stands in the file already
+    values : fields of `Material` as numbers in its units or as mappings with value, unit, source,
+        placeholder, note; `family`, `description`, `like`; `source`, `placeholder` and `note` for all
+        values given as numbers
+
+    Raises `InputError` naming field, value and remedy; the file is then as it was.
+    """
+    path = Path(os.path.realpath(Path(path).expanduser()))
+    if not isinstance(name, str) or not name.strip():
+        raise InputError("material name", name, "it must be a text that is not empty")
+    for key in values:
+        if key not in FIELDS:
+            raise unknown_name(f"material '{name}': field", key, FIELDS)
+    values = {key: value for key, value in values.items() if value is not None}
+    if not values:
+        raise InputError(f"material '{name}'", None, "it must have at least one value",
+                         f"Give one of {', '.join(PROPERTIES)}.")  # fmt: skip
+    text = _read(path)
+    builtin = read_database(None)
+    build_database(text, str(path), over=builtin)  # a file that is broken already is not touched
+    text = _with_entry(text, path, name, _entry(values), replace)
+    material = build_database(text, str(path), over=builtin).material(name)
+    _write_at_once(path, text)
+    return material
+
+
+def _read(path: Path) -> str:
+    if not path.exists():
+        return HEADER
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError("materials file", str(path), f"it must be a readable text ({error})") from None
+
+
+def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Plain entry of the file; every number becomes a mapping with unit, source and placeholder mark."""
+    common = {"source": values.get("source", "user's own"), "placeholder": values.get("placeholder", False)}
+    note = {"note": values["note"]} if "note" in values else {}
+    entry: dict[str, Any] = {key: values[key] for key in ("description", "family", "like") if key in values}
+    for key, prop in PROPERTIES.items():
+        if key not in values:
+            continue
+        given = values[key] if isinstance(values[key], Mapping) else {"value": _plain(values[key])}
+        record = {"unit": prop.unit} | common | note | dict(given)
+        known = [part for part in VALUE_KEYS if part in record]
+        entry[key] = {part: record[part] for part in (*known, *(set(record) - set(known)))}
+    return entry
+
+
+def _plain(value: Any) -> Any:
+    """A number as short as it can be written; what is none is left for the check to refuse by name."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return value
+    if isinstance(value, bool):
+        return value
+    return int(number) if number.is_integer() and abs(number) < 1e15 else number
+
+
+def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace: bool) -> str:
+    """The text with the material in it."""
+    from ruamel.yaml import YAML
+    from ruamel.yaml.comments import CommentedMap
+
+    editor = YAML()
+    editor.preserve_quotes = True
+    editor.width = 4096
+    editor.indent(mapping=2, sequence=4, offset=2)
+    block = _block(entry)
+    data = editor.load(text)
+    if data is None or data.get("materials") is None:
+        # nothing to hang comments on: the text itself is kept and the section written behind it
+        head = text if data is None else _without_empty_section(text)
+        out = io.StringIO()
+        editor.dump(CommentedMap({"materials": CommentedMap({_text(name): block})}), out)
+        return head + ("" if head.endswith("\n") or not head else "\n") + out.getvalue()
+    materials = data["materials"]
+    if name in materials and not replace:
+        raise InputError(f"{path}: materials.{name}", name, "the file has a material of this name already",
+                         "Take another name, or replace its values (replace=True).")  # fmt: skip
+    if name in materials:
+        for key, value in block.items():
+            materials[name][key] = value
+    else:
+        _append(materials, _text(name), block)
+    out = io.StringIO()
+    editor.dump(data, out)
+    return out.getvalue()
+
+
+def _append(materials: Any, name: Any, block: Any) -> None:
+    """Add at the end of the section, in block style even if the user's mapping is `{}`."""
+    if not materials:
+        materials.fa.set_block_style()
+    materials[name] = block
+
+
+def _without_empty_section(text: str) -> str:
+    """The text without its line `materials:` that holds nothing, so that it can be written anew."""
+    lines = text.splitlines(keepends=True)
+    for i, line in enumerate(lines):
+        if line.split("#")[0].rstrip() in ("materials:", "materials: null", "materials: ~"):
+            comment = line.partition("#")
+            lines[i] = f"#{comment[2]}" if comment[1] else ""
+            break
+    return "".join(lines)
+
+
+def _block(entry: Mapping[str, Any]) -> Any:
+    """Entry as ruamel's mappings, each value on one line."""
+    from ruamel.yaml.comments import CommentedMap
+
+    block = CommentedMap()
+    for key, value in entry.items():
+        if isinstance(value, Mapping):
+            inner = CommentedMap({part: _text(v) for part, v in value.items()})
+            inner.fa.set_flow_style()
+            block[key] = inner
+        else:
+            block[key] = _text(value)
+    return block
+
+
+def _text(value: Any) -> Any:
+    """A text in quotes where YAML 1.1 would read something else, such as 1.4301, yes or 1:30."""
+    from ruamel.yaml.scalarstring import DoubleQuotedScalarString
+
+    if not isinstance(value, str):
+        return value
+    try:
+        same = yaml.safe_load(value) == value
+    except yaml.YAMLError:
+        same = False
+    return value if same else DoubleQuotedScalarString(value)
+
+
+def _write_at_once(path: Path, text: str) -> None:
+    """Write beside and put in place in one step, so that a reader sees the old file or the new one."""
+    beside = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        mode = path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask()
+        handle, beside = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+        with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(beside, mode)
+        os.replace(beside, path)
+    except OSError as error:
+        allowed = f"it must be in a folder that can be written ({error.strerror})"
+        remedy = "Give another path, or the right to write there."
+        raise InputError("materials file", str(path), allowed, remedy) from None
+    finally:
+        if beside is not None and os.path.exists(beside):
+            os.unlink(beside)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
