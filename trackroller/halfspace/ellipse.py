@@ -22,25 +22,35 @@ import math
 import numpy as np
 from numba import njit, prange
 
-from trackroller.contact.sliding import clustered_rule, pole_offset, rolling_slip
+from trackroller.contact.sliding import clustered_rule
 
 PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU = range(4)  # rows of the result
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
 
-# columns of the array that describes a patch
-A, B, FRICTION, SINE, COSINE, RADIUS, SHIFT, MODEL, FIXED = range(9)
+# columns of the array that describes a patch; the slip v_x vanishes at y = K0 + K1 (x + a) left of POLE_X and at
+# y = K0 + K2 (x - a) right of it, which holds all three spin models
+A, B, FRICTION, SINE, COSINE, RADIUS, SHIFT, FIXED, POLE_X, K0, K1, K2 = range(12)
+
+_FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets the inner loop run in vectors; keeps NaN and inf
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, inline="always", fastmath=_FAST, error_model="numpy")
+def _slip(patch, x, y):
+    """Rigid slip v/omega of the roller against the guide at (x, y) [mm], eqs (21), (24), without branches."""
+    left = patch[K1] * (x + patch[A])
+    right = patch[K2] * (x - patch[A])
+    v_x = patch[SINE] * (y - patch[K0] - (left if x < patch[POLE_X] else right))
+    flat = patch[RADIUS] * patch[COSINE]
+    product = min(x * patch[COSINE] * (2.0 * patch[RADIUS] * patch[SINE] + x * patch[COSINE]), flat * flat)
+    return v_x, patch[SHIFT] - product / (math.sqrt(flat * flat - product) + flat)
+
+
+@njit(cache=True)
 def _direction(patch, x, y):
     """Unit direction of the friction traction on the roller at (x, y); (0, 0) at the pole."""
     if patch[FIXED] != 0.0:  # full slip along y_C
         return 0.0, patch[FIXED]
-    a, b = patch[A], patch[B]
-    pole_x = patch[SHIFT] / patch[SINE]
-    pole_y = -b * math.sqrt(1.0 - (pole_x / a) ** 2) if abs(pole_x) < a else 0.0
-    v_x = patch[SINE] * (y - pole_offset(x, pole_x, pole_y, a, patch[MODEL]))
-    v_y = rolling_slip(x, patch[SINE], patch[COSINE], patch[RADIUS], patch[SHIFT])
+    v_x, v_y = _slip(patch, x, y)
     speed = math.sqrt(v_x * v_x + v_y * v_y)
     if speed == 0.0:
         return 0.0, 0.0
@@ -59,15 +69,17 @@ def _rotate(out, row, c, s, ee, tt, zz, et, ez, tz):
 
 
 @njit(cache=True, inline="always")
-def _spread(start, end, center, scale, v, w):
-    """Point and weight of a piece [start, end] one end of which is `center`, dense there on `scale`."""
-    span = end - start
-    u = math.asinh(abs(span) / scale)
+def _spread(start, end, center, scale, u, v, w):
+    """Point and weight of a piece [start, end] one end of which is `center`, dense there on `scale`.
+
+    `u` = asinh(|end - start| / scale).
+    """
+    sign = 1.0
     if abs(start - center) > abs(end - center):
-        v = 1.0 - v
-        start, span = end, -span
-    sign = 1.0 if span > 0 else -1.0
-    return start + sign * scale * math.sinh(u * v), w * scale * u * math.cosh(u * v)
+        start, v, sign = end, 1.0 - v, -1.0
+    grown = math.exp(u * v)
+    shrunk = 1.0 / grown
+    return start + sign * 0.5 * scale * (grown - shrunk), w * 0.5 * scale * u * (grown + shrunk)
 
 
 @njit(cache=True)
@@ -91,9 +103,10 @@ def _plane_waves(patch, x, y, z, d_x, d_y, nodes, weights, out):
         start, end = ends[piece], ends[piece + 1]
         if end - start < 1e-15:
             continue
+        u = math.asinh((end - start) / scale)
         for j in range(nodes.size):
             if start == turn or end == turn:
-                phi, w = _spread(start, end, turn, scale, nodes[j], weights[j])
+                phi, w = _spread(start, end, turn, scale, u, nodes[j], weights[j])
             else:
                 phi, w = start + (end - start) * nodes[j], weights[j] * (end - start)
             _one_wave(a, b, px, py, z, phi, w, patch[FRICTION], d_x, d_y, out)
@@ -144,15 +157,47 @@ def _rest_of_friction(patch, x, y, z, d_x, d_y, nodes, weights, out):
         start, end = (first, middle) if piece == 0 else (middle, last)
         if end - start < 1e-15:
             continue
+        u = math.asinh((end - start) / scale)
         for j in range(nodes.size):
             if turn < last:
-                psi, w = _spread(start, end, turn, scale, nodes[j], weights[j])
+                psi, w = _spread(start, end, turn, scale, u, nodes[j], weights[j])
             else:
                 psi, w = start + (end - start) * nodes[j], weights[j] * (end - start)
             _one_chord(patch, x, y, z, px, py, r2, psi, w, d_x, d_y, nodes, weights, out)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _half_chord(patch, x, y, z, ex, ey, near, far, start, span, d_x, d_y, nodes, weights):
+    """Radial integrals over one side of a chord: ee, its nu part, tt, zz, et, ez without common factors."""
+    length = math.sqrt(ex * ex + ey * ey)
+    c, s = ex / length, ey / length
+    ee = ee_nu = tt_nu = zz = et_nu = ez = 0.0
+    for i in range(nodes.size):
+        tau = start + span * nodes[i]
+        v_x, v_y = _slip(patch, x + ex * tau, y + ey * tau)
+        inv_speed = 1.0 / math.sqrt(v_x * v_x + v_y * v_y + 1e-300)
+        f_x, f_y = -v_x * inv_speed - d_x, -v_y * inv_speed - d_y
+        weight = weights[i] * abs(span * tau) * math.sqrt(abs((far - tau) * (tau - near)))
+        q_e, q_t = weight * (f_x * c + f_y * s), weight * (f_y * c - f_x * s)
+        r = abs(tau) * length
+        rho_2 = r * r + z * z
+        inv = 1.0 / math.sqrt(rho_2)
+        wz = 1.0 / (rho_2 * inv + z)
+        inv_2 = inv * inv
+        swing = r * wz * wz * inv
+        axial = 3.0 * r * inv_2 * inv_2 * inv
+        ratio = r * r * swing * inv_2
+        ee += q_e * axial * r * r
+        ee_nu -= q_e * (r * inv_2 * inv - 3.0 * swing + ratio + 2.0 * ratio * wz * rho_2 * inv)
+        tt_nu -= q_e * (r * inv_2 * inv - swing)
+        zz += q_e * axial * z * z
+        et_nu += q_t * swing
+        ez -= q_e * axial * r * z
+    sign = 1.0 if span > 0 else -1.0
+    return sign * ee, sign * ee_nu, sign * tt_nu, sign * zz, sign * et_nu, ez
+
+
+@njit(cache=True)
 def _one_chord(patch, x, y, z, px, py, r2, psi, w, d_x, d_y, nodes, weights, out):
     a, b = patch[A], patch[B]
     cx, cy = math.cos(psi), math.sin(psi)
@@ -160,43 +205,19 @@ def _one_chord(patch, x, y, z, px, py, r2, psi, w, d_x, d_y, nodes, weights, out
     root = math.sqrt(max(along * along + 1.0 - r2, 0.0))
     near, far = -along - root, -along + root
     ex, ey = a * cx, b * cy
+    ee = ee_nu = tt_nu = zz = et_nu = ez = 0.0
+    if r2 > 1.0:
+        ee, ee_nu, tt_nu, zz, et_nu, ez = _half_chord(
+            patch, x, y, z, ex, ey, near, far, near, far - near, d_x, d_y, nodes, weights
+        )
+    else:
+        for span in (near, far):
+            if abs(span) > 1e-13:
+                part = _half_chord(patch, x, y, z, ex, ey, near, far, 0.0, span, d_x, d_y, nodes, weights)
+                ee, ee_nu, tt_nu = ee + part[0], ee_nu + part[1], tt_nu + part[2]
+                zz, et_nu, ez = zz + part[3], et_nu + part[4], ez + part[5]
     length = math.sqrt(ex * ex + ey * ey)
     c, s = ex / length, ey / length
-    ee = ee_nu = tt_nu = zz = et_nu = ez = 0.0
-    for side in range(2):
-        if r2 > 1.0:
-            if side == 1:
-                break
-            start, span = near, far - near
-        elif side == 0:
-            start, span = 0.0, far
-        else:
-            start, span = 0.0, near
-        sign = 1.0 if span > 0 else -1.0
-        for i in range(nodes.size):
-            tau = start + span * nodes[i]
-            p = (far - tau) * (tau - near)
-            if p <= 0.0:
-                continue
-            f_x, f_y = _direction(patch, x + ex * tau, y + ey * tau)
-            f_x -= d_x
-            f_y -= d_y
-            weight = weights[i] * abs(span * tau) * math.sqrt(p)
-            q_e, q_t = weight * (f_x * c + f_y * s), weight * (f_y * c - f_x * s)
-            r = abs(tau) * length
-            rho_2 = r * r + z * z
-            inv = 1.0 / math.sqrt(rho_2)
-            inv_3 = inv * inv * inv
-            wz = 1.0 / (rho_2 * inv + z)
-            swing = r * wz * wz * inv
-            axial = 3.0 * r * inv_3 * inv * inv
-            g_rr = r * inv_3 - 3.0 * swing + r * r * swing * inv * inv + 2.0 * r * r * swing * wz * inv
-            ee += sign * q_e * axial * r * r
-            ee_nu -= sign * q_e * g_rr  # times (1 - 2 nu)
-            tt_nu -= sign * q_e * (r * inv_3 - swing)
-            zz += sign * q_e * axial * z * z
-            et_nu += sign * q_t * swing
-            ez -= q_e * axial * r * z
     w *= patch[FRICTION] * a * b / (2.0 * math.pi)
     _rotate(out, SHEAR, c, s, w * (ee + ee_nu), w * tt_nu, w * zz, w * et_nu, w * ez, 0.0)
     _rotate(out, SHEAR_NU, c, s, -2 * w * ee_nu, -2 * w * tt_nu, 0.0, -2 * w * et_nu, 0.0, 0.0)
@@ -244,12 +265,25 @@ def stress_parts(patch: np.ndarray, points: np.ndarray, waves: int = 24, nodes: 
     return out
 
 
-def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=None) -> np.ndarray:
-    """Array (n, 9) that describes sliding patches to the kernels; `fixed_direction` +-1 along y_C, 0 by slip."""
-    n = np.size(friction)
-    rows = np.zeros((n, 9))
-    columns = (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction, slip.sine, slip.cosine,
-               slip.guide_profile_radius, slip.shift, spin_model, 0.0 if fixed_direction is None else fixed_direction)  # fmt: skip
+def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=0.0) -> np.ndarray:
+    """Array (n, 12) that describes sliding patches to the kernels.
+
+    `spin_model` is the number of the paper's assumption; `fixed_direction` is +-1 for a traction along y_C (full
+    slip), 0 where the slip decides.
+    """
+    rows = np.zeros((np.size(friction), 12))
+    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+    pole_x = slip.pole_lateral
+    with np.errstate(invalid="ignore", divide="ignore"):
+        inside = np.abs(pole_x) < a
+        pole_y = np.where(inside, -b * np.sqrt(np.where(inside, 1.0 - (pole_x / a) ** 2, 0.0)), 0.0)
+        k1, k2 = pole_y / (pole_x + a), pole_y / (pole_x - a)
+    zero = np.zeros_like(a)
+    k0, k1, k2 = (
+        (zero, zero, zero), (pole_y, zero, zero), (zero, np.where(inside, k1, 0.0), np.where(inside, k2, 0.0))
+    )[spin_model]  # fmt: skip
+    columns = (a, b, friction, slip.sine, slip.cosine, slip.guide_profile_radius, slip.shift, fixed_direction,
+               pole_x, k0, k1, k2)  # fmt: skip
     for j, column in enumerate(columns):
         rows[:, j] = column
     return rows

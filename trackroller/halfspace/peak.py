@@ -153,7 +153,7 @@ def _seeds(values, count, chosen):
         chosen[found] = k
         found += 1
         for i in range(values.size):
-            d = ((SCAN[i, 0] - SCAN[k, 0]) ** 2 + (SCAN[i, 1] - SCAN[k, 1]) ** 2 + (SCAN[i, 2] - SCAN[k, 2]) ** 2)
+            d = (SCAN[i, 0] - SCAN[k, 0]) ** 2 + (SCAN[i, 1] - SCAN[k, 1]) ** 2 + (SCAN[i, 2] - SCAN[k, 2]) ** 2
             if d < 0.25:
                 taken[i] = 1.0
     return found
@@ -209,7 +209,7 @@ def find_peaks(patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSet
 
     Parameters
     ----------
-    patches : rows of `ellipse.patch_rows`, shape (n, 9)
+    patches : rows of `ellipse.patch_rows`, shape (n, 12)
     poisson_ratio : of roller and guide, shape (n, 2)
     settings : quadrature and search effort
 
@@ -223,4 +223,3 @@ def find_peaks(patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSet
     _all_peaks(np.ascontiguousarray(patches), np.ascontiguousarray(poisson_ratio, dtype=float), rules,
                settings.seeds, settings.finalists, settings.step, settings.floor, out)  # fmt: skip
     return Peak(*np.moveaxis(out, 2, 0))
-
