@@ -53,9 +53,7 @@ def _grid(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, 
 def _random(free: Mapping[str, Factor], n: int, seed: int, method: str) -> np.ndarray:
     from scipy.stats import qmc
 
-    engine = (qmc.LatinHypercube if method == "lhs" else qmc.Sobol)(
-        d=len(free), rng=np.random.default_rng(seed)
-    )
+    engine = (qmc.LatinHypercube if method == "lhs" else qmc.Sobol)(d=len(free), rng=np.random.default_rng(seed))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # balance of a Sobol sequence off a power of two
         return engine.random(n)
@@ -126,8 +124,8 @@ def _coded(free: Mapping[str, Factor], method: str) -> Drawn:
                 )
         numeric, listed = list(free), []
     coded = getattr(designs, method)(len(numeric))
-    crossing = np.array(list(itertools.product(*[range(len(free[k].levels)) for k in listed])), dtype=float)
-    crossing = crossing.reshape(-1, len(listed))
+    combinations = list(itertools.product(*[range(len(free[k].levels)) for k in listed]))
+    crossing = np.array(combinations, dtype=float).reshape(len(combinations), len(listed))
     unit = np.empty((len(crossing) * len(coded), len(free)))
     columns = {}
     for j, (name, factor) in enumerate(free.items()):
@@ -145,9 +143,7 @@ def _nested(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str
     outer = {name: f for name, f in free.items() if not f.scatter}
     inner = {name: f for name, f in free.items() if f.scatter}
     if not inner:
-        raise InputError(
-            "factors", list(free), "a nested study needs a factor that scatters (a distribution)"
-        )
+        raise InputError("factors", list(free), "a nested study needs a factor that scatters (a distribution)")
     if settings["inner"] not in ("lhs", "sobol"):
         raise unknown_name("design option inner", settings["inner"], ("lhs", "sobol"))
     unit_in = _random(inner, n, seed, settings["inner"])

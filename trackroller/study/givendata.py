@@ -52,15 +52,28 @@ def given_data(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int =
     out["rows_used"] = np.array(len(y))
     if len(y) < MIN_ROWS or constant(y):
         return out
+    out |= firsts(y, unit, seed)
+    for j in range(count):
+        if np.ptp(unit[:, j]) > 0:
+            out["pawn"][j], out["pawn_noise"][j] = pawn(y, bins(unit[:, j], PAWN_BINS), seed)
+    out["prcc"], out["prcc_low"], out["prcc_high"] = prcc(y, unit, ordered)
+    return out
+
+
+def firsts(y: np.ndarray, unit: np.ndarray, seed: int = 0) -> Estimates:
+    """Only `first`, first_low and first_high of `given_data`, each shape (k,)."""
+    good = np.isfinite(y)
+    y, unit = y[good], unit[good]
+    count = unit.shape[1]
+    out = {name: np.full(count, np.nan) for name in ("first", "first_low", "first_high")}
+    if len(y) < MIN_ROWS or constant(y):
+        return out
     fine = int(np.clip(round(np.sqrt(len(y)) / 2), 4, 40))
     for j in range(count):
-        if np.ptp(unit[:, j]) == 0:
-            continue
-        value, error = first_order(y, bins(unit[:, j], fine), seed)
-        out["first"][j] = value
-        out["first_low"][j], out["first_high"][j] = value - Z * error, value + Z * error
-        out["pawn"][j], out["pawn_noise"][j] = pawn(y, bins(unit[:, j], PAWN_BINS), seed)
-    out["prcc"], out["prcc_low"], out["prcc_high"] = prcc(y, unit, ordered)
+        if np.ptp(unit[:, j]) > 0:
+            value, error = first_order(y, bins(unit[:, j], fine), seed)
+            out["first"][j] = value
+            out["first_low"][j], out["first_high"][j] = value - Z * error, value + Z * error
     return out
 
 
@@ -70,9 +83,7 @@ def first_order(y: np.ndarray, group: np.ndarray, seed: int = 0) -> tuple[float,
     part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
     y = (y - y.mean()) / y.std()
     cell = part * count + group
-    sums = np.stack(
-        [np.bincount(cell, w, GROUPS * count).reshape(GROUPS, count) for w in (np.ones_like(y), y)]
-    )
+    sums = np.stack([np.bincount(cell, w, GROUPS * count).reshape(GROUPS, count) for w in (np.ones_like(y), y)])
     square = np.bincount(part, y**2, GROUPS)
     total, total_square = sums.sum(axis=1), square.sum()
     value = _epsilon(total, np.asarray(total_square))
@@ -117,9 +128,7 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
 def _distance(group: np.ndarray, last: np.ndarray) -> float:
     number = np.bincount(group).astype(float)
     whole = np.arange(1, len(group) + 1)[last] / len(group)
-    distances = [
-        np.abs(np.cumsum(group == g)[last] / number[g] - whole).max() for g in np.flatnonzero(number)
-    ]
+    distances = [np.abs(np.cumsum(group == g)[last] / number[g] - whole).max() for g in np.flatnonzero(number)]
     return float(np.median(distances))
 
 

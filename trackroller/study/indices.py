@@ -58,7 +58,7 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
     best = _sobol_from_means(terms.mean(axis=0)[None, :], count, second_order)
     drawn = _sobol_from_means(weights @ terms, count, second_order)
     for name in names:
-        low, high = np.percentile(drawn[name], [2.5, 97.5], axis=0)
+        low, high = _percentile(drawn[name])
         out |= {name: best[name][0], f"{name}_low": low, f"{name}_high": high}
     return out
 
@@ -75,6 +75,7 @@ def _sobol_terms(block: np.ndarray, count: int, second_order: bool) -> np.ndarra
 
 def _sobol_from_means(means: np.ndarray, count: int, second_order: bool) -> Estimates:
     variance = (means[:, 1] - means[:, 0] ** 2)[:, None]
+    variance = np.where(variance > 1e-12, variance, np.nan)  # a resample may hold a rare event nowhere
     first = means[:, 2 : 2 + count] / variance
     out = {"S1": first, "ST": means[:, 2 + count : 2 + 2 * count] / variance}
     if second_order:
@@ -84,9 +85,7 @@ def _sobol_from_means(means: np.ndarray, count: int, second_order: bool) -> Esti
     return out
 
 
-def morris(
-    y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, resamples: int = 300
-) -> Estimates:
+def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, resamples: int = 300) -> Estimates:
     """Elementary effects of Morris trajectories.
 
     An effect is the change of the output divided by the step in units of the factor's range (quantiles 0
@@ -117,9 +116,7 @@ def morris(
     np.put_along_axis(effect, moved, np.diff(value, axis=1) / size, axis=1)
     out: Estimates = {"effects_used": np.isfinite(effect).sum(axis=0)}
     if constant(y):
-        return out | {
-            n: np.full(count, np.nan) for n in ("mu", "mu_star", "mu_star_low", "mu_star_high", "sigma")
-        }
+        return out | {n: np.full(count, np.nan) for n in ("mu", "mu_star", "mu_star_low", "mu_star_high", "sigma")}
     picks = np.random.default_rng(seed).integers(0, len(value), (resamples, len(value)))
     with np.errstate(invalid="ignore", divide="ignore"):
         filled, good = np.nan_to_num(np.abs(effect)), np.isfinite(effect)
@@ -133,9 +130,12 @@ def morris(
 
 
 def _percentile(drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    full = ~np.isfinite(drawn).all(axis=0)
-    low, high = np.percentile(np.where(np.isfinite(drawn), drawn, 0.0), [2.5, 97.5], axis=0)
-    return np.where(full, np.nan, low), np.where(full, np.nan, high)
+    """95 % bounds over resamples (first axis); NaN where fewer than half of them have a value."""
+    good = np.isfinite(drawn)
+    enough = good.mean(axis=0) > 0.5
+    drawn = np.where(good | ~enough, drawn, np.nan)
+    low, high = np.nanpercentile(np.where(enough, drawn, 0.0), [2.5, 97.5], axis=0)
+    return np.where(enough, low, np.nan), np.where(enough, high, np.nan)
 
 
 def complete_part(y: np.ndarray) -> list[np.ndarray]:

@@ -105,18 +105,14 @@ def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...])
     return names
 
 
-def _raw(
-    ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]
-) -> tuple[np.ndarray, str, str, str]:
+def _raw(ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]) -> tuple[np.ndarray, str, str, str]:
     """Values (n,), units, words and scale of a default output, a variable, or `variable[contact,body]`."""
     if name in DEFAULTS and DEFAULTS[name][0] in ds:
         variable, choice, join, scale, words = DEFAULTS[name]
     else:
         match = re.fullmatch(r"(\w+)(?:\[([^\]]+)\])?", name)
         if not match or match[1] not in options:
-            raise unknown_name(
-                "analysis.outputs", name, [*options, *(n for n in DEFAULTS if DEFAULTS[n][0] in ds)]
-            )
+            raise unknown_name("analysis.outputs", name, [*options, *(n for n in DEFAULTS if DEFAULTS[n][0] in ds)])
         variable, join = match[1], ""
         keys = [key.strip() for key in (match[2] or "").split(",") if key.strip()]
         choice = {"contact" if k.isdigit() else "body": int(k) if k.isdigit() else k for k in keys}
@@ -150,8 +146,14 @@ def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
     return np.where(bad, REGIMES.index("failed"), np.where(bad, 0, values)).astype(int)
 
 
-def outputs(ds: xr.Dataset, factors: Iterable[str], names: Iterable[str] | None = None,
-            keep: Iterable[str] = ("rolling",), natural: Iterable[str] = ()) -> list[Output]:  # fmt: skip
+def outputs(
+    ds: xr.Dataset,
+    factors: Iterable[str],
+    names: Iterable[str] | None = None,
+    keep: Iterable[str] = ("rolling",),
+    natural: Iterable[str] = (),
+    unlimited: bool = False,
+) -> list[Output]:  # fmt: skip
     """Columns to analyse.
 
     Parameters
@@ -161,6 +163,7 @@ def outputs(ds: xr.Dataset, factors: Iterable[str], names: Iterable[str] | None 
     names : names of `DEFAULTS`, scalar variables, or `variable[contact,body]`; None: `default_names`
     keep : regimes whose rows are used; the others become NaN and are counted
     natural : outputs to take on the natural scale although lives are taken as log10
+    unlimited : let infinite lives stand (for ranking) instead of counting them as unusable
 
     Returns
     -------
@@ -189,11 +192,11 @@ def outputs(ds: xr.Dataset, factors: Iterable[str], names: Iterable[str] | None 
         values, units, words, scale = _raw(ds, name, dims, options)
         excluded, scale = dict(lost), "natural" if name in natural else scale
         values = np.where(usable, values, np.nan)
-        if count := int((usable & np.isinf(values)).sum()):
+        if not unlimited and (count := int((usable & np.isinf(values)).sum())):
             excluded["unlimited"] = count
         if count := int((usable & np.isnan(values)).sum()):
             excluded["undefined"] = count
-        values = np.where(np.isfinite(values), values, np.nan)
+        values = np.where(np.isfinite(values) | (unlimited & np.isposinf(values)), values, np.nan)
         if scale == "log10":
             if count := int((values <= 0).sum()):
                 excluded["not positive"] = count

@@ -1,0 +1,163 @@
+"""Robustness of design points: what life does when friction, fit and load scatter.
+
+A nested study has a grid of design points outside and the same sample of scattering factors inside each, so
+differences between design points are not differences of luck (common random numbers).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.parameters import REGIMES
+from trackroller.study.factors import label
+from trackroller.study.outputs import case_dims, default_names, outputs, regimes
+from trackroller.study.sampling import SampledDesign
+
+PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
+
+
+def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | None = None,
+               log_life_scatter: float = 0.0) -> xr.Dataset:  # fmt: skip
+    """Distribution of every output and probability of each regime at every design point.
+
+    Parameters
+    ----------
+    ds : solved nested study, dimension `case`
+    design : its design (`trackroller.study.restore.design_of`)
+    names : outputs, see `trackroller.study.outputs.outputs`
+    log_life_scatter : standard deviation of log10 life of the material itself [1], on top of the scatter of
+        the study; lg(T_N) / 2.563 for the scatter range T_N between 10 and 90 % failure
+
+    Returns
+    -------
+    Dataset over `point` with the outer factors as coordinates: percentile (output, point, percentile),
+    mean, standard_deviation (output, point) over the rows that roll; for each life `b10`, b10_low, b10_high:
+    the life that 90 % of rollers reach, once over the rows that roll and once (`b10_safe`) with every row in
+    full slip, lift-off or failed counted as life 0; probability (regime, point) with Wilson intervals.
+
+    Raises
+    ------
+    InputError : not a nested study
+    """
+    if design.method != "nested":
+        raise InputError("design", design.method, "a nested study: lists outside, distributions inside")
+    shape = (design.meta["design_points"], design.meta["inner_samples"])
+    dims = case_dims(ds, design.factors)
+    regime = regimes(ds, dims).reshape(shape)
+    wanted = list(names) if names is not None else default_names(ds, design.factors, dims)
+    columns = outputs(ds, design.factors, wanted, natural=wanted, unlimited=True)
+    out = xr.Dataset(coords=_coordinates(design, shape, columns))
+    lists: dict[str, list[np.ndarray]] = {}
+    for column in columns:
+        values = column.values.reshape(shape)
+        for key, value in _statistics(values, regime, "life" in column.name, log_life_scatter).items():
+            lists.setdefault(key, []).append(value)
+    for key, found in lists.items():
+        axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
+        out[key] = (axes, np.stack(found), {"comment": "in the units of the output"})
+    share: np.ndarray = np.stack([np.mean(regime == i, axis=1) for i in range(len(REGIMES))])
+    low, high = wilson(share, shape[1])
+    for key, value in (("probability", share), ("probability_low", low), ("probability_high", high)):
+        out[key] = (("regime", "point"), value, {"units": "1", "long_name": key.replace("_", " ") + " of the regime"})
+    out.attrs = {
+        "method": "nested", "rows": int(np.prod(shape)), "inner_samples": shape[1], "interval": "95 %",
+        "outer_factors": ", ".join(design.meta["outer"]), "inner_factors": ", ".join(design.meta["inner"]),
+        "log_life_scatter": log_life_scatter, "study": ds.attrs.get("study", ""),
+        "treatment": "percentiles and b10 over the rows that roll; b10_safe counts every other row as life 0; "
+                     "the same inner sample at every design point",
+    }  # fmt: skip
+    return out
+
+
+def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list) -> dict:
+    first = np.arange(shape[0]) * shape[1]
+    outer = {}
+    for name in design.meta["outer"]:
+        values = design.columns[name][first]
+        if values.dtype == object:
+            values = np.array([label(v) for v in values], dtype=object)
+        outer[name] = ("point", values)
+    point = [", ".join(label(outer[n][1][i]) for n in outer) or "all" for i in range(shape[0])]
+    return {
+        "output": np.array([c.name for c in columns], dtype=object),
+        "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
+        "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
+        "percentile": np.array(PERCENTILES), "regime": np.array(REGIMES, dtype=object),
+        "point": np.arange(shape[0]), "point_name": ("point", np.array(point, dtype=object)), **outer,
+    }  # fmt: skip
+
+
+def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: float) -> dict[str, np.ndarray]:
+    """Statistics of one output, shape (points, samples), NaN where not usable."""
+    points = len(values)
+    out = {k: np.full(points, np.nan) for k in ("mean", "standard_deviation", "used_share",
+                                                 "b10", "b10_low", "b10_high", "b10_safe")}  # fmt: skip
+    out["percentile_value"] = np.full((points, len(PERCENTILES)), np.nan)
+    for p in range(points):
+        good = values[p][~np.isnan(values[p])]
+        out["used_share"][p] = good.size / values.shape[1]
+        if good.size < 2:
+            continue
+        out["percentile_value"][p] = _quantile(good, np.array(PERCENTILES) / 100)
+        if np.isfinite(good).all():
+            out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
+        if life:
+            out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, scatter)
+            # a row that rolls but has no life (not converged) is no evidence of a long one either
+            out["b10_safe"][p] = b10(np.where(np.isnan(values[p]) | (regime[p] != 0), 0.0, values[p]), scatter)[0]
+    return out
+
+
+def _quantile(values: np.ndarray, share: np.ndarray | float) -> np.ndarray:
+    """Quantiles by order statistics, without arithmetic between finite and infinite neighbours."""
+    ranked = np.sort(values)
+    at = np.ceil(np.asarray(share) * len(ranked)).astype(int) - 1
+    return ranked[np.clip(at, 0, len(ranked) - 1)]
+
+
+def b10(lives: np.ndarray, log_life_scatter: float = 0.0) -> tuple[float, float, float]:
+    """Life that 90 % reach, with its 95 % interval.
+
+    Parameters
+    ----------
+    lives : median lives at the sampled conditions [any unit], shape (n,); 0 and inf are allowed
+    log_life_scatter : standard deviation of log10 life of the material itself [1]
+
+    Returns
+    -------
+    B10, lower, upper in the unit of `lives`. Without material scatter the 10 % order statistic and its
+    distribution-free (binomial) interval; with it the root of mean_i Phi((lg t - lg N_i) / s) = 0.1, and the
+    interval moved by the same ratio.
+    """
+    from scipy import stats
+    from scipy.optimize import brentq
+
+    ranked = np.sort(lives)
+    count = len(ranked)
+    value = float(_quantile(ranked, 0.1))
+    low = ranked[max(0, int(stats.binom.ppf(0.025, count, 0.1)) - 1)]
+    high = ranked[min(count - 1, int(stats.binom.ppf(0.975, count, 0.1)))]
+    if log_life_scatter <= 0 or not np.isfinite(ranked).any() or value in (0.0, np.inf):
+        return value, float(low), float(high)
+    with np.errstate(divide="ignore"):
+        logs = np.log10(ranked)
+
+    def miss(t: float) -> float:
+        return float(stats.norm.cdf((t - logs) / log_life_scatter).mean()) - 0.1
+
+    finite = logs[np.isfinite(logs)]
+    wide = 6 * log_life_scatter
+    scattered = 10 ** brentq(miss, finite.min() - wide, finite.max() + wide)
+    return float(scattered), float(low * scattered / value), float(high * scattered / value)
+
+
+def wilson(share: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Wilson's 95 % interval of a probability seen as `share` of `count` samples; shapes as `share`."""
+    z2 = 1.959964**2
+    middle = (share + z2 / (2 * count)) / (1 + z2 / count)
+    half = np.sqrt(z2 * (share * (1 - share) / count + z2 / (4 * count**2))) / (1 + z2 / count)
+    return np.clip(middle - half, 0, 1), np.clip(middle + half, 0, 1)

@@ -1,0 +1,260 @@
+"""From a solved study to its sensitivities, labelled and with what was done said.
+
+The design's method decides the analysis: shares of variance on a grid, elementary effects for Morris, Sobol
+indices for Saltelli samples, effects for response-surface designs, measures from given data for every
+independent sample, distributions of life for nested studies (`robustness`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.study import convergence, indices
+from trackroller.study.givendata import firsts, given_data
+from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes
+from trackroller.study.restore import design_of
+from trackroller.study.sampling import SampledDesign
+
+NEEDS = {
+    "grid": "a full grid, every level weighing the same",
+    "saltelli": "whole blocks of the Saltelli design and independent factors",
+    "morris": "pairs of neighbouring rows of a trajectory",
+    "central_composite": "rows enough for the fitted polynomial",
+    "box_behnken": "rows enough for the fitted polynomial",
+    "plackett_burman": "rows enough for the fitted main effects",
+    "lhs": "independent factors; any usable rows",
+    "sobol": "independent factors; any usable rows",
+    "table": "independent factors (correlated columns share their influence); any usable rows",
+}
+RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
+Fields = dict[str, np.ndarray]
+
+
+def _ordered(design: SampledDesign) -> np.ndarray:
+    return np.array([f.ordered for f in design.factors.values()], dtype=bool)
+
+
+def _listed(design: SampledDesign) -> np.ndarray:
+    """Factors that enter as list indices, not as quantiles or codes."""
+    values = [f.discrete for f in design.factors.values()]
+    return np.array(values, dtype=bool) & (design.method != "plackett_burman")
+
+
+def _saltelli(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+    count, second = len(design.factors), bool(design.meta["second_order"])
+    step = 2 * count + 2 if second else count + 2
+    out = indices.sobol(y, count, second, seed)
+    at = convergence.sizes(int(design.meta["base_samples"]))
+    mixed = np.r_[0 : count + 1, step - 1]  # the course needs no second order
+    lean = y.reshape(-1, step)[:, mixed]
+    out |= convergence.course(lambda n: indices.sobol(lean[:n].ravel(), count, False, seed), at, ("S1", "ST"))
+    # rows of A and B only: their mixtures repeat coordinates and would feign more rows than there are
+    row = np.arange(len(y)) % step
+    out |= given_data(np.where((row == 0) | (row == step - 1), y, np.nan), design.unit, _ordered(design), seed)
+    used, total = int(out.pop("blocks_used")), int(out.pop("blocks"))
+    return out, used, total, at
+
+
+def _morris(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+    step, listed = len(design.factors) + 1, _listed(design)
+    out = indices.morris(y, design.unit, listed, seed)
+    at = convergence.sizes(int(design.meta["trajectories"]), smallest=4)
+    out |= convergence.course(
+        lambda n: indices.morris(y[: n * step], design.unit[: n * step], listed, seed), at, ("mu_star",)
+    )
+    return out, int(out["effects_used"].sum()), int(design.meta["trajectories"]) * (step - 1), at
+
+
+def _grid(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+    out = indices.grid_shares(y.reshape(design.meta["shape"]))
+    out |= given_data(y, design.unit, _ordered(design), seed)
+    return out, int(out.pop("cells_used")), int(out.pop("cells")), np.zeros(0, dtype=int)
+
+
+def _coded(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+    out = indices.effects(y, design.unit, _listed(design), design.method != "plackett_burman")
+    return out, int(out.pop("rows_used")), len(y), np.zeros(0, dtype=int)
+
+
+def _given(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+    ordered = _ordered(design)
+    out = given_data(y, design.unit, ordered, seed)
+    at = convergence.sizes(len(y), smallest=64)
+
+    def part(n: int) -> Fields:  # every so many rows: the first rows of a table may be sorted
+        return firsts(y[:: max(1, len(y) // n)], design.unit[:: max(1, len(y) // n)], seed)
+
+    out |= convergence.course(part, at, ("first",))
+    return out, int(out.pop("rows_used")), len(y), at
+
+
+_METHODS: dict[str, Callable[[np.ndarray, SampledDesign, int], tuple[Fields, int, int, np.ndarray]]] = {
+    "saltelli": _saltelli,
+    "morris": _morris,
+    "grid": _grid,
+    **dict.fromkeys(("lhs", "sobol", "table"), _given),
+    **dict.fromkeys(("central_composite", "box_behnken", "plackett_burman"), _coded),
+}
+_UNIT = {"saltelli": "blocks", "morris": "elementary effects", "grid": "cells"}
+
+
+def analyse_dataset(
+    ds: xr.Dataset,
+    names: Iterable[str] | None = None,
+    keep: Iterable[str] = ("rolling",),
+    natural: Iterable[str] = (),
+    seed: int = 0,
+) -> xr.Dataset:
+    """Sensitivities of every output of a study.
+
+    Parameters
+    ----------
+    ds : gathered study: dimension `case` or one dimension a factor; attribute `study` with the study file
+    names, keep, natural : see `trackroller.study.outputs.outputs`
+    seed : of the bootstrap
+
+    Returns
+    -------
+    Dataset with dimensions output, factor, factor_2, sample_size. By method: S1, ST, S2 (saltelli), mu,
+    mu_star, sigma (morris), main_share, interaction_share, higher_share (grid), effect, curvature,
+    interaction (response surfaces), first, pawn, prcc (given data), with _low and _high and the course with
+    sample size. For each output: used_share, reliable, take_times, and `note`, which says what was left out
+    and why.
+    A nested study gives what `trackroller.study.robustness.robustness` returns.
+    """
+    study = read_study(ds)
+    design = design_of(ds, study)
+    if design.method == "nested":
+        from trackroller.study.robustness import robustness
+
+        return robustness(ds, design, names)
+    columns = outputs(ds, design.factors, names, keep, natural)
+    if not columns or not design.factors:
+        raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
+    results, notes, used_share, at = [], [], [], np.zeros(0, dtype=int)
+    for column in columns:
+        out, used, total, at = _METHODS[design.method](column.values, design, seed)
+        out.pop("rows_used", None)
+        results.append(out)
+        used_share.append(used / max(1, total))
+        notes.append(note(column, used, total, _UNIT.get(design.method, "rows")))
+    result = _dataset(design, columns, results, at)
+    result["used_share"] = ("output", np.array(used_share))
+    result["reliable"] = ("output", np.array([s >= RELIABLE for s in used_share], dtype=np.int8))
+    result["note"] = ("output", np.array(notes, dtype=object))
+    result["take_times"] = ("output", np.array([_times(r, design.method) for r in results]))
+    dims = case_dims(ds, design.factors)
+    result.attrs = {
+        "method": design.method, "needs": NEEDS[design.method], "rows": design.size,
+        "kept_regimes": ", ".join(keep), "bootstrap_seed": seed, "interval": "95 %",
+        "treatment": treatment(regimes(ds, dims), keep), "study": ds.attrs.get("study", ""),
+    }  # fmt: skip
+    return result
+
+
+def _times(out: Fields, method: str) -> float:
+    name = {"saltelli": "ST", "morris": "mu_star"}.get(method, "first")
+    if name not in out or method == "grid":
+        return float("nan")
+    target = convergence.HALF_WIDTH
+    if method == "morris":
+        largest = np.nanmax(out["mu_star"], initial=0.0)
+        target = convergence.HALF_WIDTH_MORRIS * float(largest)
+    pairs = [(out[f"{n}_low"], out[f"{n}_high"]) for n in (name, "S1") if f"{n}_low" in out]
+    return max(convergence.take_times(low, high, target) for low, high in pairs)
+
+
+def note(column: Output, used: int, total: int, unit: str) -> str:
+    """What was used for one output and why the rest was not, in words."""
+    if indices.constant(column.values):
+        return "constant or never usable: no index can be given"
+    text = f"{used} of {total} {unit} used"
+    if column.excluded:
+        text += "; rows left out: " + ", ".join(f"{n} {why}" for why, n in column.excluded.items())
+    if used < RELIABLE * total:
+        text += "; the indices hold for the usable region only"
+    return text
+
+
+def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
+    """How the regimes of a study were treated, in words."""
+    counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
+    text = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
+    left = [name.replace("_", " ") for name, n in counts.items() if n and name not in tuple(keep)]
+    if not left:
+        return f"{text}; no row left out for its regime"
+    return (f"{text}; {' and '.join(left)} rows left out of every index and never filled in; "
+            "their occurrence is analysed as an output of its own")  # fmt: skip
+
+
+_DIMS = {1: ("output", "factor"), 2: ("output", "factor", "factor_2"), 0: ("output",)}
+_WORDS = {
+    "S1": "first-order Sobol index", "ST": "total Sobol index", "S2": "second-order Sobol index",
+    "mu": "mean elementary effect", "mu_star": "mean absolute elementary effect",
+    "sigma": "standard deviation of elementary effects", "effects_used": "elementary effects used",
+    "main_share": "share of variance of main effect", "interaction_share": "share of variance of interaction",
+    "higher_share": "share of variance of interactions of three and more factors",
+    "effect": "change over the factor's range", "curvature": "quadratic coefficient, coded",
+    "interaction": "two-factor interaction effect", "r_squared": "share of variance fitted",
+    "first": "share of variance explained alone, from given data", "pawn": "PAWN index",
+    "pawn_noise": "PAWN index an inert factor stays below", "prcc": "partial rank correlation coefficient",
+}  # fmt: skip
+
+
+def _dataset(design: SampledDesign, columns: list[Output], results: list[Fields], at: np.ndarray) -> xr.Dataset:
+    out = xr.Dataset(coords={
+        "output": np.array([c.name for c in columns], dtype=object),
+        "factor": np.array(list(design.factors), dtype=object),
+        "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
+        "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
+        "scale": ("output", np.array([c.scale for c in columns], dtype=object)),
+        "factor_name": ("factor", np.array([factor_name(n) for n in design.factors], dtype=object)),
+    })  # fmt: skip
+    for name in results[0]:
+        values = np.stack([r[name] for r in results])
+        root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")
+        dims = ("output", "sample_size", "factor") if "_course" in name else _DIMS[values.ndim - 1]
+        attrs = {"units": "1", "long_name": _WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
+        if root in ("mu", "mu_star", "sigma", "effect", "curvature", "interaction"):
+            attrs["units"], attrs["comment"] = "", "in units of the output on its scale (log10: decades)"
+        out[name] = (dims, values, attrs)
+    if "factor_2" in out.dims:
+        out = out.assign_coords(factor_2=out["factor"].values)
+    if at.size and "sample_size" in out.dims:
+        out = out.assign_coords(sample_size=at)
+    return out
+
+
+def factor_name(name: str) -> str:
+    """A factor's name for people: that of the parameter, or its own with spaces."""
+    return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")
+
+
+def analyse(study_nc: str | Path, out_nc: str | Path, names: Iterable[str] | None = None,
+            keep: Iterable[str] = ("rolling",), natural: Iterable[str] = ()) -> xr.Dataset:  # fmt: skip
+    """Analyse a gathered study file and write the labelled result beside it.
+
+    Parameters
+    ----------
+    study_nc : gathered study
+    out_nc : netCDF file to write, whole or not at all
+    names, keep, natural : see `trackroller.study.outputs.outputs`
+
+    Returns
+    -------
+    The dataset that was written, see `analyse_dataset`.
+    """
+    import os
+
+    with xr.open_dataset(study_nc) as opened:
+        result = analyse_dataset(opened.load(), names, keep, natural)
+    beside = Path(f"{out_nc}.part")
+    result.to_netcdf(beside)
+    os.replace(beside, out_nc)
+    return result
