@@ -108,9 +108,7 @@ def test_friction_by_material_material_object_and_family(db):
 
 
 def test_case_without_friction_takes_it_from_the_pair(db):
-    cases = [
-        {"friction_coefficient": level, "guide_material": "POM"} for level in (None, "upper", "lower", 0.07)
-    ]
+    cases = [{"friction_coefficient": level, "guide_material": "POM"} for level in (None, "upper", "lower", 0.07)]
     assert to_table(cases, db).friction_coefficient.tolist() == [0.14, 0.30, 0.06, 0.07]
 
 
@@ -223,9 +221,7 @@ def test_example_file_changes_nothing_and_its_example_works(db):
 def test_inline_material_of_a_case(db):
     material = db.material({"name": "tested steel", **STEEL})
     assert material.name == "tested steel" and material.fatigue_limit == pytest.approx(405)
-    table = to_table(
-        [Case(roller_material=STEEL), Case(roller_material={"like": "PA6", "poisson_ratio": 0.4})], db
-    )
+    table = to_table([Case(roller_material=STEEL), Case(roller_material={"like": "PA6", "poisson_ratio": 0.4})], db)
     assert table.roller.youngs_modulus.tolist() == [206e3, 5000]
     assert table.roller.poisson_ratio.tolist() == [0.3, 0.4]
 
@@ -426,9 +422,7 @@ def test_a_missing_file_and_folder_are_made(user, tmp_path):
     assert load_database(path).material("rail").tensile_strength == 800
 
 
-@pytest.mark.parametrize(
-    "name", ["1.4301", "yes", "null", "12:30", "a: b", "#1", "Stahl für Räder", "x" * 200, "~"]
-)
+@pytest.mark.parametrize("name", ["1.4301", "yes", "null", "12:30", "a: b", "#1", "Stahl für Räder", "x" * 200, "~"])
 def test_awkward_names_come_back_as_texts(user, name):
     path = user("")
     add_material(path, name, like="PA6", description=name, source=name, tensile_strength=70)

@@ -119,6 +119,8 @@ def test_a_failed_block_is_not_hidden_and_named():
     ds = solved(spectrum(*blocks), regimes=[0, 3], stress=stress)
     assert np.isnan(ds.roller_life_shifts)
     assert "'jam' (failed)" in summary(ds)[0]
+    bound = solved(spectrum(blocks[0]), stress=stress[:1]).roller_life_shifts.item()
+    assert f"at most {bound:.4g} shifts" in summary(ds)[0]
     blocks[1]["distance"] = 0
     assert np.isfinite(solved(spectrum(*blocks), regimes=[0, 3], stress=stress).roller_life_shifts)
 

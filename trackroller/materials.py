@@ -129,9 +129,7 @@ class MaterialDatabase:
             raise unknown_name("material", material, self.materials)
         return self.materials[material]
 
-    def friction(
-        self, first: str | Material, second: str | Material, level: str = "typical"
-    ) -> FrictionValue:
+    def friction(self, first: str | Material, second: str | Material, level: str = "typical") -> FrictionValue:
         """Friction coefficient of a pair, given by materials, material names or families, in either order.
 
         A pair that names a material stands over the pair of the families.

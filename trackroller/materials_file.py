@@ -183,9 +183,7 @@ class _Parser:
         for key in entry:
             if key not in VALUE_KEYS:
                 if entry[key] is None:  # {source: a, b} is read as a key b without a value
-                    raise InputError(
-                        field, str(key), "it stands alone in the mapping", "Quote texts with a comma."
-                    )
+                    raise InputError(field, str(key), "it stands alone in the mapping", "Quote texts with a comma.")
                 raise unknown_name(f"{field}: key", str(key), VALUE_KEYS)
         if "value" not in entry:
             remedy = f"Write {{value: ..., unit: {prop.unit}}}."

@@ -145,7 +145,7 @@ def summary(ds: xr.Dataset) -> list[str]:
         shifts = ds["life_shifts"].sel(body=body)
         if bool(shifts.isnull().any()):
             bad = _undefined_blocks(ds, body)
-            sentences.append(f"The life of the {body} is not known: {bad}.")
+            sentences.append(f"The life of the {body} is not known: {bad}{_at_most(ds, body)}.")
             continue
         if bool(np.isinf(shifts).all()):
             sentences.append(f"The {body} takes no damage in this spectrum.")
@@ -158,6 +158,12 @@ def summary(ds: xr.Dataset) -> list[str]:
             f"{100 * float(share[worst]):.0f} % of its damage comes from '{ds['block'].values[worst]}'."
         )
     return sentences
+
+
+def _at_most(ds: xr.Dataset, body: str) -> str:
+    """The life that the known blocks alone allow, a bound from above; nothing where they do no damage."""
+    known = float(ds["damage"].sel(body=body).sum("block").max())  # skips the unknown ones
+    return f"; at most {ds.attrs['critical_damage'] / known:.4g} shifts by the other blocks" if known > 0 else ""
 
 
 def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
