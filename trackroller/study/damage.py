@@ -50,7 +50,7 @@ def damage_per_shift(
     rule : life rule
     probability : failure probability; other than 0.5 NaN for a material without scatter
     """
-    life = np.full_like(stress, np.nan)
+    life = np.full(stress.shape, np.nan)
     for i, material in enumerate(bodies):
         t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
         if probability == 0.5 or t_n or t_s:
