@@ -38,7 +38,7 @@ from sympy import QQ
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import ring
 
-COMPONENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 LOADS = ("x", "y", "z")
 KERNELS = ("point_kernel", "uniform_corner", "bilinear_corner")
 
@@ -137,7 +137,7 @@ def _values_at(f: Element, point: tuple[int, int, int, int]) -> dict[tuple[int, 
     for monomial, coefficient in f.terms():
         for value, power in zip(values, monomial, strict=False):
             coefficient *= value**power
-        key = monomial[len(values):]
+        key = monomial[len(values) :]
         found[key] = found.get(key, QQ(0)) + coefficient
     return found
 
@@ -233,7 +233,7 @@ def kernel_elements(name: str) -> tuple[Element, ...]:
 _HEADER = '''"""Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
 
 Written by `python -m trackroller.halfspace.potentials`, which explains the derivation.
-Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, xz, yz,
+Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, yz, xz,
 then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
 FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.
 """
@@ -278,7 +278,7 @@ def function_source(name: str) -> str:
         code = "\n".join(s for s in code.split("\n") if not s.strip().startswith(("iP", "iQ")))
     printer = sp.printing.pycode
     lines = [f"    {symbol} = {printer(value.evalf(17))}" for symbol, value in powers]
-    values = ",\n        ".join(printer(e.evalf(17)) for e in reduced)
+    values = ",\n        ".join(printer(sp.Float(e) if e.is_number else e.evalf(17)) for e in reduced)
     return (
         f'\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\ndef {name}(x, y, z):\n    """{_TITLES[name]}"""\n'
         + code + "\n".join(lines) + f"\n    return (\n        {values},\n    )\n"
