@@ -1,0 +1,150 @@
+"""Tangential problems of many patches in parallel: scaling, friction law, resultants. Compiled.
+
+Per patch: lengths over c = sqrt(a b), tractions over mu p_max, slips over mu p_max / G.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit, prange
+
+from trackroller.contact.kalker_influence import coupling_slip, prepare
+from trackroller.contact.kalker_newton import newton
+
+# columns of the numbers reported for each patch
+(F_T, F_A, M_R, STICK, POWER, WORK, RESIDUAL, STEPS, PRODUCTS, FRICTION_ERROR) = range(10)
+REPORT = 10
+FRICTION_SWEEPS = 40
+FRICTION_TOLERANCE = 1e-5  # relative change of the friction coefficient of any element
+
+
+@njit(cache=True)
+def _friction_field(slip, scale, speeds, values, mixing, field):
+    """Friction over its reference at the slip of each element; returns the largest relative change."""
+    largest = 0.0
+    for i in range(field.shape[0]):
+        for j in range(field.shape[1]):
+            speed = scale * math.hypot(slip[0, i, j], slip[1, i, j])
+            k = np.searchsorted(speeds, speed)
+            if k == 0:
+                new = values[0]
+            elif k == speeds.size:
+                new = values[-1]
+            else:
+                t = (speed - speeds[k - 1]) / (speeds[k] - speeds[k - 1])
+                new = (1.0 - t) * values[k - 1] + t * values[k]
+            change = new - field[i, j]
+            largest = max(largest, abs(change) / max(new, 1e-30))
+            field[i, j] += mixing * change
+    return largest
+
+
+@njit(cache=True)
+def _rigid_slip(along, lateral, spin, b, factor, ny):
+    """Scaled rigid slip (2, ny, nx): along (nx,) is its rolling part, lateral - spin y the other."""
+    nx = along.size
+    rigid = np.empty((2, ny, nx))
+    for i in range(ny):
+        y = b * ((2.0 * i + 1.0) / ny - 1.0)
+        for j in range(nx):
+            rigid[0, i, j] = (lateral - spin * y) * factor
+            rigid[1, i, j] = along[j] * factor
+    return rigid
+
+
+@njit(cache=True)
+def _sums(traction, slip, rigid, bound, rho, share, a, b, report):
+    """Resultants, stick share and works of one patch into `report`, with tractions over mu p_max."""
+    ny, nx = bound.shape
+    total = np.zeros(7)
+    for i in range(ny):
+        y = b * ((2.0 * i + 1.0) / ny - 1.0)
+        for j in range(nx):
+            g = bound[i, j]
+            if g <= 0.0:
+                continue
+            x = a * ((2.0 * j + 1.0) / nx - 1.0)
+            tx, ty = traction[0, i, j], traction[1, i, j]
+            sx, sy = slip[0, i, j], slip[1, i, j]
+            total[0] += tx
+            total[1] += ty
+            total[2] += x * ty - y * tx
+            total[4] -= tx * sx + ty * sy
+            total[5] -= tx * rigid[0, i, j] + ty * rigid[1, i, j]
+            total[6] += share[i, j]
+            if (tx - rho * sx) ** 2 + (ty - rho * sy) ** 2 <= g * g:
+                total[3] += share[i, j]
+    cell = 4.0 * a * b / (nx * ny)
+    for k in (0, 1, 2, 4, 5):
+        report[k] = total[k] * cell
+    report[STICK] = total[3] / total[6]
+
+
+@njit(cache=True)
+def _one_patch(a, b, ratio, elastic, along, lateral, spin, height, share, law, control, traction, slip, report):
+    """Solve one patch; `traction` is the start. ratio = mu p_max / G, elastic = (nu, K / mu)."""
+    ny, nx = height.shape
+    c = math.sqrt(a * b)
+    hx, hy = 2.0 * a / (nx * c), 2.0 * b / (ny * c)
+    multipliers, own = prepare(hx, hy, elastic[0], ny, nx)
+    rigid = _rigid_slip(along, lateral, spin, b, 1.0 / ratio, ny)
+    if elastic[1] != 0.0:
+        driver = rigid + elastic[1] * coupling_slip(height, hx, hy)
+    else:
+        driver = rigid
+    bound = height.copy()
+    speeds, values, speed_scale = law[0], law[1], ratio
+    friction = np.ones((ny, nx))
+    error, steps, products, largest = 0.0, 0, 0, 0.0
+    for sweep in range(FRICTION_SWEEPS):
+        s, largest, used, multiplied = newton(
+            multipliers, own, hy, driver, bound, traction, control[0], int(control[1]), int(control[2])
+        )
+        slip[:] = s
+        steps += used
+        products += multiplied
+        if speeds.size == 1:
+            break
+        error = _friction_field(slip, speed_scale, speeds, values, 1.0 if sweep < 8 else 0.5, friction)
+        if error < FRICTION_TOLERANCE:
+            break
+        bound = height * friction
+    _sums(traction, slip, rigid, bound, 1.0 / own, share, a, b, report)
+    report[RESIDUAL], report[STEPS], report[PRODUCTS], report[FRICTION_ERROR] = largest, steps, products, error
+
+
+@njit(cache=True, parallel=True)
+def solve_batch(a, b, traction_scale, ratio, elastic, along, lateral, spin, height, share, speeds, values, control,
+                traction, slip, report):  # fmt: skip
+    """Patches i = 0..n-1, one per core at a time.
+
+    a, b [mm], traction_scale = mu p_max [MPa], ratio = mu p_max / G, lateral [-], spin [1/mm]: (n,); elastic (n, 2):
+    nu, K / mu; along (n, nx): rolling part of the rigid slip; height, share (ny, nx): `unit_cells`; speeds (m,):
+    slip per travel speed, and values (n, m): friction over its reference; control: tolerance, Newton steps, Krylov
+    space. traction (n, 2, ny, nx): start and result over mu p_max; slip likewise, per travel speed; report (n, REPORT).
+    """
+    for i in prange(a.size):
+        report[i] = 0.0
+        if not (ratio[i] > 0.0 and a[i] > 0.0 and b[i] > 0.0 and math.isfinite(ratio[i] * a[i] * b[i])):
+            traction[i] = 0.0
+            slip[i] = _rigid_slip(along[i], lateral[i], spin[i], b[i], 1.0, height.shape[0])
+            continue
+        _one_patch(a[i], b[i], ratio[i], elastic[i], along[i], lateral[i], spin[i], height, share,
+                   (speeds, values[i]), control, traction[i], slip[i], report[i])  # fmt: skip
+        slip[i] *= ratio[i]
+        report[i, :3] *= traction_scale[i]
+        report[i, POWER] *= traction_scale[i] * ratio[i]
+        report[i, WORK] *= traction_scale[i] * ratio[i]
+
+
+@njit(cache=True, parallel=True)
+def refine(coarse, coarse_height, height, fine):
+    """Start of a grid (n, 2, 2 ny, 2 nx) from the one with half the elements: the same share of the bound."""
+    for k in prange(fine.shape[0]):
+        for c in range(2):
+            for i in range(fine.shape[2]):
+                for j in range(fine.shape[3]):
+                    g = coarse_height[i // 2, j // 2]
+                    fine[k, c, i, j] = coarse[k, c, i // 2, j // 2] * height[i, j] / g if g > 0.0 else 0.0
