@@ -26,8 +26,8 @@ class Accuracy:
 
 
 PRESETS = {
-    "preview": Accuracy("preview", 2e-2, 8, 6, PeakSettings(4, 4, 8, 16, 3, 1, 0.05, 1e-3), 31, 31),
-    "standard": Accuracy("standard", 2e-3, 12, 6, PeakSettings(8, 8, 16, 24, 4, 2, 0.02, 1e-4), 41, 61),
+    "preview": Accuracy("preview", 2e-2, 8, 6, PeakSettings(8, 8, 8, 16, 3, 1, 0.05, 2e-3), 31, 31),
+    "standard": Accuracy("standard", 2e-3, 12, 6, PeakSettings(8, 8, 16, 24, 4, 2, 0.02, 3e-4), 41, 61),
     "reference": Accuracy("reference", 1e-4, 20, 8, PeakSettings(12, 16, 24, 48, 6, 4, 0.001, 1e-5), 81, 121),
 }
 

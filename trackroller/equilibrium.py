@@ -9,7 +9,7 @@ law finds the root, Newton's method on all three equations polishes it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -261,6 +261,7 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
         _solve_full_slip(loads, law, slides, regime, residual, shift, normal, forces)
     lifted = (regime == LIFT_OFF) | (regime == FAILED)
     shift[lifted] = np.nan
+    residual[regime == LIFT_OFF] = np.nan
     normal[:, lifted], forces[:, :, lifted] = np.nan, np.nan
     converged = np.where(regime == LIFT_OFF, True, residual <= CONVERGED)
     return Equilibrium(regime, converged, residual, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
@@ -271,13 +272,11 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
     friction = np.where(loads.friction[rows] > 0, loads.friction[rows], 1e-12)
     full = np.ones_like(loads.friction)
     full[rows] = friction
-    rolled = Loads(loads.radial_force, loads.axial_force, loads.motor_force, full, loads.contact_angle,
-                   loads.guide_profile_radius, loads.rolling_radius, loads.shape)  # fmt: skip
+    rolled = replace(loads, friction=full)
     roller = _Roller(rolled, law, rows)
     w_low, w_high = roller.w_of(-roller.radius), roller.w_of(1e4 * roller.radius)
-    m = rows.size
     w_end = np.where(roller.motor_force < 0, w_low, w_high)
-    f_end, n_end = _normals_at(roller, w_end)
+    f_end = _forces_at(roller, w_end)
     t_end = roller.torque(f_end)
     beyond = np.where(roller.motor_force < 0, t_end < 0, (roller.motor_force > 0) & (t_end > 0))
     go = np.flatnonzero(~beyond)
@@ -292,32 +291,53 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
         again = _Roller(rolled, law, rows[go][bad])
         w2, n2 = _bracketed(again, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
         b2, w2, n2, f2 = _newton(again, w2, n2, low[bad], high[bad])
-        win = b2 < best[bad]
-        hit = bad[win]
-        best[hit], w[hit], n[:, hit], f[:, :, hit] = b2[win], w2[win], n2[:, win], f2[:, :, win]
-    with np.errstate(invalid="ignore"):
-        lift = np.any(n <= 1e-8 * roller.load, axis=0) | (~(best <= CONVERGED) & _lifts(roller, w, n, f))
+        best[bad], w[bad], n[:, bad], f[:, :, bad] = b2, w2, n2, f2
+    lift = np.any(n <= 1e-8 * roller.load, axis=0)
+    bad = np.flatnonzero(~(best <= CONVERGED) & ~lift)
+    if bad.size:
+        b3, w3, n3, f3, lift[bad] = _follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
+        best[bad], w[bad], n[:, bad], f[:, :, bad] = b3, w3, n3, f3
     k = rows[go]
     regime[k] = np.where(lift, LIFT_OFF, np.where(best <= 1e-6, ROLLING, FAILED))
     residual[k], shift[k], normal[:, k] = best, roller.shift(w), n
     forces[:, :, k] = np.where(loads.friction[k] > 0, f, 0.0)
-    del m, n_end
     return rows[beyond]
 
 
-def _lifts(roller: _Roller, w, normal, f) -> np.ndarray:
-    """Would the friction at this slip take a normal force to zero or below?"""
-    f = roller.contact(roller.shift(w), _floor(normal, roller.load), True)
-    n = roller.normal_forces(f[0] / _floor(normal, roller.load))
-    return np.any(~(n > 1e-8 * roller.load), axis=0)
+def _follow_friction(loads, law, rows, low, high):
+    """Solutions followed from little friction to the given; a contact that lifts off on the way stays off.
+
+    Near self-locking, mu f = tan(alpha), the equations have several solutions or none; the one that grows out of the
+    frictionless wedge is the one that loading reaches. Returns what `_newton` does, and the rows that lift off.
+    """
+    m = rows.size
+    lifted, w, normal = np.zeros(m, bool), np.zeros(m), None
+    best, f = np.full(m, np.inf), np.full((3, 2, m), np.nan)
+    lost = np.zeros(m, bool)
+    scale = np.ones_like(loads.friction)
+    for share in (*np.linspace(0.05, 0.95, 19), 1.0):
+        scale[rows] = share
+        eased = replace(loads, friction=loads.friction * scale, motor_force=loads.motor_force * scale)
+        roller = _Roller(eased, law, rows)
+        if normal is None:
+            w, normal = _bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
+        best, w_new, n_new, f = _newton(roller, w.copy(), normal.copy(), low, high)
+        fine = best <= 1e-8
+        lost |= ~fine
+        shrunk = np.any(normal < 0.15 * roller.load, axis=0)
+        lifted |= np.where(fine, np.any(n_new < 1e-6 * roller.load, axis=0), shrunk)
+        w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
+    best = np.where(lost, np.inf, best)
+    return best, w, normal, f, lifted
 
 
-def _normals_at(roller: _Roller, w) -> tuple[np.ndarray, np.ndarray]:
+def _forces_at(roller: _Roller, w) -> np.ndarray:
+    """Contact forces (3, 2, m) at a given slip, the normal forces having followed."""
     normal = _floor(roller.normal_forces(np.zeros((2, w.size))), roller.load)
     for _ in range(3):
         f = roller.contact(roller.shift(w), normal, True)
         normal = _floor(roller.normal_forces(f[0] / normal), roller.load)
-    return roller.contact(roller.shift(w), normal, True), normal
+    return roller.contact(roller.shift(w), normal, True)
 
 
 def _solve_full_slip(loads, law, rows, regime, residual, shift, normal, forces) -> None:

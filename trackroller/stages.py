@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from trackroller.solver import Options
 
 LIFE_CONVENTIONS = (
-    "Woehler line N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is taken "
-    "as the amplitude (as published); below sigma_D: elementary runs the line on, haibach uses the slope 2k - 1, "
+    "Woehler line N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is "
+    "taken as the amplitude (as published); below sigma_D: elementary runs the line on, haibach uses the slope 2k - 1, "
     "unlimited gives inf; roller: one overrolling per revolution; guide: overrollings per hour are the user's input"
 )
 SIGN_CONVENTIONS = (
@@ -68,7 +68,8 @@ class Results:
         sine = np.sin(scene.loads.contact_angle)
         ellipse = type(s)(two(s.lateral), two(s.rolling), two(s.pressure)).at(normal)
         slip = Slip(np.concatenate([sine, -sine]), two(np.cos(scene.loads.contact_angle)),
-                    two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius), two(balance.shift))  # fmt: skip
+                    two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius),
+                    two(balance.shift))  # fmt: skip
         out = cls(scene, balance, balance.regime, balance.converged, ellipse, slip, two(scene.loads.friction),
                   np.isfinite(normal), np.zeros(scene.n, np.int32))  # fmt: skip
         out.values["residual"] = balance.residual
@@ -207,7 +208,8 @@ def life(results: Results, options: Options) -> None:
         column = lambda a: a[:, None]  # noqa: E731
         per_body.append(fatigue.life_cycles(
             v["peak_stress"][:, :, j], column(m.tensile_strength), column(m.fatigue_limit),
-            column(m.cycles_at_tensile_strength), column(m.cycles_at_fatigue_limit), rule=options.life_rule))  # fmt: skip
+            column(m.cycles_at_tensile_strength), column(m.cycles_at_fatigue_limit),
+            rule=options.life_rule))  # fmt: skip
     v["life_cycles"] = np.stack(per_body, axis=2)
     roller = fatigue.roller_hours(per_body[0], table.velocity[:, None], results.scene.loads.rolling_radius[:, None])
     guide = fatigue.guide_hours(per_body[1], table.guide_overrollings_per_hour[:, None])
@@ -227,7 +229,8 @@ def surface_tractions(results: Results, options: Options) -> SurfaceTractions:
     bound = mu[:, None, None] * t.pressure
     return SurfaceTractions(t.x, t.y, t.pressure, np.where(full, 0.0, t.shear_lateral),
                             np.where(full, along[:, None, None] * bound, t.shear_rolling),
-                            np.where(full, np.nan, t.slip_lateral), np.where(full, np.nan, t.slip_rolling), t.stick)  # fmt: skip
+                            np.where(full, np.nan, t.slip_lateral), np.where(full, np.nan, t.slip_rolling),
+                            t.stick)  # fmt: skip
 
 
 def tractions(results: Results, options: Options) -> None:

@@ -15,9 +15,7 @@ from trackroller.errors import InputError
 # Table of the published program: cos tau = |k_x - k_y|/(k_x + k_y) against xi and eta.
 PUBLISHED_COS_TAU = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 0.995, 0.9995])
 PUBLISHED_XI = np.array([1.07, 1.15, 1.24, 1.35, 1.48, 1.66, 1.91, 2.3, 3.09, 4.12, 7.76, 10.15, 23.95])
-PUBLISHED_ETA = np.array(
-    [0.938, 0.879, 0.824, 0.771, 0.718, 0.664, 0.607, 0.544, 0.461, 0.396, 0.287, 0.251, 0.163]
-)
+PUBLISHED_ETA = np.array([0.938, 0.879, 0.824, 0.771, 0.718, 0.664, 0.607, 0.544, 0.461, 0.396, 0.287, 0.251, 0.163])
 
 
 @dataclass(frozen=True)
@@ -106,9 +104,8 @@ def exact_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> HertzS
     k_x, k_y, modulus = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (k_x, k_y, modulus)))
     small, large = np.minimum(k_x, k_y), np.maximum(k_x, k_y)
     kappa = _unique_axis_ratio(small / large)
-    _, b_int, d_int = _second_over_first(kappa**2)
-    # Johnson (4.25): the sum of curvatures fixes the size; large/2 = (p0/E*) (b/a^2) B~ a^2/b^2 ...
-    # p0 = 3F/(2 pi a b); small/2 = (p0/E*) (b/a^2) D_int
+    _, _, d_int = _second_over_first(kappa**2)
+    # Johnson (4.25): small/2 = (p0/E*) (b/a^2) D with p0 = 3F/(2 pi a b)
     major = np.cbrt(3.0 * d_int / (np.pi * modulus * small))
     minor = kappa * major
     pressure = 3.0 / (2.0 * np.pi * major * minor)

@@ -277,7 +277,9 @@ def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=0.0) ->
     """
     rows = np.zeros((np.size(friction), 12))
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    pole_x = slip.pole_lateral
+    fixed = np.broadcast_to(np.asarray(fixed_direction, dtype=float), a.shape)
+    shift = np.where(fixed == 0.0, slip.shift, 0.0)  # full slip has no spin pole
+    pole_x = shift / slip.sine
     with np.errstate(invalid="ignore", divide="ignore"):
         inside = np.abs(pole_x) < a
         pole_y = np.where(inside, -b * np.sqrt(np.where(inside, 1.0 - (pole_x / a) ** 2, 0.0)), 0.0)
@@ -286,7 +288,7 @@ def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=0.0) ->
     k0, k1, k2 = (
         (zero, zero, zero), (pole_y, zero, zero), (zero, np.where(inside, k1, 0.0), np.where(inside, k2, 0.0))
     )[spin_model]  # fmt: skip
-    columns = (a, b, friction, slip.sine, slip.cosine, slip.guide_profile_radius, slip.shift, fixed_direction,
+    columns = (a, b, friction, slip.sine, slip.cosine, slip.guide_profile_radius, shift, fixed,
                pole_x, k0, k1, k2)  # fmt: skip
     for j, column in enumerate(columns):
         rows[:, j] = column

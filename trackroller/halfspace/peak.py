@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit, prange
 
 from trackroller.contact.sliding import clustered_rule
-from trackroller.halfspace.ellipse import A, B, stress_at
+from trackroller.halfspace.ellipse import K0, K1, K2, POLE_X, A, B, stress_at
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,8 @@ class Peak:
 def _scan_points() -> np.ndarray:
     """Points (rho cos, rho sin, depth) in normalised coordinates."""
     rows = [(0.0, 0.0, 0.0)]
-    for rho, count in ((0.35, 8), (0.65, 8), (0.88, 10), (1.0, 10)):
-        angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 8)) / count
+    for rho, count in ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)):
+        angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
         rows += [(rho * math.cos(t), rho * math.sin(t), 0.0) for t in angles]
     for depth in (0.12, 0.3, 0.5, 0.75):
         rows.append((0.0, 0.0, depth))
@@ -138,7 +138,23 @@ def _climb(patch, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, sm
 
 
 @njit(cache=True)
-def _seeds(values, count, chosen):
+def _scan_of(patch):
+    """The common scan and points on the line where the lateral slip turns: its sharp fold carries ridges of stress."""
+    pole = min(max(patch[POLE_X] / patch[A], -1.0), 1.0)
+    points = np.empty((SCAN.shape[0] + 8, 3))
+    points[: SCAN.shape[0]] = SCAN
+    for i in range(8):
+        share = (0.15, 0.4, 0.6, 0.85)[i % 4]
+        x = pole + share * (-1.0 - pole if i < 4 else 1.0 - pole)
+        slope = patch[K1] * (x + 1.0) if i < 4 else patch[K2] * (x - 1.0)
+        u = points[SCAN.shape[0] + i]
+        u[0], u[1], u[2] = x, (patch[K0] + slope * patch[A]) / patch[B], 0.0
+        _project(u)
+    return points
+
+
+@njit(cache=True)
+def _seeds(scan, values, count, chosen):
     """Indices of the best scan points that lie apart from each other; returns how many."""
     found = 0
     best = values.max()
@@ -162,21 +178,23 @@ def _seeds(values, count, chosen):
 @njit(cache=True)
 def _one_peak(patch, nu, rules, seeds, finalists, smallest, floor, out):
     s_rule, s_w, c_rule, c_w, p_rule, p_w, f_rule, f_w, waves, waves_w = rules
-    count = SCAN.shape[0]
+    points = _scan_of(patch)
+    count = points.shape[0]
     parts = np.empty((4, 6))
     scan = np.empty((2, count))
     c = min(patch[A], patch[B])
     for i in range(count):
-        stress_at(patch, SCAN[i, 0] * patch[A], SCAN[i, 1] * patch[B], SCAN[i, 2] * c, s_rule, s_w, s_rule, s_w, parts)
+        u = points[i]
+        stress_at(patch, u[0] * patch[A], u[1] * patch[B], u[2] * c, s_rule, s_w, s_rule, s_w, parts)
         scan[0, i], scan[1, i] = _von_mises(parts, nu[0], 1.0), _von_mises(parts, nu[1], -1.0)
     chosen = np.empty(seeds, np.int64)
     tops, values = np.empty((seeds, 3)), np.empty(seeds)
     for body in range(2):
         sign = 1.0 if body == 0 else -1.0
-        found = _seeds(scan[body], seeds, chosen)
+        found = _seeds(points, scan[body], seeds, chosen)
         for s in range(found):
             u = tops[s]
-            u[:] = SCAN[chosen[s]]
+            u[:] = points[chosen[s]]
             f = _value(patch, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
             values[s], _ = _climb(patch, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06)
         order = np.argsort(-values[:found])
@@ -216,10 +234,17 @@ def find_peaks(patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSet
     Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error holds the change from the climb's quadrature
     to the summit's and the last gain of the climb.
     """
-    n = len(patches)
-    out = np.empty((n, 2, 5))
-    orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
-    rules = tuple(array for order in orders for array in clustered_rule(order))
-    _all_peaks(np.ascontiguousarray(patches), np.ascontiguousarray(poisson_ratio, dtype=float), rules,
-               settings.seeds, settings.finalists, settings.step, settings.floor, out)  # fmt: skip
+    patches = np.ascontiguousarray(patches)
+    out = np.empty((len(patches), 2, 5))
+    slender = np.maximum(patches[:, A], patches[:, B]) / np.minimum(patches[:, A], patches[:, B])
+    # a slender patch turns its slip within a small part of its length
+    finer = np.clip(np.rint(np.sqrt(slender / 2.0)), 1, 6).astype(int)
+    for factor in np.unique(finer):
+        group = np.flatnonzero(finer == factor)
+        found = np.empty((group.size, 2, 5))
+        orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
+        rules = tuple(array for order in orders for array in clustered_rule(int(order * factor)))
+        _all_peaks(patches[group], np.ascontiguousarray(poisson_ratio[group], dtype=float), rules, settings.seeds,
+                   settings.finalists, settings.step, settings.floor, found)  # fmt: skip
+        out[group] = found
     return Peak(*np.moveaxis(out, 2, 0))
