@@ -19,72 +19,6 @@ def constant(y: np.ndarray) -> bool:
     return y.size == 0 or float(np.ptp(y)) <= 1e-12 * float(np.max(np.abs(y), initial=0.0))
 
 
-def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resamples: int = 300) -> Estimates:
-    """Sobol indices of a Saltelli design with bootstrap intervals.
-
-    S1_j = E[B (AB_j - A)] / V (Saltelli 2010), ST_j = E[(A - AB_j)^2] / (2 V) (Jansen 1999),
-    S2_jk = E[BA_j AB_k - A B] / V - S1_j - S1_k (Saltelli 2002), V over the rows of A and B.
-
-    Parameters
-    ----------
-    y : output, shape (blocks * (k + 2),) or, with second order, (blocks * (2 k + 2),); blocks in the order
-        A, AB_1 .. AB_k, (BA_1 .. BA_k), B
-    count : number of factors k
-    second_order : whether the BA rows are there
-    resamples : bootstrap resamples of whole blocks
-
-    Returns
-    -------
-    S1, ST shape (k,), S2 shape (k, k) with NaN on and below the diagonal, each with _low and _high;
-    blocks_used, blocks. A block with one unusable row is left out as a whole: rows of A, B and their mixtures
-    belong together. This conditions the indices on the rows that could be used; see `given_data`.
-
-    Validity: independent factors.
-    """
-    step = 2 * count + 2 if second_order else count + 2
-    block = y[: y.size // step * step].reshape(-1, step)
-    whole = np.isfinite(block).all(axis=1)
-    used = block[whole]
-    out: Estimates = {"blocks": np.array(len(block)), "blocks_used": np.array(len(used))}
-    shape = {"S1": (count,), "ST": (count,), "S2": (count, count)}
-    names = ("S1", "ST", "S2") if second_order else ("S1", "ST")
-    if len(used) < 8 or constant(used):
-        for name in names:
-            out |= {name + end: np.full(shape[name], np.nan) for end in ("", "_low", "_high")}
-        return out
-    terms = _sobol_terms((used - used.mean()) / used.std(), count, second_order)
-    picks = np.random.default_rng(seed).integers(0, len(used), (resamples, len(used)))
-    weights = np.stack([np.bincount(pick, minlength=len(used)) for pick in picks]) / len(used)
-    best = _sobol_from_means(terms.mean(axis=0)[None, :], count, second_order)
-    drawn = _sobol_from_means(weights @ terms, count, second_order)
-    for name in names:
-        low, high = _percentile(drawn[name])
-        out |= {name: best[name][0], f"{name}_low": low, f"{name}_high": high}
-    return out
-
-
-def _sobol_terms(block: np.ndarray, count: int, second_order: bool) -> np.ndarray:
-    """What the indices are means of, one row a block: the bootstrap is then one matrix product."""
-    a, b, ab = block[:, :1], block[:, -1:], block[:, 1 : count + 1]
-    parts = [(a + b) / 2, (a**2 + b**2) / 2, b * (ab - a), 0.5 * (a - ab) ** 2]
-    if second_order:
-        ba = block[:, count + 1 : 2 * count + 1]
-        parts.append((ba[:, :, None] * ab[:, None, :] - (a * b)[:, :, None]).reshape(len(block), -1))
-    return np.concatenate(parts, axis=1)
-
-
-def _sobol_from_means(means: np.ndarray, count: int, second_order: bool) -> Estimates:
-    variance = (means[:, 1] - means[:, 0] ** 2)[:, None]
-    variance = np.where(variance > 1e-12, variance, np.nan)  # a resample may hold a rare event nowhere
-    first = means[:, 2 : 2 + count] / variance
-    out = {"S1": first, "ST": means[:, 2 + count : 2 + 2 * count] / variance}
-    if second_order:
-        pairs = (means[:, 2 + 2 * count :] / variance).reshape(-1, count, count)
-        pairs = pairs - first[:, :, None] - first[:, None, :]
-        out["S2"] = np.where(np.triu(np.ones((count, count), dtype=bool), 1), pairs, np.nan)
-    return out
-
-
 def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, resamples: int = 300) -> Estimates:
     """Elementary effects of Morris trajectories.
 
@@ -125,11 +59,11 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
         out["mu_star"] = filled.sum(axis=0) / good.sum(axis=0)
         spread = np.where(good, (effect - out["mu"]) ** 2, 0.0).sum(axis=0) / (good.sum(axis=0) - 1)
     out["sigma"] = np.sqrt(np.where(good.sum(axis=0) > 1, spread, np.nan))
-    low, high = _percentile(drawn)
+    low, high = percentile_bounds(drawn)
     return out | {"mu_star_low": low, "mu_star_high": high}
 
 
-def _percentile(drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def percentile_bounds(drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """95 % bounds over resamples (first axis); NaN where fewer than half of them have a value."""
     good = np.isfinite(drawn)
     enough = good.mean(axis=0) > 0.5

@@ -20,6 +20,7 @@ from trackroller.study.givendata import firsts, given_data
 from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes
 from trackroller.study.restore import design_of
 from trackroller.study.sampling import SampledDesign
+from trackroller.study.sobol import sobol
 
 NEEDS = {
     "grid": "a full grid, every level weighing the same",
@@ -49,11 +50,11 @@ def _listed(design: SampledDesign) -> np.ndarray:
 def _saltelli(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
     count, second = len(design.factors), bool(design.meta["second_order"])
     step = 2 * count + 2 if second else count + 2
-    out = indices.sobol(y, count, second, seed)
+    out = sobol(y, count, second, seed)
     at = convergence.sizes(int(design.meta["base_samples"]))
     mixed = np.r_[0 : count + 1, step - 1]  # the course needs no second order
     lean = y.reshape(-1, step)[:, mixed]
-    out |= convergence.course(lambda n: indices.sobol(lean[:n].ravel(), count, False, seed), at, ("S1", "ST"))
+    out |= convergence.course(lambda n: sobol(lean[:n].ravel(), count, False, seed), at, ("S1", "ST"))
     # rows of A and B only: their mixtures repeat coordinates and would feign more rows than there are
     row = np.arange(len(y)) % step
     out |= given_data(np.where((row == 0) | (row == step - 1), y, np.nan), design.unit, _ordered(design), seed)

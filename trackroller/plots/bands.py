@@ -1,0 +1,117 @@
+"""Small multiples: life (or another output) against each factor with bands of percentiles."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.plots import style
+from trackroller.study import words
+from trackroller.study.factors import Factor, label
+from trackroller.study.outputs import Output, outputs
+from trackroller.study.restore import design_of
+from trackroller.study.sensitivity import factor_name
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+BINS = 9
+LEVELS = (5.0, 25.0, 50.0, 75.0, 95.0)
+WANTED = ("roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_life_cycles")
+
+
+def bands(ds: xr.Dataset, output: str = "") -> tuple[Figure, style.FigureInfo] | None:
+    """Median, quartiles and 5 to 95 % of an output along each factor, over all that the others do.
+
+    Parameters
+    ----------
+    ds : gathered study
+    output : name (see `trackroller.study.outputs`); default the first life there is, else the first output
+    """
+    design = design_of(ds)
+    found = outputs(ds, design.factors, [output] if output else None)
+    found = [o for o in found if np.isfinite(o.values).sum() >= 2]
+    shown = next((o for name in WANTED for o in found if o.name == name), found[0] if found else None)
+    if shown is None or not design.factors:
+        return None
+    columns = min(3, len(design.factors))
+    rows = -(-len(design.factors) // columns)
+    width = 170.0 if columns == 3 else style.COLUMN_MM
+    figure = style.new_figure(20 + 42 * rows, width)
+    said, first = [], None
+    for i, (name, factor) in enumerate(design.factors.items()):
+        axes = figure.add_subplot(rows, columns, i + 1, sharey=first)
+        first = first or axes
+        at, levels, table = percentiles(design.columns[name], factor, shown)
+        _draw(axes, at, table, factor, levels)
+        axes.set_xlabel(style.factor_label(name))
+        if i % columns:
+            axes.tick_params(labelleft=False)
+        words_of = words.band(factor_name(name), levels, table[2], shown.long_name, style.unit_text(shown.units))
+        said.append((_change(table[2]), words_of))
+    if first is not None and shown.scale == "log10":
+        first.set_yscale("log")
+    figure.supylabel(style.with_unit(words.upper(shown.long_name), shown.units), fontsize=7.5)
+    style.head(figure, f"{words.upper(shown.long_name)} against each factor",
+               "Line: median; dark band: middle half; light band: 5 to 95 % of the cases.")  # fmt: skip
+    style.finish(figure)
+    said.sort(key=lambda pair: -pair[0])
+    kept = f"{int(np.isfinite(shown.values).sum())} of {shown.values.size} cases"
+    left = ", ".join(f"{n} {why}" for why, n in shown.excluded.items())
+    caption = (f"{words.upper(shown.long_name)} against each factor while all others vary over the study; {kept}"
+               + (f", left out: {left}." if left else "."))  # fmt: skip
+    sentence = words.upper("; ".join(text for _, text in said[:2])) + "."
+    return figure, style.FigureInfo(f"bands-{shown.name}", caption, sentence)
+
+
+def _change(median: np.ndarray) -> float:
+    """Relative change along a factor, for choosing what to say first."""
+    good = median[np.isfinite(median) & (median > 0)]
+    return float(np.log(good.max() / good.min())) if good.size > 1 else 0.0
+
+
+def percentiles(column: np.ndarray, factor: Factor, shown: Output) -> tuple[np.ndarray, list[str], np.ndarray]:
+    """Percentiles of an output per level or bin of a factor.
+
+    Returns places on the axis (m,), their labels, and values of shape (5, m) on the natural scale.
+    """
+    values = 10**shown.values if shown.scale == "log10" else shown.values
+    few = factor.discrete and len(factor.levels) <= 15
+    if few:
+        order = sorted(factor.levels) if factor.ordered else list(factor.levels)
+        if factor.ordered:
+            masks = [column.astype(float) == level for level in order]
+        else:
+            masks = [np.array([value == level for value in column]) for level in order]
+        at = np.array(order, dtype=float) if factor.ordered else np.arange(len(order), dtype=float)
+        labels = [label(level) for level in order]
+    else:
+        edges = np.unique(np.quantile(column.astype(float), np.linspace(0, 1, BINS + 1)))
+        index = np.clip(np.searchsorted(edges, column.astype(float), side="right") - 1, 0, len(edges) - 2)
+        masks = [index == b for b in range(len(edges) - 1)]
+        at = np.array([np.median(column[m].astype(float)) if m.any() else np.nan for m in masks])
+        labels = [words.number(float(a)) for a in at]
+    table = np.full((len(LEVELS), len(at)), np.nan)
+    for b, mask in enumerate(masks):
+        inside = values[mask & np.isfinite(values)]
+        if inside.size:
+            table[:, b] = np.percentile(inside, LEVELS)
+    return at, labels, table
+
+
+def _draw(axes, at: np.ndarray, table: np.ndarray, factor: Factor, labels: list[str]) -> None:  # type: ignore[no-untyped-def]
+    colour = style.palette(1)[0]
+    if factor.ordered:
+        axes.fill_between(at, table[0], table[4], color=colour, alpha=0.18, linewidth=0)
+        axes.fill_between(at, table[1], table[3], color=colour, alpha=0.38, linewidth=0)
+        axes.plot(at, table[2], color="0.1", marker="o", markersize=2.5)
+        return
+    axes.vlines(at, table[0], table[4], color=colour, alpha=0.35, linewidth=6)
+    axes.vlines(at, table[1], table[3], color=colour, alpha=0.9, linewidth=6)
+    axes.plot(at, table[2], color="0.1", marker="_", markersize=9, markeredgewidth=1.5, linestyle="none")
+    short = [text if len(text) <= 14 else text[:13] + "…" for text in labels]
+    axes.set_xticks(at, short, rotation=25 if max(map(len, short)) > 6 else 0, ha="right" if max(map(len, short)) > 6
+                    else "center")  # fmt: skip
+    axes.set_xlim(-0.6, len(at) - 0.4)
