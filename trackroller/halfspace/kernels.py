@@ -197,7 +197,6 @@ def bilinear_corner(x, y, z):
     """Corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2]."""
     x2, y2, z2 = x * x, y * y, z * z
     R = sqrt(x2 + y2 + z2)
-    iR = 1.0 / R if R > 0.0 else 0.0
     S = R + z
     iS = 1.0 / S if S > 0.0 else 0.0
     P = x2 + z2

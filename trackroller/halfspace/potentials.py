@@ -29,6 +29,7 @@ each with its known partial derivatives (a differential ring), which is exact an
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -160,8 +161,9 @@ def double_antiderivative() -> Element:
     )
     images = [derivative(t, "xxyy") for t in terms] + [omega()]
     rows = []
-    for a, b, c, r in _QUADRUPLES:
-        for point in ((a, b, c, r), (c, a, b, r)):
+    for quadruple in _QUADRUPLES:
+        a, b, c, r = quadruple
+        for point in (quadruple, (c, a, b, r)):
             values = [_values_at(f, point) for f in images]
             rows += [[v.get(key, QQ(0)) for v in values] for key in sorted(set().union(*values))]
     reduced, pivots = DomainMatrix(rows, (len(rows), len(images)), QQ).rref()
@@ -205,7 +207,8 @@ def stresses(potential: Element, load: str) -> tuple[list[Element], list[Element
     a, b = displacements(potential, load)
     psi_z = derivative(potential, load + "zz")
     parts: tuple[list[Element], list[Element]] = ([], [])
-    for i, j in COMPONENTS:
+    for pair in COMPONENTS:
+        i, j = pair[0], pair[1]
         for part, u in zip(parts, (a, b), strict=True):
             part.append((derivative(u[i], j) + derivative(u[j], i)) / 2)
         if i == j:
@@ -269,20 +272,29 @@ _TITLES = {
 }
 
 
+def _without_unused(prelude: str, body: str) -> str:
+    """The prelude's assignments that something after them uses."""
+    kept: list[str] = []
+    for line in reversed(prelude.splitlines()):
+        names = {name.strip() for name in line.split(" = ")[0].split(",")}
+        if names & set(re.findall(r"[A-Za-z_]\w*", body + "".join(kept))):
+            kept.insert(0, line + "\n")
+    return "".join(kept)
+
+
 def function_source(name: str) -> str:
     """Python source of one kernel function, common subexpressions taken out."""
     expressions = [f.as_expr() / (2 * sp.pi) for f in kernel_elements(name)]
-    powers, reduced = sp.cse(expressions, symbols=sp.numbered_symbols("t"), optimizations="basic", order="canonical")
-    code = _COMMON + ("" if name == "point_kernel" else _CORNER)
-    if not any("iP" in map(str, e.free_symbols) or "iQ" in map(str, e.free_symbols) for e in expressions):
-        code = "\n".join(s for s in code.split("\n") if not s.strip().startswith(("iP", "iQ")))
+    shared, reduced = sp.cse(expressions, symbols=sp.numbered_symbols("t"), optimizations="basic", order="canonical")
     printer = sp.printing.pycode
-    lines = [f"    {symbol} = {printer(value.evalf(17))}" for symbol, value in powers]
+    lines = "".join(f"    {symbol} = {printer(value.evalf(17))}\n" for symbol, value in shared)
     values = ",\n        ".join(printer(sp.Float(e) if e.is_number else e.evalf(17)) for e in reduced)
+    prelude = _without_unused(_COMMON + ("" if name == "point_kernel" else _CORNER), lines + values)
     return (
-        f'\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\ndef {name}(x, y, z):\n    """{_TITLES[name]}"""\n'
-        + code + "\n".join(lines) + f"\n    return (\n        {values},\n    )\n"
-    )  # fmt: skip
+        '\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\n'
+        f'def {name}(x, y, z):\n    """{_TITLES[name]}"""\n{prelude}{lines}'
+        f"    return (\n        {values},\n    )\n"
+    )
 
 
 def module_source() -> str:
@@ -294,7 +306,9 @@ def module_source() -> str:
 
 def main() -> None:
     """Write `kernels.py` beside this file."""
-    Path(__file__).with_name("kernels.py").write_text(module_source(), encoding="utf-8")
+    here = Path(__file__)
+    here.with_name("kernels.py").write_text(module_source(), encoding="utf-8")
+    here.with_name("influence.py").touch()  # else numba would go on using sums compiled with the former kernels
 
 
 if __name__ == "__main__":

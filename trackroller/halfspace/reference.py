@@ -42,7 +42,8 @@ def hertz_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_pressure
     r2 = xa**2 + ya**2
     p = np.sqrt(np.clip(1.0 - r2, 0.0, None))
     # (1 - p^3)/r^2 written with p, so that r = 0 is regular: 1 - p^2 = r^2 inside
-    spread = (1.0 - 2.0 * poisson_ratio) / 3.0 * np.where(r2 <= 1.0, (1.0 + p + p * p) / (1.0 + p), 1.0 / np.maximum(r2, 1.0))
+    shape = np.where(r2 <= 1.0, (1.0 + p + p * p) / (1.0 + p), 1.0 / np.maximum(r2, 1.0))
+    spread = (1.0 - 2.0 * poisson_ratio) / 3.0 * shape
     radial, hoop = spread - p, -spread - 2.0 * poisson_ratio * p
     r = np.sqrt(r2)
     c, s = np.where(r > 0, xa / np.where(r > 0, r, 1.0), 1.0), np.where(r > 0, ya / np.where(r > 0, r, 1.0), 0.0)
@@ -113,8 +114,10 @@ def rectangle_corner_sigma_z(z: ArrayLike, side_x: float, side_y: float, pressur
     z = np.asarray(z, dtype=float)
     a, b = side_x, side_y
     r = np.sqrt(a * a + b * b + z * z)
-    return -pressure / (2.0 * np.pi) * (
-        np.arctan2(a * b, z * r) + a * b * z / r * (1.0 / (a * a + z * z) + 1.0 / (b * b + z * z))
+    return (
+        -pressure
+        / (2.0 * np.pi)
+        * (np.arctan2(a * b, z * r) + a * b * z / r * (1.0 / (a * a + z * z) + 1.0 / (b * b + z * z)))
     )
 
 
