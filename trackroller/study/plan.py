@@ -1,0 +1,323 @@
+"""Which chunks a study consists of, so that each missing case is solved once and no finished one again.
+
+A chunk is a list of cases under `plan/`, named by its content. The planner keeps every list that still holds
+wanted cases, and makes new lists only for cases that stand in none: growing a study adds chunks and touches no
+old one. Planning twice gives the same plan.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import math
+import shutil
+import zipfile
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.case import to_table
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.study import store
+from trackroller.study.design import build, table_path
+from trackroller.study.files import StudyFolder, link_or_copy, locked, sweep, write_whole
+from trackroller.study.identity import RESULTS_VERSION, chunk_name, fingerprints
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.study.config import Study
+
+Tell = Callable[[str], None]
+CHUNK_SECONDS = 8.0  # of solving, so that starting a job (2-3 s) stays a small part; bounded by the two below
+MOST_CHUNKS = 400
+SMALLEST_CHUNK = 100
+LARGEST_CHUNK = 20_000
+
+
+@dataclass(frozen=True)
+class CaseList:
+    """The cases of a chunk: fingerprints (n,), the design's rows and the solver's options."""
+
+    name: str
+    cases: np.ndarray
+    columns: dict[str, np.ndarray]
+    options: dict[str, Any]
+
+    def design(self, index: np.ndarray | None = None) -> xr.Dataset:
+        """Rows as a design that `solve` takes."""
+        import xarray as xr
+
+        rows = slice(None) if index is None else index
+        return xr.Dataset({name: ("case", values[rows]) for name, values in self.columns.items()})
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Chunks of a study (in order) and how many cases it has; `cases` only when freshly made."""
+
+    study: Study
+    folder: StudyFolder
+    chunks: dict[str, int]
+    size: int
+    design: xr.Dataset | None = None
+    cases: np.ndarray | None = None
+    notes: list[str] = field(default_factory=list)
+
+
+def study_folder(study_name: str, results: Path | str = "results") -> StudyFolder:
+    """Folder of a study's results."""
+    from trackroller.study.config import check_name
+
+    return StudyFolder(Path(results) / check_name(study_name))
+
+
+def case_options(study: Study, design: xr.Dataset) -> tuple[list[dict[str, Any]] | dict[str, Any], np.ndarray]:
+    """Options of `solve` for each case, and the group of equal options each case belongs to, shape (n,)."""
+    n = design.sizes["case"]
+    varying = [name for name in ("contact_model", "spin_model") if name in design.coords]
+    if not varying:
+        return study.options, np.zeros(n, dtype=int)
+    keys = list(zip(*[design[name].values.tolist() for name in varying], strict=True))
+    known = {key: i for i, key in enumerate(dict.fromkeys(keys))}
+    ready = [study.options | dict(zip(varying, key, strict=True)) for key in known]
+    group = np.array([known[key] for key in keys])
+    return [ready[i] for i in group], group
+
+
+def identify(study: Study, design: xr.Dataset) -> np.ndarray:
+    """Fingerprint of each case of a design, shape (n,); raises `InputError` for a case that is no case."""
+    options, _ = case_options(study, design)
+    return fingerprints(to_table(design.drop_vars(list(design.coords)), study.materials), options)
+
+
+def chunk_size(study: Study, cases: int) -> int:
+    """Cases a job: some seconds of solving, but at least two chunks when there is work for two cores."""
+    if study.config.chunk_size:
+        return study.config.chunk_size
+    from trackroller.study.cost import rate
+
+    wanted = math.ceil(CHUNK_SECONDS * rate(study.options))
+    wanted = max(min(wanted, math.ceil(cases / 2)), SMALLEST_CHUNK, math.ceil(cases / MOST_CHUNKS))
+    return min(wanted, LARGEST_CHUNK)
+
+
+def plan_key(study: Study, results_version: int = RESULTS_VERSION) -> str:
+    """Hash of everything a plan depends on, found without drawing the design."""
+    digest = hashlib.sha256(f"{results_version}\n{study.merged()}".encode())
+    material_names = {*study.materials.names()}
+    for name in sorted(material_names):
+        digest.update(repr(study.materials.material(name)).encode())
+    pairs = [(a, b) for a in sorted(material_names) for b in sorted(material_names)]
+    for pair in pairs:
+        with contextlib.suppress(ValueError):
+            digest.update(repr(study.materials.friction(*pair)).encode())
+    if study.config.table is not None:
+        digest.update(Path(table_path(study)).read_bytes())
+    return digest.hexdigest()
+
+
+def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | None = None, check: bool = True) -> Plan:
+    """Plan a study and write its case lists.
+
+    Parameters
+    ----------
+    study : the checked study
+    results : parent of the study's folder
+    tell : called with one line for each thing the user should know (a corrupt file, a changed solver)
+    check : read every kept file and drop the corrupt ones
+
+    Raises `InputError` for a design with bad cases or a folder that cannot be written.
+    """
+    folder = study_folder(study.name, results).create()
+    tell = tell or (lambda line: None)
+    with locked(folder.plan_lock):
+        if check:
+            drop_corrupt(folder, tell)
+        ready = _kept_plan(study, folder)
+        return ready if ready is not None else _new_plan(study, folder, tell)
+
+
+def _kept_plan(study: Study, folder: StudyFolder) -> Plan | None:
+    """The plan on the disk when nothing it depends on has changed."""
+    try:
+        data = json.loads(folder.plan_file.read_text())
+        if data["key"] != plan_key(study) or not all(folder.case_list(name).is_file() for name in data["chunks"]):
+            return None
+        return Plan(study, folder, data["chunks"], data["size"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
+    design = build(study)
+    cases = identify(study, design)
+    wanted, first = np.unique(cases, return_index=True)
+    chunks: dict[str, int] = {}
+    covered = np.zeros(len(wanted), dtype=bool)
+    for path in sorted((folder.root / "plan").glob("*.npz")):
+        name = path.stem
+        listed = _listed(path, tell)
+        if listed is None:
+            continue
+        place = np.searchsorted(wanted, listed).clip(max=max(len(wanted) - 1, 0))
+        hit = wanted[place] == listed
+        if not hit.any() or covered[place[hit]].all():
+            continue
+        if not folder.kept(name).is_file() and not hit.all():
+            name, listed = _seal(folder, name, tell)
+            if name == "":
+                continue
+            place = np.searchsorted(wanted, listed).clip(max=len(wanted) - 1)
+            hit = wanted[place] == listed
+            if not hit.any():
+                continue
+        covered[place[hit]] = True
+        chunks[name] = len(listed)
+    missing = np.sort(first[~covered])
+    options, group = case_options(study, design)
+    size = chunk_size(study, len(missing))
+    for number in range(int(group.max()) + 1 if len(group) else 0):
+        rows = missing[group[missing] == number]
+        count = max(1, math.ceil(len(rows) / size))
+        for part in np.array_split(rows, count):
+            if len(part):
+                told = options if isinstance(options, dict) else options[part[0]]
+                chunks[_write_list(folder, design, cases, part, told)] = len(part)
+    data = {"key": plan_key(study), "study": study.name, "size": len(cases), "chunks": chunks}
+    _write_text(folder.plan_file, json.dumps(data))
+    _write_text(folder.root / "study.yaml", study.merged())
+    return Plan(study, folder, chunks, len(cases), design, cases)
+
+
+def _write_text(path: Path, text: str) -> None:
+    write_whole(path, lambda beside: Path(beside).write_text(text, encoding="utf-8") and None)
+
+
+def _listed(path: Path, tell: Tell) -> np.ndarray | None:
+    """Fingerprints of a case list; a corrupt list is named and removed."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            cases = file["cases"]
+        if chunk_name(cases) == path.stem:
+            return cases
+        why = "its content does not fit its name"
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as exc:
+        why = str(exc)
+    tell(f"{path}: corrupt case list ({why}); its cases are planned anew")
+    path.unlink(missing_ok=True)
+    return None
+
+
+def _write_list(
+    folder: StudyFolder, design: xr.Dataset, cases: np.ndarray, rows: np.ndarray, options: dict[str, Any]
+) -> str:
+    listed = cases[rows]
+    name = chunk_name(listed)
+    path = folder.case_list(name)
+    if not path.is_file():
+        columns = {key: design[key].values[rows] for key in (*PARAMETERS, *MATERIAL_FIELDS)}
+        _save_list(path, listed, columns, options)
+    return name
+
+
+def _save_list(path: Path, cases: np.ndarray, columns: dict[str, np.ndarray], options: dict[str, Any]) -> None:
+    def save(beside: Path) -> None:
+        plain = {k: v.astype(str) if v.dtype == object else v for k, v in columns.items()}
+        with open(beside, "wb") as stream:
+            np.savez(stream, cases=cases, options=np.array(json.dumps(options)), allow_pickle=False, **plain)
+
+    write_whole(path, save)
+
+
+def load_list(folder: StudyFolder, name: str) -> CaseList:
+    """The case list of a chunk."""
+    with np.load(folder.case_list(name), allow_pickle=False) as file:
+        columns = {key: file[key] for key in (*PARAMETERS, *MATERIAL_FIELDS)}
+        columns = {k: v.astype(object) if v.dtype.kind == "U" else v for k, v in columns.items()}
+        return CaseList(name, file["cases"], columns, json.loads(str(file["options"])))
+
+
+def read_parts(folder: StudyFolder, name: str, tell: Tell) -> list[store.Block]:
+    """Finished blocks of an unfinished chunk; corrupt ones are named and removed."""
+    blocks = []
+    for path in sorted(folder.parts(name).glob("*.nc")):
+        try:
+            blocks.append(store.read(path))
+        except store.CorruptFile as exc:
+            tell(f"corrupt block of finished cases, they are solved again: {exc}")
+            path.unlink(missing_ok=True)
+    return blocks
+
+
+def _seal(folder: StudyFolder, name: str, tell: Tell) -> tuple[str, np.ndarray]:
+    """Turn what is finished of a chunk that is no longer wanted whole into a chunk of its own."""
+    blocks = read_parts(folder, name, tell)
+    try:
+        listed = load_list(folder, name)
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        listed = None
+    sealed = ("", np.empty(0, dtype="S32"))
+    if blocks and listed is not None:
+        block = store.concatenate(blocks)
+        where = {case: i for i, case in enumerate(listed.cases.tolist())}
+        rows = np.array([where[case] for case in block.cases.tolist()])
+        new = chunk_name(block.cases)
+        _save_list(folder.case_list(new), block.cases, {k: v[rows] for k, v in listed.columns.items()},
+                   listed.options)  # fmt: skip
+        keep(folder, new, block)
+        sealed = (new, block.cases)
+    if sealed[0] != name:
+        folder.case_list(name).unlink(missing_ok=True)
+        shutil.rmtree(folder.parts(name), ignore_errors=True)
+    return sealed
+
+
+def keep(folder: StudyFolder, name: str, block: store.Block) -> None:
+    """Store a finished chunk, under both its names."""
+    store.write(folder.kept(name), block)
+    link_or_copy(folder.kept(name), folder.chunk(name))
+    shutil.rmtree(folder.parts(name), ignore_errors=True)
+
+
+def drop_corrupt(folder: StudyFolder, tell: Tell) -> list[str]:
+    """Remove, and name, every solved chunk that cannot be trusted; returns their names."""
+    for place in ("plan", "chunks", "store"):
+        sweep(folder.root / place)
+    dropped = []
+    for path in sorted((folder.root / "store").glob("*.nc")):
+        name = path.stem
+        linked = folder.chunk(name)
+        try:
+            store.read(path)
+        except store.CorruptFile as exc:
+            tell(f"corrupt chunk, its cases are solved again: {exc}")
+            path.unlink(missing_ok=True)
+            linked.unlink(missing_ok=True)
+            dropped.append(name)
+            continue
+        if linked.exists() and not linked.samefile(path) and linked.read_bytes() != path.read_bytes():
+            tell(f"corrupt chunk, restored from the store: {linked}")
+            linked.unlink(missing_ok=True)
+            link_or_copy(path, linked)
+    for path in sorted((folder.root / "chunks").glob("*.nc")):
+        if not folder.kept(path.stem).is_file():
+            if path.stem not in dropped and _adopt(folder, path, tell):
+                continue
+            path.unlink(missing_ok=True)
+    return dropped
+
+
+def _adopt(folder: StudyFolder, path: Path, tell: Tell) -> bool:
+    """A good chunk whose other name is missing (a copied folder) is taken into the store."""
+    try:
+        store.read(path)
+    except store.CorruptFile as exc:
+        tell(f"corrupt chunk, its cases are solved again: {exc}")
+        return False
+    link_or_copy(path, folder.kept(path.stem))
+    return True
