@@ -60,7 +60,7 @@ def _choice(value: Any, where: str, options: tuple[str, ...]) -> str:
 class StudyFile(BaseModel):
     """What stands in a study file; see the fields' descriptions."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, title="trackroller study")
+    model_config = ConfigDict(extra="forbid", frozen=True, title="trackroller study", ser_json_inf_nan="constants")
 
     name: str = Field(description="names the results folder; letters, digits, '.', '_', '-'")
     description: str = Field("", description="one sentence at the head of the report")
