@@ -43,8 +43,8 @@ class Loads:
 class Equilibrium:
     """Solution for n rollers: `regime` (n,), shift (n,) [mm], normal_force (n, 2) [N] and the resultants.
 
-    `forces` has the fields of `Resultants`, each of shape (n, 2). `residual` is the largest of the three
-    balances over the size of the applied loads. Undefined quantities are NaN.
+    `forces` has the fields of `Resultants`, each of shape (n, 2). `residual` is the largest relative
+    imbalance: forces over the applied loads, torque over mu (|F_rad| + |F_ax|) + |F_Motor|. Undefined quantities are NaN.
     """
 
     regime: np.ndarray
@@ -182,12 +182,14 @@ def _newton(roller: _Roller, w, normal, w_low, w_high, steps: int = 14):
     active = np.arange(m)
     jac = np.empty((m, 3, 3))
     step_old, r_old = np.zeros((m, 3)), np.zeros((m, 3))
-    scale = roller.load + np.abs(roller.motor_force)
+    # the torque is measured against what friction can give, so that little friction does not hide its imbalance
+    torque_scale = roller.friction * roller.load + np.abs(roller.motor_force)
+    scale = np.stack([roller.load, roller.load, torque_scale], axis=1)
     for k in range(steps):
         n_a, w_a = normal[:, active], w[active]
         f = roller.contact(roller.shift(w_a, active), n_a, True, active)
         r = roller.residuals(n_a, f, active).T
-        size = np.max(np.abs(r), axis=1) / scale[active]
+        size = np.max(np.abs(r) / scale[active], axis=1)
         better = size < best[active]
         hit = active[better]
         best[hit], w_best[hit] = size[better], w_a[better]

@@ -10,6 +10,8 @@ point the direction is split into its value d_0 there and the rest:
 - the rest, mu p (d - d_0), vanishes at the point: its Cerruti integral in polar coordinates about the point has no
   singularity at any depth, z = 0 and the edge of the patch included.
 
+Far from the patch the point-load kernels are summed over it instead.
+
 Stresses come as value + nu * slope, for pressure and friction apart, so one evaluation serves both bodies.
 Order of components: xx, yy, zz, xy, yz, zx. x, y, z, a, b in mm; stresses per unit p_max.
 """
@@ -23,6 +25,7 @@ import numpy as np
 from numba import njit, prange
 
 from trackroller.contact.sliding import clustered_rule
+from trackroller.halfspace.kernels import point_kernel
 
 PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU = range(4)  # rows of the result
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
@@ -228,6 +231,26 @@ def _one_chord(patch, x, y, z, px, py, r2, psi, w, d_x, d_y, nodes, weights, out
 
 
 @njit(cache=True)
+def _far_field(patch, x, y, z, nodes, weights, out):
+    """Sum of point loads over the patch: exponentially exact at distances above its size."""
+    count = 4 * nodes.size
+    for i in range(nodes.size):
+        rho = math.sqrt(nodes[i] * (2.0 - nodes[i]))  # 1 - rho^2 = (1 - v)^2 makes the pressure a polynomial
+        weight = weights[i] * (1.0 - nodes[i]) ** 2 * patch[A] * patch[B] * 2.0 * math.pi / count
+        for j in range(count):
+            angle = 2.0 * math.pi * (j + 0.5) / count
+            px, py = patch[A] * rho * math.cos(angle), patch[B] * rho * math.sin(angle)
+            d_x, d_y = _direction(patch, px, py)
+            q_x, q_y = patch[FRICTION] * d_x * weight, patch[FRICTION] * d_y * weight
+            k = point_kernel(x - px, y - py, z)
+            for c in range(6):
+                out[PRESSURE, c] += weight * k[12 + c]
+                out[PRESSURE_NU, c] += weight * k[30 + c]
+                out[SHEAR, c] += q_x * k[c] + q_y * k[6 + c]
+                out[SHEAR_NU, c] += q_x * k[18 + c] + q_y * k[24 + c]
+
+
+@njit(cache=True)
 def stress_at(patch, x, y, z, waves, wave_weights, nodes, weights, out):
     """Stress parts (4, 6) at one point per unit p_max, into `out`.
 
@@ -235,6 +258,9 @@ def stress_at(patch, x, y, z, waves, wave_weights, nodes, weights, out):
     and, in both directions, for the rest of the friction.
     """
     out[:, :] = 0.0
+    if x * x + y * y + z * z > 9.0 * max(patch[A], patch[B]) ** 2:
+        _far_field(patch, x, y, z, nodes, weights, out)
+        return
     d_x = d_y = 0.0
     if patch[FRICTION] > 0.0:
         r = math.hypot(x / patch[A], y / patch[B])
