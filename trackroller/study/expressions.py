@@ -54,11 +54,7 @@ def names(text: str, field: str = "expression") -> set[str]:
     Raises `InputError` with the position for a text that is no expression.
     """
     tree = _parse(text, field)
-    called = {
-        node.func.id
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
-    }
+    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
     return {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)} - called - set(CONSTANTS)
 
 

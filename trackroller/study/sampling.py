@@ -138,9 +138,7 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
         if key not in settings:
             close = nearest(key, settings)
             allowed = f"{method} takes " + (", ".join(settings) or "none")
-            raise InputError(
-                f"design option {key}", value, allowed, f"Did you mean '{close}'?" if close else ""
-            )
+            raise InputError(f"design option {key}", value, allowed, f"Did you mean '{close}'?" if close else "")
         settings[key] = value
     return settings
 
