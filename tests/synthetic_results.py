@@ -105,7 +105,9 @@ def grid_study(factors: dict | None = None, only: tuple[str, ...] = (), **option
                  for n, (dims, v) in results(columns, **options).items()
                  if not only or n in (*only, "regime", "validity", "converged")}  # fmt: skip
     ds = xr.Dataset(variables, coords={n: (n, list(v)) for n, v in factors.items()})
-    return _finish(ds, {n: {"values": [x if isinstance(x, str) else float(x) for x in v]} for n, v in factors.items()}, "grid")
+    return _finish(
+        ds, {n: {"values": [x if isinstance(x, str) else float(x) for x in v]} for n, v in factors.items()}, "grid"
+    )
 
 
 def sampled_study(n: int = 400, seed: int = 3, **options) -> xr.Dataset:

@@ -9,15 +9,22 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.plots import style
-from trackroller.plots.study_life import life_against_friction, main_effects
+from trackroller.plots.study_effects import main_effects
+from trackroller.plots.study_life import life_against_friction
 from trackroller.plots.study_loads import forces_against_axial, stress_against_fit
-from trackroller.plots.study_maps import life_map, regime_map
+from trackroller.plots.study_maps import life_map
+from trackroller.plots.study_regimes import regime_map
 from trackroller.plots.study_view import StudyView
 
 log = logging.getLogger(__name__)
 FIGURES: tuple[Callable[[StudyView], Any], ...] = (
-    life_against_friction, stress_against_fit, life_map, forces_against_axial, main_effects, regime_map,
-)  # fmt: skip
+    life_against_friction,
+    stress_against_fit,
+    life_map,
+    forces_against_axial,
+    main_effects,
+    regime_map,
+)
 
 
 def draw_all(study_nc: Path, out_dir: Path) -> list[style.FigureInfo]:

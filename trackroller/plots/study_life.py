@@ -1,4 +1,4 @@
-"""Life against friction, and the main effect of every factor on life."""
+"""Life against friction, and the parts of line charts that other figures share."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import PARAMETERS
 from trackroller.plots import style
 from trackroller.plots.study_view import StudyView
 
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
 
 MANY_LINES = 6  # more lines than this in one panel are not told apart: one panel a drive
 MAX_POINTS = 3000  # of a sample, in one scatter plot
-MAX_ROWS = 9  # levels of one factor shown among the main effects; more are put together in bins
 
 
 def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
@@ -37,8 +35,17 @@ def mark_unlimited(axes: Axes, height: float | None) -> None:
     if height is None:
         return
     axes.axhline(height, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
-    axes.annotate("unlimited", (1.0, height), xycoords=("axes fraction", "data"), xytext=(-2, 2),
-                  textcoords="offset points", ha="right", va="bottom", fontsize=6.5, color="0.25")  # fmt: skip
+    axes.annotate(
+        "unlimited",
+        (1.0, height),
+        xycoords=("axes fraction", "data"),
+        xytext=(-2, 2),
+        textcoords="offset points",
+        ha="right",
+        va="bottom",
+        fontsize=6.5,
+        color="0.25",
+    )
 
 
 def series(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any], line: bool) -> None:
@@ -47,21 +54,52 @@ def series(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any],
     colour, marker = look["color"], look["marker"]
     if line:
         axes.plot(rows[x], rows[y], color=colour, linestyle=look.get("linestyle", "-"), zorder=2)
+    else:
+        axes.plot(*binned_median(rows[x], rows[y]), color=colour, linestyle=look.get("linestyle", "-"), zorder=4)
     rolling = (rows["regime"] == 0) if "regime" in rows else np.ones(len(rows), dtype=bool)
     size = 14 if line else 7
     for chosen, face in ((rolling, colour), (~rolling, "white")):
         part = rows[chosen]
-        axes.scatter(part[x], part[y], s=size, marker=marker, facecolor=face, edgecolor=colour, linewidth=0.8,
-                     zorder=3, rasterized=len(part) > 500)  # fmt: skip
+        axes.scatter(
+            part[x],
+            part[y],
+            s=size,
+            marker=marker,
+            facecolor=face,
+            edgecolor=colour,
+            linewidth=0.8,
+            zorder=3,
+            rasterized=len(part) > 500,
+        )
 
 
-def legend(figure: Figure, entries: list[tuple[str, dict[str, Any]]], title: str | None = None, columns: int = 1) -> None:
+def binned_median(x: pd.Series, y: pd.Series, bins: int = 6) -> tuple[np.ndarray, np.ndarray]:
+    """Median of y in bins of equal numbers of points along x; empty for fewer than five points a bin."""
+    good = np.isfinite(x) & np.isfinite(y)
+    order = np.argsort(x[good].to_numpy())
+    if len(order) < 5 * bins:
+        return np.array([]), np.array([])
+    parts = np.array_split(order, bins)
+    return tuple(np.array([np.median(v[good].to_numpy()[p]) for p in parts]) for v in (x, y))  # type: ignore[return-value]
+
+
+def legend(
+    figure: Figure, entries: list[tuple[str, dict[str, Any]]], title: str | None = None, columns: int = 1
+) -> None:
     """Legend under the axes, so that it never covers data."""
     from matplotlib.lines import Line2D
 
     handles = [Line2D([], [], label=text, **look) for text, look in entries]
-    figure.legend(handles=handles, loc="outside lower left", ncols=columns, title=title, alignment="left",
-                  handlelength=2.4, borderaxespad=0.2, columnspacing=1.2)  # fmt: skip
+    figure.legend(
+        handles=handles,
+        loc="outside lower left",
+        ncols=columns,
+        title=title,
+        alignment="left",
+        handlelength=2.4,
+        borderaxespad=0.2,
+        columnspacing=1.2,
+    )
 
 
 def hollow_entry(rows: pd.DataFrame) -> list[tuple[str, dict[str, Any]]]:
@@ -91,8 +129,10 @@ def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | 
     split = len(pairs) * len(drives) > MANY_LINES
     panels = drives if split else [None]
     colours = style.palette(len(pairs))
-    looks = [{"color": colours[i], "marker": style.MARKERS[i % 10], "linestyle": style.LINES[i % 6]}
-             for i in range(len(pairs))]  # fmt: skip
+    looks = [
+        {"color": colours[i], "marker": style.MARKERS[i % 10], "linestyle": style.LINES[i % 6]}
+        for i in range(len(pairs))
+    ]
     extra = len(pairs) + 2 + (0 if split else len(drives))
     figure = style.new_figure(14 + 4 * extra + (38 * len(panels) if split else 55))
     grid = figure.subplots(len(panels), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
@@ -104,29 +144,43 @@ def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | 
                 look = looks[i] if split or not drive else {**looks[i], "linestyle": style.LINES[j % 6]}
                 series(axes, part, x, "_life", look, view.grid)
         axes.set_yscale("log")
+        style.log_ticks(axes.yaxis, *axes.get_ylim())
         mark_unlimited(axes, top)
         if split:
-            axes.set_title(_capital(style.level_text("motor_force", shown)), loc="left", fontsize=7.5, pad=3)
+            axes.set_title(style.capital(style.level_text("motor_force", shown)), loc="left", fontsize=7.5, pad=3)
     grid[-1].set_xlabel(style.factor_label(x))
-    figure.supylabel(style.with_unit(words, unit), fontsize=7.5) if split else grid[0].set_ylabel(
-        style.with_unit(words, unit))  # fmt: skip
-    entries = [(style.level_text(pair, p), {**k, "linestyle": k["linestyle"] if split else "none"} if view.grid
-                else {**k, "linestyle": "none"}) for p, k in zip(pairs, looks, strict=True)] if pair else []  # fmt: skip
+    for axes in grid:
+        axes.set_ylabel(style.with_unit("Life" if split else words, unit))
+    entries = (
+        [
+            (style.level_text(pair, p), {**k, "linestyle": k["linestyle"] if split else "none"} if view.grid else k)
+            for p, k in zip(pairs, looks, strict=True)
+        ]
+        if pair
+        else []
+    )
     if drive and not split and view.grid:
-        entries += [(style.level_text(drive, d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
-                    for j, d in enumerate(drives)]  # fmt: skip
+        entries += [
+            (style.level_text(drive, d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
+            for j, d in enumerate(drives)
+        ]
     legend(figure, entries + hollow_entry(rows))
     style.head(figure, f"{words} against friction", held)
     style.finish(figure)
     return figure, _friction_info(view, rows, pair, pairs, drives, held)
 
 
-def _friction_info(view: StudyView, rows: pd.DataFrame, pair: str | None, pairs: list, drives: list, held: str
-                   ) -> style.FigureInfo:  # fmt: skip
+def _friction_info(
+    view: StudyView, rows: pd.DataFrame, pair: str | None, pairs: list, drives: list, held: str
+) -> style.FigureInfo:
     _, words, unit = view.life or ("", "", "")
-    caption = (f"{words} ({unit}) over the friction coefficient"
-               + (f", one line for each of {len(pairs)} material pairs" if pair else "")
-               + (f", for {len(drives)} motor forces" if drives[0] is not None else "") + f". {held}")  # fmt: skip
+    caption = (
+        f"{words} ({unit}) over the friction coefficient"
+        + (f", one line for each of {len(pairs)} material pairs" if pair else "")
+        + (f", for {len(drives)} motor forces" if drives[0] is not None else "")
+        + f". {held}"
+        + ("" if view.grid else " Lines: medians.")
+    )
     shown = rows
     if pair:
         level = view.held_level(pair)
@@ -143,10 +197,17 @@ def _friction_info(view: StudyView, rows: pd.DataFrame, pair: str | None, pairs:
     else:
         fifth = max(len(shown) // 5, 1)
         low, high = shown.iloc[:fifth], shown.iloc[-fifth:]
-        ends = (low["_life"].median(), high["_life"].median(), low["friction_coefficient"].median(),
-                high["friction_coefficient"].median())  # fmt: skip
-    return style.FigureInfo("life_against_friction", caption, change_sentence(
-        "friction", *ends, where, "life" if view.grid else "median life"))  # fmt: skip
+        ends = (
+            low["_life"].median(),
+            high["_life"].median(),
+            low["friction_coefficient"].median(),
+            high["friction_coefficient"].median(),
+        )
+    return style.FigureInfo(
+        "life_against_friction",
+        caption,
+        change_sentence("friction", *ends, where, "life" if view.grid else "median life"),
+    )
 
 
 def change_sentence(what: str, y0: float, y1: float, x0: float, x1: float, where: str, result: str) -> str:
@@ -160,98 +221,5 @@ def change_sentence(what: str, y0: float, y1: float, x0: float, x1: float, where
     return f"{span} {verb} the {result} by a factor of {style.number(max(ratio, 1 / ratio))}{place}."
 
 
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
 def _thinned(rows: pd.DataFrame, grid: bool) -> pd.DataFrame:
     return rows if grid or len(rows) <= MAX_POINTS else rows.sample(MAX_POINTS, random_state=0)
-
-
-def effects(view: StudyView) -> list[tuple[str, list[str], np.ndarray]]:
-    """Mean log10 life at each level (or bin) of each factor, the most influential factor first.
-
-    Averages are over all cases with a finite life, whatever the other factors.
-    """
-    if view.life is None:
-        return []
-    life = view.table[view.life[0]].to_numpy(dtype=float)
-    good = np.isfinite(life) & (life > 0)
-    table, logs = view.table[good], np.log10(life[good])
-    found = []
-    for name in view.factors:
-        labels, groups = _groups(view, name, table[name].to_numpy())
-        means = np.array([logs[g].mean() if g.any() else np.nan for g in groups])
-        if np.isfinite(means).sum() > 1:
-            found.append((name, labels, means))
-    return sorted(found, key=lambda item: -float(np.nanmax(item[2]) - np.nanmin(item[2])))
-
-
-def _groups(view: StudyView, name: str, values: np.ndarray) -> tuple[list[str], list[np.ndarray]]:
-    levels = view.levels(name)
-    if not view.numeric(name) or len(levels) <= MAX_ROWS:
-        return [_short(name, v) for v in levels], [values == v for v in levels]
-    edges = np.unique(np.quantile(values[np.isfinite(values)], np.linspace(0, 1, 6)))
-    index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
-    names = [f"{style.number(float(f'{a:.3g}'))} … {style.number(float(f'{b:.3g}'))}"
-             for a, b in zip(edges[:-1], edges[1:], strict=True)]  # fmt: skip
-    return names, [index == i for i in range(len(edges) - 1)]
-
-
-def _short(name: str, value: Any) -> str:
-    text = style.level_text(name, value, unit=name in ("guide_curve_radius", "motor_force"))
-    return text if len(text) <= 30 else "\n on ".join(text.split(" on ", 1)) if " on " in text else text[:29] + "…"
-
-
-def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """Mean log life by level of each factor, all on one axis."""
-    found = effects(view)
-    if view.life is None or not found:
-        return None
-    _, words, unit = view.life
-    heights = [sum(1 + 0.7 * label.count("\n") for label in labels) + 1.6 for _, labels, _ in found]
-    figure = style.new_figure(26 + 3.4 * sum(heights))
-    axes = figure.subplots()
-    colours, ticks, names, place = style.palette(len(found)), [], [], 0.0
-    for i, (factor, labels, means) in enumerate(found):
-        axes.annotate(_heading(factor), (0.0, place), xycoords=("axes fraction", "data"), xytext=(2, 0),
-                      textcoords="offset points", fontsize=7, fontweight="bold", va="center", clip_on=False)  # fmt: skip
-        spots = []
-        for label in labels:
-            place += 1 + 0.7 * label.count("\n") * 0.5
-            spots.append(place)
-            place += 0.7 * label.count("\n") * 0.5
-        place += 1.6
-        axes.plot(10.0**means, spots, color=colours[i % len(colours)], marker=style.MARKERS[i % 10], linewidth=1.0)
-        ticks += spots
-        names += labels
-    life = view.table[view.life[0]].to_numpy(dtype=float)
-    good = np.isfinite(life) & (life > 0)
-    axes.axvline(10.0 ** np.log10(life[good]).mean(), color="0.4", linewidth=0.8, linestyle="--", zorder=0)
-    axes.set_xscale("log")
-    axes.set_yticks(ticks, names)
-    axes.set_ylim(place - 0.6, -1.0)
-    axes.set_xlabel(style.with_unit(f"Mean {words[0].lower()}{words[1:]} (geometric)", unit))
-    missing = int((~good).sum())
-    note = f" {missing} of {len(life)} cases without a finite life are left out." if missing else ""
-    style.head(figure, "Main effect of each factor on life", f"Dashed: mean of all cases.{note}")
-    style.finish(figure)
-    (name, _, means), swing = found[0], 10 ** float(np.nanmax(found[0][2]) - np.nanmin(found[0][2]))
-    least = found[-1]
-    sentence = f"{_capital(_long(name))} moves the mean life most, by a factor of {style.number(swing)}"
-    if len(found) > 1:
-        low = 10 ** float(np.nanmax(least[2]) - np.nanmin(least[2]))
-        sentence += f"; {_long(least[0])} least, by a factor of {style.number(low)}"
-    caption = (f"Geometric mean of the life ({unit}) at each level of each factor, averaged over all other factors, "
-               f"the most influential factor on top.{note}")  # fmt: skip
-    return figure, style.FigureInfo("main_effects", caption, sentence + ".")
-
-
-def _long(name: str) -> str:
-    return PARAMETERS[name].long_name if name in PARAMETERS else style.plain(name)
-
-
-def _heading(name: str) -> str:
-    unit = PARAMETERS[name].unit if name in PARAMETERS else "-"
-    bare = name in ("guide_curve_radius", "motor_force") or unit == "-"
-    return _capital(_long(name)) if bare else f"{_capital(_long(name))} [{style.unit_text(unit)}]"

@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
-from trackroller.plots.study_life import MAX_POINTS, change_sentence, legend
+from trackroller.plots.study_life import MAX_POINTS, legend
 from trackroller.plots.study_view import StudyView
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-FORCES = (("normal_force", "Normal force", r"$F_\mathrm{N}$"), ("lateral_force", "Lateral force", r"$F_\mathrm{T}$"),
-          ("driving_force", "Driving force", r"$F_\mathrm{A}$"))  # fmt: skip
+FORCES = (
+    ("normal_force", "Normal force", r"$F_\mathrm{N}$"),
+    ("lateral_force", "Lateral force", r"$F_\mathrm{T}$"),
+    ("driving_force", "Driving force", r"$F_\mathrm{A}$"),
+)
 
 
 def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
@@ -53,16 +56,18 @@ def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | Non
         for i, (_, part) in enumerate(groups):
             _stress_series(axes, part, body, colours[i], style.MARKERS[i], style.LINES[i % 6], view.grid)
         axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
-        axes.set_ylabel(style.with_unit("Peak von Mises stress", "MPa"))
+        axes.set_ylabel(style.with_unit("Peak von Mises\nstress", "MPa"))
         axes.set_ylim(bottom=0) if not view.grid else axes.margins(y=0.12)
     panels[-1].set_xlabel(label)
     line = {"linestyle": "none"} if not view.grid else {}
     entries: list[tuple[str, dict[str, Any]]] = [
         (text, {"color": colours[i], "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6], **line})
-        for i, (text, _) in enumerate(groups) if text]  # fmt: skip
+        for i, (text, _) in enumerate(groups)
+        if text
+    ]
     dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
     entries += [("filled: peak at the surface", dot), ("hollow: peak below it", {**dot, "markerfacecolor": "white"})]
-    legend(figure, entries, columns=2 if all(len(t) < 27 for t, _ in entries) else 1)
+    legend(figure, entries, columns=2 if all(len(t) < 30 for t, _ in entries) else 1)
     style.head(figure, "Peak stress against fit", held)
     style.finish(figure)
     return figure, _stress_info(view, rows, bodies[0], hue, held)
@@ -77,8 +82,13 @@ def _stress_groups(view: StudyView, rows: pd.DataFrame, hue: str | None) -> list
     if not view.grid and view.numeric(hue) and len(levels) > 5:
         rows = rows if len(rows) <= MAX_POINTS else rows.sample(MAX_POINTS, random_state=0)
         edges = np.quantile(rows[hue], [0, 1 / 3, 2 / 3, 1])
-        return [(f"{name}{edges[i]:.3g} … {edges[i + 1]:.3g}",
-                 rows[(rows[hue] >= edges[i]) & ((rows[hue] < edges[i + 1]) | (i == 2))]) for i in range(3)]  # fmt: skip
+        return [
+            (
+                f"{name}{edges[i]:.3g} … {edges[i + 1]:.3g}",
+                rows[(rows[hue] >= edges[i]) & ((rows[hue] < edges[i + 1]) | (i == 2))],
+            )
+            for i in range(3)
+        ]
     if view.numeric(hue) and len(levels) > 5:
         wanted = {0, len(levels) - 1, len(levels) // 2, levels.index(view.held_level(hue))}
         levels = [levels[i] for i in sorted(wanted)]
@@ -93,13 +103,24 @@ def _stress_series(axes, part, body: str, colour, marker: str, line, grid: bool)
     flag = part.get(f"at_surface_{body}")
     surface = np.ones(len(part), dtype=bool) if flag is None else (flag == 1).to_numpy()
     for chosen, face in ((surface, colour), (~surface, "white")):
-        axes.scatter(part["_fit"][chosen], part[y][chosen], s=15 if grid else 8, marker=marker, facecolor=face,
-                     edgecolor=colour, linewidth=0.8, zorder=3, rasterized=len(part) > 500)  # fmt: skip
+        axes.scatter(
+            part["_fit"][chosen],
+            part[y][chosen],
+            s=15 if grid else 8,
+            marker=marker,
+            facecolor=face,
+            edgecolor=colour,
+            linewidth=0.8,
+            zorder=3,
+            rasterized=len(part) > 500,
+        )
 
 
 def _stress_info(view: StudyView, rows: pd.DataFrame, body: str, hue: str | None, held: str) -> style.FigureInfo:
-    caption = ("Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove "
-               f"and guide. Filled marks: the peak lies at the surface; hollow marks: below it. {held}")  # fmt: skip
+    caption = (
+        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove "
+        f"and guide. Filled marks: the peak lies at the surface; hollow marks: below it. {held}"
+    )
     y, flag = f"peak_stress_{body}", f"at_surface_{body}"
     good = rows[np.isfinite(rows[y])].sort_values("_fit")
     if len(good) < 2:
@@ -109,9 +130,11 @@ def _stress_info(view: StudyView, rows: pd.DataFrame, body: str, hue: str | None
     share = float((rows[flag] == 1).mean()) if flag in rows else float("nan")
     fifth = 1 if view.grid else max(len(good) // 5, 1)
     low, high = good.iloc[:fifth], good.iloc[-fifth:]
-    sentence = (f"From a fit of {style.number(low['_fit'].median())} to {style.number(high['_fit'].median())} the "
-                f"{'' if view.grid else 'median '}peak stress of the {body} goes from "
-                f"{style.number(low[y].median())} to {style.number(high[y].median())} MPa")  # fmt: skip
+    sentence = (
+        f"From a fit of {style.number(low['_fit'].median())} to {style.number(high['_fit'].median())} the "
+        f"{'' if view.grid else 'median '}peak stress of the {body} goes from "
+        f"{style.number(low[y].median())} to {style.number(high[y].median())} MPa"
+    )
     if np.isfinite(share):
         sentence += f"; it lies at the surface in {share:.0%} of the cases shown".replace("%", " %")
     return style.FigureInfo("stress_against_fit", caption, sentence + ".")
@@ -137,28 +160,51 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
         for contact in (1, 2):
             for j, level in enumerate(drives):
                 part = (rows if level is None else rows[rows[drive] == level]).sort_values(x)
-                _force_series(axes, part, x, f"{name}_{contact}", contact, colours[contact - 1], style.LINES[j % 6], view.grid)
+                _force_series(
+                    axes, part, x, f"{name}_{contact}", contact, colours[contact - 1], style.LINES[j % 6], view.grid
+                )
         axes.set_ylabel(style.with_unit(f"{words}\n{symbol}", "N"))
         axes.margins(y=0.1)
     _shade_lift_off(panels, rows, x, view.grid)
     panels[-1].set_xlabel(style.factor_label(x))
     entries: list[tuple[str, dict[str, Any]]] = [
-        (f"contact {c}", {"color": colours[c - 1], "marker": "os"[c - 1], "linestyle": "none",
-                          "markerfacecolor": colours[0] if c == 1 else "white"}) for c in (1, 2)]  # fmt: skip
+        (
+            f"contact {c}",
+            {
+                "color": colours[c - 1],
+                "marker": "os"[c - 1],
+                "linestyle": "none",
+                "markerfacecolor": colours[0] if c == 1 else "none",
+            },
+        )
+        for c in (1, 2)
+    ]
     if drive and view.grid:
-        entries += [(style.level_text(drive, d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
-                    for j, d in enumerate(drives)]  # fmt: skip
+        entries += [
+            (style.level_text(drive, d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
+            for j, d in enumerate(drives)
+        ]
     legend(figure, entries, columns=2)
     style.head(figure, "Forces of both contacts against axial force", held)
     style.finish(figure)
-    return figure, _force_info(view, rows, held, len(drives))
+    return figure, _force_info(rows, held, len(drives))
 
 
 def _force_series(axes, part, x: str, y: str, contact: int, colour, line, grid: bool) -> None:
     if grid:
         axes.plot(part[x], part[y], color=colour, linestyle=line, zorder=2)
-    axes.scatter(part[x], part[y], s=12 if grid else 6, marker="os"[contact - 1], edgecolor=colour, linewidth=0.8,
-                 facecolor=colour if contact == 1 else "white", zorder=3, rasterized=len(part) > 500)  # fmt: skip
+    size = (10, 20) if grid else (5, 9)
+    axes.scatter(
+        part[x],
+        part[y],
+        s=size[contact - 1],
+        marker="os"[contact - 1],
+        edgecolor=colour,
+        linewidth=0.8,
+        facecolor=colour if contact == 1 else "none",
+        zorder=3,
+        rasterized=len(part) > 500,
+    )
 
 
 def _shade_lift_off(panels, rows: pd.DataFrame, x: str, grid: bool) -> None:
@@ -170,32 +216,51 @@ def _shade_lift_off(panels, rows: pd.DataFrame, x: str, grid: bool) -> None:
     halves = np.concatenate([values[:1], (values[1:] + values[:-1]) / 2, values[-1:]])
     for i in np.flatnonzero(lifted.to_numpy()):
         for axes in panels:
-            axes.axvspan(halves[i], halves[i + 1], facecolor=style.REGIME_COLOURS[2], alpha=0.25, hatch="xxxx",
-                         edgecolor="white", linewidth=0, zorder=0)  # fmt: skip
+            axes.axvspan(
+                halves[i],
+                halves[i + 1],
+                facecolor=style.REGIME_COLOURS[2],
+                alpha=0.25,
+                hatch="xxxx",
+                edgecolor="white",
+                linewidth=0,
+                zorder=0,
+            )
     if lifted.any():
         i = np.flatnonzero(lifted.to_numpy())[0]
-        panels[0].annotate("lift-off", ((halves[i] + halves[i + 1]) / 2, 0.06), xycoords=("data", "axes fraction"),
-                           ha="center", fontsize=6.8, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})  # fmt: skip
+        panels[0].annotate(
+            "lift-off",
+            (halves[-1], 0.3),
+            xycoords=("data", "axes fraction"),
+            ha="right",
+            fontsize=6.8,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1},
+        )
 
 
-def _force_info(view: StudyView, rows: pd.DataFrame, held: str, drives: int) -> style.FigureInfo:
-    caption = ("Forces (N) of contact 1 (filled circles) and contact 2 (open squares) on the roller over the axial force"
-               + (f", for {drives} motor forces" if drives > 1 else "") + f". {held}")  # fmt: skip
+def _force_info(rows: pd.DataFrame, held: str, drives: int) -> style.FigureInfo:
+    caption = (
+        "Forces (N) of contact 1 (filled circles) and contact 2 (open squares) on the roller over the axial force"
+        + (f", for {drives} motor forces" if drives > 1 else "")
+        + f". {held}"
+    )
     name = "forces_against_axial_force"
     regime = rows["regime"] if "regime" in rows else np.zeros(len(rows))
-    lifted = rows[regime == 2]
-    both = rows[np.isfinite(rows["normal_force_1"]) & np.isfinite(rows["normal_force_2"])] if "normal_force_1" in rows \
-        else rows[:0]  # fmt: skip
-    if len(lifted):
-        size = lifted.loc[lifted["axial_force"].abs().idxmin(), "axial_force"]
-        return style.FigureInfo(name, caption, f"Of the cases shown, {len(lifted)} of {len(rows)} lift off, the first at an "
-                                f"axial force of {style.number(size)} N.")  # fmt: skip
-    if len(both) > 1:
-        last = both.loc[both["axial_force"].abs().idxmax()]
-        return style.FigureInfo(name, caption, f"At an axial force of {style.number(last['axial_force'])} N the contacts "
-                                f"carry {style.number(last['normal_force_1'])} and {style.number(last['normal_force_2'])} N; "
-                                "no contact lifts off.")  # fmt: skip
-    return style.FigureInfo(name, caption, "Too few cases have forces in both contacts to compare them.")
-
-
-__all__ = ["change_sentence", "forces_against_axial", "stress_against_fit"]
+    axial = rows["axial_force"].to_numpy()
+    lifted = axial[regime == 2]
+    if lifted.size:
+        first = style.number(lifted[np.argmin(np.abs(lifted))])
+        sentence = f"{lifted.size} of {len(rows)} cases shown lift off, the first at an axial force of {first} N."
+        return style.FigureInfo(name, caption, sentence)
+    if "normal_force_1" not in rows:
+        return style.FigureInfo(name, caption, "The normal forces are not part of this study.")
+    both = rows[["normal_force_1", "normal_force_2"]].to_numpy()
+    good = np.isfinite(both).all(axis=1)
+    if good.sum() < 2:
+        return style.FigureInfo(name, caption, "Too few cases have forces in both contacts to compare them.")
+    last = np.flatnonzero(good)[np.argmax(np.abs(axial[good]))]
+    one, two = (style.number(v) for v in both[last])
+    sentence = (
+        f"At an axial force of {style.number(axial[last])} N the contacts carry {one} and {two} N; none lifts off."
+    )
+    return style.FigureInfo(name, caption, sentence)

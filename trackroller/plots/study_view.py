@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.parameters import PARAMETERS
-from trackroller.plots.style import level_text, number, plain
+from trackroller.plots.style import level_text, long_name, number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,8 +18,15 @@ if TYPE_CHECKING:
 
 INNER = ("contact", "body", "y", "x", "n", "section_x", "section_y", "section_z", "component")
 CATEGORIES = ("material_pair", "roller_material", "guide_material")
-CONTACT_RESULTS = ("normal_force", "lateral_force", "driving_force", "spin_moment", "max_pressure",
-                   "semi_axis_lateral", "semi_axis_rolling")  # fmt: skip
+CONTACT_RESULTS = (
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "max_pressure",
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+)
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles")
 PLAIN_RESULTS = ("regime", "validity", "converged", "roller_life_hours", "guide_life_hours", "slip")
 SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lying on the surface
@@ -113,8 +120,7 @@ def _say(name: str, level: Any) -> str:
         return level_text(name, level)
     if name in ("motor_force", "guide_curve_radius"):
         return level_text(name, level)
-    long = PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
-    return f"{long} {level_text(name, level)}"
+    return f"{long_name(name)} {level_text(name, level)}"
 
 
 def _any_with(ds: xr.Dataset, dim: str) -> str:
@@ -132,8 +138,11 @@ def _case_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
         values = np.broadcast_to(values, sizes).reshape(-1)
         return values.astype(str) if values.dtype.kind in "OSU" else values.astype(float)
 
-    case_names = [n for n, v in ds.variables.items()
-                  if v.dims == ("case",) and n not in ("case", "reason") and n not in ds.data_vars]  # fmt: skip
+    case_names = [
+        n
+        for n, v in ds.variables.items()
+        if v.dims == ("case",) and n not in ("case", "reason") and n not in ds.data_vars
+    ]
     wanted = [*(d for d in dims if d != "case"), *case_names, *PARAMETERS, *CATEGORIES, *PLAIN_RESULTS]
     for name in dict.fromkeys(map(str, wanted)):
         if name in ds.variables and ds[name].ndim and set(ds[name].dims) <= set(dims):
@@ -152,8 +161,11 @@ def _body_columns(ds: xr.Dataset, flat: Any) -> dict[str, np.ndarray]:
     if "body" not in ds.dims or "contact" not in ds.dims:
         return columns
     for i, body in enumerate(map(str, ds["body"].values)):
-        parts = {n: np.stack([flat(ds[n].isel(body=i, contact=c)) for c in range(ds.sizes["contact"])])
-                 for n in BODY_RESULTS if n in ds}  # fmt: skip
+        parts = {
+            n: np.stack([flat(ds[n].isel(body=i, contact=c)) for c in range(ds.sizes["contact"])])
+            for n in BODY_RESULTS
+            if n in ds
+        }
         if "peak_stress" in parts:
             peak = parts["peak_stress"]
             worse = np.argmax(np.where(np.isnan(peak), -np.inf, peak), axis=0)[None]
@@ -173,8 +185,12 @@ def _body_columns(ds: xr.Dataset, flat: Any) -> dict[str, np.ndarray]:
 def _at_surface(ds: xr.Dataset, flat: Any, worse: np.ndarray, depth: np.ndarray) -> np.ndarray:
     limit = np.full(depth.shape, 1e-3)  # mm, when the study has no semi-axes
     if "semi_axis_lateral" in ds and "semi_axis_rolling" in ds:
-        smaller = np.stack([np.minimum(*(flat(ds[f"semi_axis_{n}"].isel(contact=c)) for n in ("lateral", "rolling")))
-                            for c in range(ds.sizes["contact"])])  # fmt: skip
+        smaller = np.stack(
+            [
+                np.minimum(*(flat(ds[f"semi_axis_{n}"].isel(contact=c)) for n in ("lateral", "rolling")))
+                for c in range(ds.sizes["contact"])
+            ]
+        )
         limit = SURFACE_SHARE * np.take_along_axis(smaller, worse, 0)[0]
     return np.where(np.isnan(depth), np.nan, (depth <= limit).astype(float))
 
@@ -183,8 +199,11 @@ def _factor_names(ds: xr.Dataset, dims: list[str], table: pd.DataFrame) -> list[
     names = [d for d in dims if d != "case" and ds.sizes[d] > 1]
     if "case" not in dims:
         return names
-    listed = [str(n) for n, v in ds.variables.items()
-              if v.dims == ("case",) and n in table and n not in PLAIN_RESULTS and n != "case"]  # fmt: skip
+    listed = [
+        str(n)
+        for n, v in ds.variables.items()
+        if v.dims == ("case",) and n in table and n not in PLAIN_RESULTS and n != "case"
+    ]
     varying = [n for n in listed if table[n].nunique(dropna=False) > 1]
     if "material_pair" in varying:
         varying = [n for n in varying if n not in ("roller_material", "guide_material")]

@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import json
 import math
-import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -25,7 +24,16 @@ LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1,
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")
 REGIME_COLOURS = ("#f2f2f2", "#f0c36d", "#5b8db8", "#4d4d4d")
 REGIME_HATCHES = ("", "////", "xxxx", "")
-UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°", "m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm"}
+UNITS = {
+    "1": "–",
+    "-": "–",
+    "degree": "°",
+    "deg": "°",
+    "m min-1": "m/min",
+    "h-1": "1/h",
+    "J m-1": "J/m",
+    "N mm": "N·mm",
+}
 SYMBOLS = {
     "A_T": r"$A_\mathrm{T}$", "r_C,G": r"$r_\mathrm{C,G}$", "r_C,TR": r"$r_\mathrm{C,TR}$",
     "r_Curve": r"$r_\mathrm{Curve}$", "alpha": r"$\alpha$", "F_rad": r"$F_\mathrm{rad}$",
@@ -59,7 +67,7 @@ def look() -> Iterator[None]:
     import matplotlib
     import seaborn
 
-    style = dict(seaborn.axes_style("ticks"))
+    style: dict[Any, Any] = dict(seaborn.axes_style("ticks"))
     style.update({"axes.grid": True, "grid.color": "0.88"})
     with matplotlib.rc_context({**style, **_RC}):
         yield
@@ -77,16 +85,59 @@ def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> Figure:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), layout="constrained")
-    figure.get_layout_engine().set(w_pad=0.03, h_pad=0.03)  # type: ignore[union-attr]
+    engine: Any = figure.get_layout_engine()
+    engine.set(w_pad=0.03, h_pad=0.03)
     return figure
 
 
-def head(figure: Figure, title: str, subtitle: str = "", width_mm: float = COLUMN_MM) -> None:
-    """Title and, in smaller letters, what was held; wrapped so that nothing runs out of the figure."""
-    per_mm = 0.80  # letters of 7 pt a millimetre takes, with a reserve for wide ones
-    lines = textwrap.wrap(title, int(width_mm * 0.66))
-    small = textwrap.wrap(subtitle, int(width_mm * per_mm)) if subtitle else []
-    figure.suptitle("\n".join(lines + small), x=0.02, ha="left", fontsize=7.2, linespacing=1.25)
+def wrapped(text: str, width_mm: float, size: float, weight: str = "normal") -> list[str]:
+    """Lines of `text` that are no wider than `width_mm` when set in `size` points."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextToPath
+
+    font, measure, limit = FontProperties(size=size, weight=weight), TextToPath(), width_mm / 25.4 * 72
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and measure.get_text_width_height_descent(longer, font, False)[0] <= limit:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines
+
+
+def head(figure: Figure, title: str, subtitle: str = "") -> None:
+    """Title in bold and, under it, what was held; wrapped so that nothing runs out of the figure."""
+    width = float(figure.get_figwidth()) * 25.4 - 3
+    lines = wrapped(title, width, 7.5, "bold")
+    small = wrapped(subtitle, width, 7.0)
+    figure.suptitle("\n".join([" "] * len(lines) + small), x=0.015, ha="left", fontsize=7.0, linespacing=1.25)
+    figure._trackroller_title = "\n".join(lines)  # type: ignore[attr-defined]
+
+
+def _set_title(figure: Figure) -> None:
+    # the layout moves one super title only, in one weight: the bold lines are laid over its blank ones
+    title, room = getattr(figure, "_trackroller_title", ""), getattr(figure, "_suptitle", None)
+    if not title or room is None:
+        return
+    figure.draw_without_rendering()
+    top = room.get_window_extent().transformed(figure.transFigure.inverted()).y1
+    figure.text(0.015, top, title, ha="left", va="top", fontsize=7.5, fontweight="bold", linespacing=1.17,
+                in_layout=False)  # fmt: skip
+    figure._trackroller_title = ""  # type: ignore[attr-defined]
+
+
+def log_ticks(axis: Any, low: float, high: float) -> None:
+    """Ticks of a logarithmic axis: decades when there are many, 1-2-5 with plain numbers when there are few."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+
+    decades = math.log10(high / low) if low > 0 and high > low else 0.0
+    if not 0 < decades <= 1.6:
+        return
+    few = decades < 0.7
+    axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]) if few else LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: number(float(f"{value:.3g}"))))
+    axis.set_minor_locator(NullLocator())
 
 
 def finish(figure: Figure) -> None:
@@ -100,6 +151,7 @@ def finish(figure: Figure) -> None:
 def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     """Write `name`.svg and `name`.png; both whole or not at all. Result: the two paths."""
     out_dir.mkdir(parents=True, exist_ok=True)
+    _set_title(figure)
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
     for path in paths:
         part = path.with_name(f".{path.name}.part")
@@ -134,6 +186,16 @@ def plain(name: str) -> str:
     return name.replace("_", " ")
 
 
+def capital(text: str) -> str:
+    """Text with a capital first letter, the rest as it is."""
+    return text[:1].upper() + text[1:]
+
+
+def long_name(name: str) -> str:
+    """A factor in words, for running text."""
+    return PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
+
+
 def factor_label(name: str, units: str | None = None) -> str:
     """Axis label of a factor: long name, symbol, unit."""
     parameter = PARAMETERS.get(name)
@@ -156,6 +218,11 @@ def number(value: float) -> str:
     if size >= 1e4:
         return f"{float(f'{value:.3g}'):,.0f}".replace(",", " ").replace("-", "−")
     return f"{value:.4g}".replace("-", "−")
+
+
+def rounded(value: float, figures: int) -> str:
+    """`number` of a value cut to so many figures."""
+    return number(float(f"{value:.{figures}g}"))
 
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
