@@ -1,0 +1,83 @@
+"""How fast the solver is, and how much faster than a plain NumPy transcription of the published equations.
+
+    python benchmarks/speed.py [--cases N] [--skip-transcription]
+
+Everything is timed in one run, compilation excluded and stated apart. Run it on a quiet machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import trackroller as tr
+
+
+def load_study(n: int, seed: int = 1) -> list[tr.Case]:
+    """Load, friction and material vary; the curvatures are fixed."""
+    rng = np.random.default_rng(seed)
+    materials = ("1.7225-normalised", "PA6", "POM", "EN AW-7075")
+    return [tr.Case(friction_coefficient=rng.uniform(0.02, 0.4), axial_force=rng.uniform(-30, 30),
+                    motor_force=rng.uniform(-20, 20), radial_force=-rng.uniform(100, 300),
+                    roller_material=str(rng.choice(materials)), guide_material=materials[0]) for _ in range(n)]  # fmt: skip
+
+
+def geometry_study(n: int, seed: int = 2) -> list[tr.Case]:
+    """Every curvature is new."""
+    rng = np.random.default_rng(seed)
+    return [tr.Case(friction_coefficient=rng.uniform(0.02, 0.4), axial_force=rng.uniform(-30, 30),
+                    motor_force=rng.uniform(-20, 20), contact_angle=rng.uniform(20, 60),
+                    axis_distance=rng.uniform(15, 40), roller_profile_radius=-rng.uniform(6.2, 12),
+                    guide_curve_radius=float(rng.choice([np.inf, 220, 60, -300]))) for _ in range(n)]  # fmt: skip
+
+
+def rate(cases: list[tr.Case], outputs: tuple[str, ...], accuracy: str = "standard", repeats: int = 3) -> float:
+    """Cases per second, the best of `repeats`."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        tr.solve(cases, outputs=outputs, accuracy=accuracy)
+        times.append(time.perf_counter() - start)
+    return len(cases) / min(times)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--skip-transcription", action="store_true")
+    args = parser.parse_args()
+    complete = ("forces", "contact", "peak_stress", "life")
+    start = time.perf_counter()
+    tr.solve(tr.Case(), outputs=complete)
+    first = time.perf_counter() - start
+    start = time.perf_counter()
+    tr.solve(tr.Case(), outputs=complete)
+    result = {
+        "cores": os.cpu_count(),
+        "first_call_seconds": first,
+        "one_case_seconds": time.perf_counter() - start,
+        "complete_load_study_per_second": rate(load_study(args.cases), complete),
+        "complete_geometry_study_per_second": rate(geometry_study(args.cases), complete),
+        "forces_and_contact_per_second": rate(load_study(10 * args.cases), ("forces", "contact")),
+        "preview_per_second": rate(load_study(args.cases), complete, "preview"),
+        "reference_per_second": rate(load_study(max(args.cases // 10, 20)), complete, "reference"),
+    }
+    if not args.skip_transcription:
+        from published_transcription import time_transcription
+
+        published = time_transcription(tr.Case(motor_force=0))
+        result["transcription"] = published
+        result["ratio_to_transcription"] = published["seconds_per_case"] * result["complete_load_study_per_second"]
+    print(json.dumps(result, indent=2, default=float))
+
+
+if __name__ == "__main__":
+    main()
