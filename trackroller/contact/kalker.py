@@ -7,6 +7,7 @@ element: |tau| <= mu p, and tau = -mu p s/|s| where it slides. Rectangular eleme
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -115,13 +116,12 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settin
     scale = friction * ellipse.max_pressure
     x = a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
     law = settings.law or constant()
-    values = np.broadcast_to(law.factor, (n, law.factor.size))
     with np.errstate(divide="ignore", invalid="ignore"):
-        constants = np.stack([elastic.poisson_ratio + 0.0 * scale, elastic.coupling / friction], axis=1)
+        coupling = elastic.coupling / friction
     slip, report = np.empty_like(traction), np.empty((n, batch.REPORT))
     control = np.array([settings.tolerance, settings.steps, settings.krylov])
-    batch.solve_batch(a, b, scale, scale / elastic.shear_modulus, constants, creep.along(x), creep.lateral, creep.spin,
-                      height, share, law.speed / settings.travel_speed, np.ascontiguousarray(values), control,
+    batch.solve_batch(a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x), creep.lateral, creep.spin,
+                      height, share, law.speed / settings.travel_speed, law.factor, control,
                       traction, slip, report)  # fmt: skip
     return slip, report
 
@@ -257,8 +257,7 @@ class KalkerLaw:
     def __call__(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> Resultants:
         settings = self.settings
         if not fine:
-            settings = KalkerSettings(settings.elements // 2, settings.tolerance, settings.steps, settings.krylov, False,
-                                      settings.profile_slip, settings.law, settings.travel_speed)  # fmt: skip
+            settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
         keys = [(int(row), int(2 * i >= len(rows)), fine) for i, row in enumerate(rows)]
         start = None
         if all(key in self._starts for key in keys):

@@ -83,60 +83,77 @@ def _sums(traction, slip, rigid, bound, rho, share, a, b, report):
 
 
 @njit(cache=True)
-def _one_patch(a, b, ratio, elastic, along, lateral, spin, height, share, law, control, traction, slip, report):
-    """Solve one patch; `traction` is the start. ratio = mu p_max / G, elastic = (nu, K / mu)."""
-    ny, nx = height.shape
-    c = math.sqrt(a * b)
-    hx, hy = 2.0 * a / (nx * c), 2.0 * b / (ny * c)
-    multipliers, own = prepare(hx, hy, elastic[0], ny, nx)
-    rigid = _rigid_slip(along, lateral, spin, b, 1.0 / ratio, ny)
-    if elastic[1] != 0.0:
-        driver = rigid + elastic[1] * coupling_slip(height, hx, hy)
-    else:
-        driver = rigid
-    bound = height.copy()
-    speeds, values, speed_scale = law[0], law[1], ratio
-    friction = np.ones((ny, nx))
-    error, steps, products, largest = 0.0, 0, 0, 0.0
+def _friction_sweeps(multipliers, own, hy, driver, height, speeds, values, speed_scale, control, traction, slip,
+                     bound, report):  # fmt: skip
+    """Newton's method inside a fixed point for the friction of each element; bound (ny, nx) is that of the last."""
+    friction = np.ones(height.shape)
     for sweep in range(FRICTION_SWEEPS):
-        s, largest, used, multiplied = newton(
-            multipliers, own, hy, driver, bound, traction, control[0], int(control[1]), int(control[2])
+        largest, used, multiplied = newton(
+            multipliers, own, hy, driver, bound, traction, slip, control[0], int(control[1]), int(control[2])
         )
-        slip[:] = s
-        steps += used
-        products += multiplied
+        report[RESIDUAL] = largest
+        report[STEPS] += used
+        report[PRODUCTS] += multiplied
         if speeds.size == 1:
             break
-        error = _friction_field(slip, speed_scale, speeds, values, 1.0 if sweep < 8 else 0.5, friction)
-        if error < FRICTION_TOLERANCE:
+        mixing = 1.0 if sweep < 8 else 0.5
+        report[FRICTION_ERROR] = _friction_field(slip, speed_scale, speeds, values, mixing, friction)
+        if report[FRICTION_ERROR] < FRICTION_TOLERANCE:
             break
-        bound = height * friction
+        for i in range(height.shape[0]):
+            for j in range(height.shape[1]):
+                bound[i, j] = height[i, j] * friction[i, j]
+
+
+@njit(cache=True)
+def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, height, share, speeds, values, control,
+               traction, slip, report):  # fmt: skip
+    """Solve one patch; `traction` is the start. ratio = mu p_max / G, coupling = K / mu."""
+    ny, nx = height.shape
+    report[:] = 0.0
+    factor = 1.0 / ratio if ratio > 0.0 else 1.0
+    rigid = _rigid_slip(along, lateral, spin, b, factor, ny)
+    if not (ratio > 0.0 and a > 0.0 and b > 0.0 and math.isfinite(ratio * a * b)):
+        traction[:] = 0.0
+        slip[:] = rigid
+        return
+    c = math.sqrt(a * b)
+    hx, hy = 2.0 * a / (nx * c), 2.0 * b / (ny * c)
+    multipliers, own = prepare(hx, hy, poisson, ny, nx)
+    driver = rigid
+    if coupling != 0.0:
+        driver = coupling_slip(height, hx, hy)
+        for i in range(ny):
+            for j in range(nx):
+                driver[0, i, j] = rigid[0, i, j] + coupling * driver[0, i, j]
+                driver[1, i, j] = rigid[1, i, j] + coupling * driver[1, i, j]
+    bound = height.copy()
+    _friction_sweeps(multipliers, own, hy, driver, height, speeds, values, ratio, control, traction, slip, bound,
+                     report)  # fmt: skip
     _sums(traction, slip, rigid, bound, 1.0 / own, share, a, b, report)
-    report[RESIDUAL], report[STEPS], report[PRODUCTS], report[FRICTION_ERROR] = largest, steps, products, error
+    for k in range(3):
+        report[k] *= scale
+    report[POWER] *= scale * ratio
+    report[WORK] *= scale * ratio
+    for i in range(ny):
+        for j in range(nx):
+            slip[0, i, j] *= ratio
+            slip[1, i, j] *= ratio
 
 
 @njit(cache=True, parallel=True)
-def solve_batch(a, b, traction_scale, ratio, elastic, along, lateral, spin, height, share, speeds, values, control,
+def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, height, share, speeds, values, control,
                 traction, slip, report):  # fmt: skip
     """Patches i = 0..n-1, one per core at a time.
 
-    a, b [mm], traction_scale = mu p_max [MPa], ratio = mu p_max / G, lateral [-], spin [1/mm]: (n,); elastic (n, 2):
-    nu, K / mu; along (n, nx): rolling part of the rigid slip; height, share (ny, nx): `unit_cells`; speeds (m,):
-    slip per travel speed, and values (n, m): friction over its reference; control: tolerance, Newton steps, Krylov
-    space. traction (n, 2, ny, nx): start and result over mu p_max; slip likewise, per travel speed; report (n, REPORT).
+    a, b [mm], scale = mu p_max [MPa], ratio = mu p_max / G, nu, K / mu, lateral [-], spin [1/mm]: (n,);
+    along (n, nx): rolling part of the rigid slip; height, share (ny, nx): `unit_cells`; speeds (m,): slip per travel
+    speed, and values (m,): friction over its reference; control: tolerance, Newton steps, Krylov space.
+    traction (n, 2, ny, nx): start and result over mu p_max; slip likewise, per travel speed; report (n, REPORT).
     """
     for i in prange(a.size):
-        report[i] = 0.0
-        if not (ratio[i] > 0.0 and a[i] > 0.0 and b[i] > 0.0 and math.isfinite(ratio[i] * a[i] * b[i])):
-            traction[i] = 0.0
-            slip[i] = _rigid_slip(along[i], lateral[i], spin[i], b[i], 1.0, height.shape[0])
-            continue
-        _one_patch(a[i], b[i], ratio[i], elastic[i], along[i], lateral[i], spin[i], height, share,
-                   (speeds, values[i]), control, traction[i], slip[i], report[i])  # fmt: skip
-        slip[i] *= ratio[i]
-        report[i, :3] *= traction_scale[i]
-        report[i, POWER] *= traction_scale[i] * ratio[i]
-        report[i, WORK] *= traction_scale[i] * ratio[i]
+        _one_patch(a[i], b[i], scale[i], ratio[i], poisson[i], coupling[i], along[i], lateral[i], spin[i], height, share,
+                   speeds, values, control, traction[i], slip[i], report[i])  # fmt: skip
 
 
 @njit(cache=True, parallel=True)

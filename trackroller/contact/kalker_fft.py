@@ -161,13 +161,15 @@ def forward(field, ly, lx, work):
         for j in range(nx):
             work[0, i * nx + j] = field[0, i, j]
             work[1, i * nx + j] = field[1, i, j]
-    work[0, ny * nx : ly * nx] = 0.0
-    work[1, ny * nx : ly * nx] = 0.0
+    for k in range(ny * nx, ly * nx):
+        work[0, k] = 0.0
+        work[1, k] = 0.0
     here = 2 if transform(work[0], work[1], work[2], work[3], ly, nx, -1.0) else 0
     there = 2 - here
     _transpose(work[here], work[here + 1], work[there], work[there + 1], ly, nx, ly)
-    work[there, nx * ly : lx * ly] = 0.0
-    work[there + 1, nx * ly : lx * ly] = 0.0
+    for k in range(nx * ly, lx * ly):
+        work[there, k] = 0.0
+        work[there + 1, k] = 0.0
     swapped = transform(work[there], work[there + 1], work[here], work[here + 1], lx, ly, -1.0)
     return here if swapped else there
 

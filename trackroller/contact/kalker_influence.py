@@ -25,7 +25,7 @@ LEADING_SHARE = 0.45
 HALO = 3  # rows of displacements beside those of the elements: one behind, two ahead
 
 
-@njit(cache=True, fastmath=FAST, inline="always")
+@njit(cache=True, fastmath=FAST)
 def _log_part(x, y):
     """x asinh(y / |x|), 0 at x = 0."""
     return 0.0 if x == 0.0 else x * math.asinh(y / abs(x))
@@ -49,7 +49,19 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
             corner[0, j, i] = along_y * (1.0 - poisson) + along_x
             corner[1, j, i] = along_x * (1.0 - poisson) + along_y
             corner[2, j, i] = -poisson * math.sqrt(x * x + y * y)
-    return (corner[:, 1:, 1:] - corner[:, 1:, :-1] - corner[:, :-1, 1:] + corner[:, :-1, :-1]) / math.pi
+    return _over_element(corner, 1.0 / math.pi)
+
+
+@njit(cache=True)
+def _over_element(corner, factor):
+    """Corner values (m, rows + 1, columns + 1) of a double antiderivative to integrals over elements."""
+    out = np.empty((corner.shape[0], corner.shape[1] - 1, corner.shape[2] - 1))
+    for c in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            for i in range(out.shape[2]):
+                ahead = corner[c, j + 1, i + 1] - corner[c, j + 1, i]
+                out[c, j, i] = factor * (ahead - corner[c, j, i + 1] + corner[c, j, i])
+    return out
 
 
 @njit(cache=True)
@@ -67,7 +79,7 @@ def pressure_displacements(hx, hy, ny, nx, below, above):
             log = 0.5 * math.log(x * x + y * y)
             corner[0, j, i] = y * log + x * math.atan(y / x)
             corner[1, j, i] = x * log + y * math.atan(x / y)
-    return -(corner[:, 1:, 1:] - corner[:, 1:, :-1] - corner[:, :-1, 1:] + corner[:, :-1, :-1]) / math.pi
+    return _over_element(corner, -1.0 / math.pi)
 
 
 @njit(cache=True)
@@ -87,8 +99,9 @@ def spectra(kernel, ny, nx, ly, lx):
                 fields[0, row, column] = kernel[part, j, i] * scale
                 fields[1, row, column] = kernel[part + 1, j, i] * scale
         here = forward(fields, ly, lx, work)
-        result[part] = work[here]
-        result[part + 1] = work[here + 1]
+        for k in range(lx * ly):
+            result[part, k] = work[here, k]
+            result[part + 1, k] = work[here + 1, k]
     return result
 
 
@@ -103,12 +116,13 @@ def prepare(hx, hy, poisson, ny, nx):
     """Spectral multipliers of the tractions and the mean slip that an element's unit traction causes at itself."""
     ly, lx = padded_lengths(ny, nx)
     u = displacements(hx, hy, poisson, ny, nx, 1, 2)
-    centre = 0.5 * (u[0, ny : ny + 3, nx - 1] + u[1, ny : ny + 3, nx - 1])
-    own = (1.5 * centre[0] - 2.0 * centre[1] + 0.5 * centre[2]) / hy
     kernel = np.zeros((4, u.shape[1], u.shape[2]))
-    kernel[0] = 0.5 * (u[0] + u[1])
-    kernel[2] = 0.5 * (u[0] - u[1])
-    kernel[3] = u[2]
+    for j in range(u.shape[1]):
+        for i in range(u.shape[2]):
+            kernel[0, j, i] = 0.5 * (u[0, j, i] + u[1, j, i])
+            kernel[2, j, i] = 0.5 * (u[0, j, i] - u[1, j, i])
+            kernel[3, j, i] = u[2, j, i]
+    own = (1.5 * kernel[0, ny, nx - 1] - 2.0 * kernel[0, ny + 1, nx - 1] + 0.5 * kernel[0, ny + 2, nx - 1]) / hy
     return spectra(kernel, ny, nx, ly, lx), own
 
 
@@ -117,20 +131,30 @@ def coupling_slip(pressure, hx, hy):
     """Slip -du/dy (2, ny, nx) of a pressure field (ny, nx) for K = G = 1, by central differences."""
     ny, nx = pressure.shape
     ly, lx = padded_lengths(ny, nx)
-    kernel = np.zeros((4, 2 * ny - 1 + HALO, 2 * nx - 1))
-    kernel[:2] = pressure_displacements(hx, hy, ny, nx, 1, 2)
-    field = np.zeros((2, ny, nx))
-    field[0] = pressure
-    halo = np.empty((2, ny + HALO, nx))
+    u = pressure_displacements(hx, hy, ny, nx, 1, 2)
+    kernel, field = np.zeros((4, u.shape[1], u.shape[2])), np.zeros((2, ny, nx))
+    for j in range(u.shape[1]):
+        for i in range(u.shape[2]):
+            kernel[0, j, i], kernel[1, j, i] = u[0, j, i], u[1, j, i]
+    halo, slip = np.empty((2, ny + HALO, nx)), np.empty((2, ny, nx))
+    for j in range(ny):
+        for i in range(nx):
+            field[0, j, i] = pressure[j, i]
     displace(spectra(kernel, ny, nx, ly, lx), field, ly, lx, workspace(ly, lx), halo)
-    return (halo[:, :ny] - halo[:, 2 : ny + 2]) / (2.0 * hy)
+    for c in range(2):
+        for j in range(ny):
+            for i in range(nx):
+                slip[c, j, i] = (halo[c, j, i] - halo[c, j + 2, i]) / (2.0 * hy)
+    return slip
 
 
 @njit(cache=True)
 def leading_rows(bound):
     """Row of the leading element (largest y with a traction bound > 0) of each column, -1 for none."""
     ny, nx = bound.shape
-    rows = np.full(nx, -1)
+    rows = np.empty(nx, np.int64)
+    for j in range(nx):
+        rows[j] = -1
     for i in range(ny):
         for j in range(nx):
             if bound[i, j] > 0.0:

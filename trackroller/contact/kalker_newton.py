@@ -125,7 +125,8 @@ def gmres(multipliers, derivative, rho, right, ly, lx, hy, leading, work, halo, 
     solution = np.zeros(flat.size)
     if norm == 0.0:
         return solution.reshape(shape), 0
-    basis[0] = flat / norm
+    for j in range(flat.size):
+        basis[0, j] = flat[j] / norm
     rhs[0] = norm
     done = 0
     for k in range(steps):
@@ -141,49 +142,56 @@ def gmres(multipliers, derivative, rho, right, ly, lx, hy, leading, work, halo, 
         for j in range(i + 1, done):
             rhs[i] -= hessenberg[i, j] * rhs[j]
         rhs[i] = rhs[i] / hessenberg[i, i] if hessenberg[i, i] != 0.0 else 0.0
-        solution += rhs[i] * basis[i]
+        for j in range(flat.size):
+            solution[j] += rhs[i] * basis[i, j]
     return solution.reshape(shape), done
 
 
+@njit(cache=True, fastmath=FAST)
+def _move(start, step, length, out):
+    """out = start + length step, all (2, ny, nx)."""
+    for c in range(2):
+        for i in range(start.shape[1]):
+            for j in range(start.shape[2]):
+                out[c, i, j] = start[c, i, j] + length * step[c, i, j]
+
+
 @njit(cache=True)
-def newton(multipliers, own, hy, rigid, bound, traction, tolerance, limit, krylov):
+def newton(multipliers, own, hy, rigid, bound, traction, slip, tolerance, limit, krylov):
     """Tractions (2, ny, nx) of the friction law for the rigid slip `rigid` and the bounds `bound`.
 
-    `traction` is the start and is overwritten. Returns slip, residual (largest component of the law's
-    residual), Newton steps, products.
+    `traction` is the start and is overwritten, as is `slip`. Returns the residual (largest component of the law's
+    residual), Newton steps, products. Steps are halved until the residual's norm falls (at most four times).
     """
     ny, nx = bound.shape
     ly, lx = padded_lengths(ny, nx)
-    work = np.empty((4, lx * ly))
-    halo = np.empty((2, ny + HALO, nx))
+    work, halo = np.empty((4, lx * ly)), np.empty((2, ny + HALO, nx))
     leading = leading_rows(bound)
     rho = 1.0 / own
     basis = np.empty((krylov + 1, 2 * ny * nx))
-    product = np.empty((2, ny, nx))
-    value, trial_value = np.empty((2, ny, nx)), np.empty((2, ny, nx))
-    derivative = np.empty((3, ny, nx))
-    change = np.empty((2, ny, nx))
+    product, change = np.empty((2, ny, nx)), np.empty((2, ny, nx))
+    value, derivative = np.empty((2, ny, nx)), np.empty((3, ny, nx))
+    new_traction, new_slip = np.empty((2, ny, nx)), np.empty((2, ny, nx))
     multiply(multipliers, traction, ly, lx, hy, leading, work, halo, product)
-    slip = rigid + product
+    _move(rigid, product, 1.0, slip)
     largest, norm = residual(traction, slip, bound, rho, value)
     products, iteration = 1, 0
     while largest > tolerance and iteration < limit:
         iteration += 1
         jacobian(traction, slip, bound, rho, derivative)
         inner = min(0.1, max(1e-4, 0.3 * tolerance / largest))
-        step, used = gmres(multipliers, derivative, rho, -value, ly, lx, hy, leading, work, halo, inner, basis, product)
+        step, used = gmres(multipliers, derivative, rho, value, ly, lx, hy, leading, work, halo, inner, basis, product)
         multiply(multipliers, step, ly, lx, hy, leading, work, halo, change)
         products += used + 1
-        length = 1.0
+        length = -1.0
         while True:
-            trial_largest, trial_norm = residual(
-                traction + length * step, slip + length * change, bound, rho, trial_value
-            )
-            if trial_norm < (1.0 - 0.1 * length) * norm or length < 0.05:
+            _move(traction, step, length, new_traction)
+            _move(slip, change, length, new_slip)
+            largest, new_norm = residual(new_traction, new_slip, bound, rho, value)
+            if new_norm < (1.0 + 0.1 * length) * norm or length > -0.05:
                 break
             length *= 0.5
-        traction += length * step
-        slip += length * change
-        value, trial_value = trial_value, value
-        largest, norm = trial_largest, trial_norm
-    return slip, largest, iteration, products
+        norm = new_norm
+        _move(new_traction, step, 0.0, traction)
+        _move(new_slip, step, 0.0, slip)
+    return largest, iteration, products
