@@ -1,0 +1,76 @@
+"""What is needed to repeat a result: versions, commit, study, materials, date."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import platform
+import subprocess
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trackroller import __version__
+from trackroller.study.identity import RESULTS_VERSION, physics_code
+
+if TYPE_CHECKING:
+    from trackroller.study.config import Study
+
+_PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "SALib", "snakemake")
+
+
+def git_commit() -> str:
+    """Commit of the source tree ('+changed' when it differs from it), 'unknown' outside one."""
+    root = Path(__file__).resolve().parents[2]
+    if not (root / ".git").exists():
+        return "unknown"
+    try:
+        def git(*words: str) -> str:
+            return subprocess.run(["git", "-C", str(root), *words], capture_output=True, text=True, timeout=10,
+                                  check=True).stdout.strip()  # fmt: skip
+
+        changed = git("status", "--porcelain", "--untracked-files=no", "--", "trackroller")
+        return git("rev-parse", "HEAD") + ("+changed" if changed else "")
+    except (OSError, subprocess.SubprocessError):
+        return "unknown"
+
+
+def versions() -> dict[str, str]:
+    """Versions of this package, Python and what the numbers come from."""
+    found = {"trackroller": __version__, "python": platform.python_version()}
+    for name in _PACKAGES:
+        try:
+            found[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return found
+
+
+def materials_used(study: Study, names: list[str]) -> dict[str, Any]:
+    """Values of the materials by name."""
+    return {name: study.materials.material(name).as_dict() for name in names}
+
+
+def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
+    """Global attributes of the gathered set."""
+    config = study.config
+    told = {
+        "Conventions": "CF-1.11",
+        "title": f"Parameter study '{study.name}' of locating-bearing track rollers",
+        "comment": config.description,
+        "source": f"trackroller {__version__}",
+        "study": study.merged(),
+        "study_name": study.name,
+        "design": config.design,
+        "seed": config.seed,
+        "accuracy": str(config.accuracy),
+        "results_version": RESULTS_VERSION,
+        "physics_code": physics_code(),
+        "versions": json.dumps(versions()),
+        "git_commit": git_commit(),
+        "materials": json.dumps(materials_used(study, materials), default=str),
+        "date_created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+    }
+    if study.path is not None:
+        told["study_file"] = study.path.name
+    return told
