@@ -36,6 +36,8 @@ def bands(ds: xr.Dataset, output: str = "") -> tuple[Figure, style.FigureInfo] |
     shown = next((o for name in WANTED for o in found if o.name == name), found[0] if found else None)
     if shown is None or not design.factors:
         return None
+    from matplotlib.ticker import MaxNLocator
+
     columns = min(3, len(design.factors))
     rows = -(-len(design.factors) // columns)
     width = 170.0 if columns == 3 else style.COLUMN_MM
@@ -46,13 +48,16 @@ def bands(ds: xr.Dataset, output: str = "") -> tuple[Figure, style.FigureInfo] |
         first = first or axes
         at, levels, table = percentiles(design.columns[name], factor, shown)
         _draw(axes, at, table, factor, levels)
-        axes.set_xlabel(style.factor_label(name))
+        axes.set_xlabel(words.upper(style.factor_label(name)))
+        if factor.ordered:
+            axes.xaxis.set_major_locator(MaxNLocator(4))
         if i % columns:
             axes.tick_params(labelleft=False)
-        words_of = words.band(factor_name(name), levels, table[2], shown.long_name, style.unit_text(shown.units))
+        words_of = words.band(factor_name(name), levels, table[2], shown.long_name, shown.units, factor.ordered)
         said.append((_change(table[2]), words_of))
     if first is not None and shown.scale == "log10":
         first.set_yscale("log")
+        style.log_ticks(first.yaxis, *first.get_ylim())
     figure.supylabel(style.with_unit(words.upper(shown.long_name), shown.units), fontsize=7.5)
     style.head(figure, f"{words.upper(shown.long_name)} against each factor",
                "Line: median; dark band: middle half; light band: 5 to 95 % of the cases.")  # fmt: skip
@@ -78,15 +83,18 @@ def percentiles(column: np.ndarray, factor: Factor, shown: Output) -> tuple[np.n
     Returns places on the axis (m,), their labels, and values of shape (5, m) on the natural scale.
     """
     values = 10**shown.values if shown.scale == "log10" else shown.values
-    few = factor.discrete and len(factor.levels) <= 15
-    if few:
-        order = sorted(factor.levels) if factor.ordered else list(factor.levels)
+    if factor.discrete and len(factor.levels) > 15 and factor.ordered:
+        found: list = []
+    else:  # a Morris design shows few values of a continuous factor
+        found = list(factor.levels) if factor.discrete else np.unique(column.astype(float)).tolist()
+    if 0 < len(found) <= 15 or not factor.ordered:
+        order = sorted(found) if factor.ordered else found
         if factor.ordered:
             masks = [column.astype(float) == level for level in order]
         else:
             masks = [np.array([value == level for value in column]) for level in order]
         at = np.array(order, dtype=float) if factor.ordered else np.arange(len(order), dtype=float)
-        labels = [label(level) for level in order]
+        labels = [label(level) if factor.discrete else words.number(level) for level in order]
     else:
         edges = np.unique(np.quantile(column.astype(float), np.linspace(0, 1, BINS + 1)))
         index = np.clip(np.searchsorted(edges, column.astype(float), side="right") - 1, 0, len(edges) - 2)

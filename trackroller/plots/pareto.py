@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_LINES = 40
+CONDITIONS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity")
 Drawn = tuple["Figure", style.FigureInfo] | None
 
 
@@ -48,6 +49,15 @@ def _objectives(front: xr.Dataset) -> list[tuple[str, str]]:
     return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]  # type: ignore[misc]
 
 
+def _given(front: xr.Dataset) -> str:
+    """A warning where conditions of use are among the factors: their best value is nobody's to choose."""
+    given = [n.replace("_", " ") for n in front.attrs["factors"].split(", ")
+             if n in CONDITIONS or "load" in n or "drive" in n]  # fmt: skip
+    if not given:
+        return ""
+    return f" Treated as free to choose, though set by the use: {words.listing(given)}."
+
+
 def _label(front: xr.Dataset, name: str) -> str:
     units, text = front[name].attrs.get("units", ""), front[name].attrs.get("long_name", name)
     return style.with_unit(words.upper(text), units) if units else style.factor_label(name)
@@ -78,13 +88,14 @@ def pareto_front(front: xr.Dataset) -> Drawn:
         good = values[np.isfinite(values)]
         if "life" in name and (good > 0).all() and good.max() > 20 * good.min():
             set_scale("log")
+            style.log_ticks(axes.xaxis if name == x else axes.yaxis, good.min(), good.max())
     axes.set_xlabel(_label(front, x) + (" →" if up_x == "max" else " ←"))
     axes.set_ylabel(_label(front, y) + (" →" if up_y == "max" else " ←"))
     figure.legend(loc="outside lower center", ncols=2)
     style.head(figure, "Designs that no other beats", "Arrows on the axes: the wanted direction.")
     style.finish(figure)
     caption = (f"Pareto set for {front.attrs['objectives'].replace('_', ' ')}; {front.sizes['row']} allowed designs of "
-               f"{front.attrs['rows']}. Left out: {front.attrs['excluded']}.")  # fmt: skip
+               f"{front.attrs['rows']}. Left out: {front.attrs['excluded']}.{_given(front)}")  # fmt: skip
     return figure, style.FigureInfo("pareto-front", caption, words.pareto(front))
 
 
@@ -144,7 +155,8 @@ def _common(front: xr.Dataset, factors: list[str], best: np.ndarray) -> str:
         low, high = np.percentile(values[best], [10, 90])
         wide = (high - low) / max(np.ptp(values), 1e-300)
         if wide < 0.5:
-            said.append((wide, f"{name.replace('_', ' ')} {words.number(low)} to {words.number(high)}"))
+            span = words.number(low) if low == high else f"{words.number(low)} to {words.number(high)}"
+            said.append((wide, f"{name.replace('_', ' ')} {span}"))
     said.sort()
     if not said:
         return "The best designs share no narrow range of any factor."
@@ -193,6 +205,7 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
     left.errorbar(b10, place, xerr=error, color=colours[3], marker="D", markersize=3.5, linestyle="none", capsize=1.5,
                   elinewidth=0.8, markeredgecolor="0.1", markeredgewidth=0.4, label="B10")  # fmt: skip
     left.set_xscale("log")
+    style.log_ticks(left.xaxis, *left.get_xlim())
     left.set_yticks(place, [words.point_words(table, int(p)) for p in rank])
     left.set_xlabel(style.with_unit(words.upper(str(part["output_name"].item())), str(part["output_units"].item())))
     start = np.zeros(len(rank))

@@ -113,13 +113,13 @@ def overview(sens: xr.Dataset) -> Drawn:
 
 def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, head: str) -> Figure:
     """A heat map with its values written in."""
-    figure = style.new_figure(38 + 5.2 * len(rows))
+    figure = style.new_figure(38 + 5.2 * len(rows), style.COLUMN_MM if len(columns) <= 6 else 60 + 8.0 * len(columns))
     axes = figure.add_subplot()
     limit = max(float(np.nanmax(np.abs(table))), 1e-9)
     image = axes.imshow(table, cmap="Greys", vmin=0.0, vmax=limit, aspect="auto")
     for (i, j), value in np.ndenumerate(table):
         if np.isfinite(value):
-            axes.text(j, i, f"{value:.2f}".replace("0.", ".", 1) if abs(value) < 1 else f"{value:.3g}", ha="center",
+            axes.text(j, i, f"{value:.2f}".removeprefix("0") if abs(value) < 10 else f"{value:.3g}", ha="center",
                       va="center", fontsize=6, color="white" if value > 0.6 * limit else "0.1")  # fmt: skip
     axes.set_yticks(range(len(rows)), rows)
     axes.set_xticks(range(len(columns)), columns, rotation=40, ha="right", rotation_mode="anchor")
@@ -150,7 +150,8 @@ def convergence(sens: xr.Dataset, output: str) -> Drawn:
     axes.minorticks_off()
     unit = {"saltelli": "base samples", "morris": "trajectories"}.get(str(sens.attrs["method"]), "rows")
     axes.set_xlabel(f"{unit} [–]")
-    axes.set_ylabel(AXIS[index] + (f" [{effect_unit(sens, output)}]" if index == "mu_star" else " [–]"))
+    short = f"effect μ* [{effect_unit(sens, output)}]" if index == "mu_star" else f"{AXIS[index]} [–]"
+    axes.set_ylabel(short)
     top = [np.nanmax(part[f"{index}_course"].sel(factor=r.factor).values) for r in ranks]
     axes.set_ylim(min(0.0, -0.1 * max(top)), 1.35 * max(top))
     figure.legend(loc="outside lower center", ncols=2)
@@ -168,7 +169,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
     x, y = part["mu_star"].values, part["sigma"].values
     if not np.isfinite(x).any():
         return None
-    figure = style.new_figure(74)
+    figure = style.new_figure(58 + 2.3 * int(np.isfinite(x).sum() + 2))
     axes = figure.add_subplot()
     top = float(np.nanmax(x)) * 1.15 or 1.0
     axes.plot([0, top], [0, top], color="0.4", linestyle="--", linewidth=0.8, label="σ = μ*")
@@ -181,7 +182,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
                       markeredgewidth=0.5, elinewidth=0.7, label=words.upper(rank.name))  # fmt: skip
     unit = effect_unit(sens, output)
     axes.set_xlabel(f"mean absolute effect μ* [{unit}]")
-    axes.set_ylabel(f"standard deviation of the effects σ [{unit}]")
+    axes.set_ylabel(f"spread of the effects σ [{unit}]")
     axes.set_xlim(0, top)
     axes.set_ylim(0, float(np.nanmax(y)) * 1.15 or 1.0)
     figure.legend(loc="outside lower center", ncols=2)

@@ -14,10 +14,10 @@ PAWN_BINS = 10
 GROUPS = 20  # of the grouped jackknife
 
 
-def bins(values: np.ndarray, count: int) -> np.ndarray:
-    """Bin of each row, shape (n,): each different value if there are few, else bins of equal count."""
+def bins(values: np.ndarray, count: int, ordered: bool = True) -> np.ndarray:
+    """Bin of each row, shape (n,): each different value if there are few or no order, else of equal count."""
     different, index = np.unique(values, return_inverse=True)
-    if len(different) <= count:
+    if len(different) <= count or not ordered:
         return index
     order = np.argsort(values, kind="stable")
     out = np.empty(len(values), dtype=int)
@@ -52,15 +52,15 @@ def given_data(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int =
     out["rows_used"] = np.array(len(y))
     if len(y) < MIN_ROWS or constant(y):
         return out
-    out |= firsts(y, unit, seed)
+    out |= firsts(y, unit, ordered, seed)
     for j in range(count):
         if np.ptp(unit[:, j]) > 0:
-            out["pawn"][j], out["pawn_noise"][j] = pawn(y, bins(unit[:, j], PAWN_BINS), seed)
+            out["pawn"][j], out["pawn_noise"][j] = pawn(y, bins(unit[:, j], PAWN_BINS, bool(ordered[j])), seed)
     out["prcc"], out["prcc_low"], out["prcc_high"] = prcc(y, unit, ordered)
     return out
 
 
-def firsts(y: np.ndarray, unit: np.ndarray, seed: int = 0) -> Estimates:
+def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -> Estimates:
     """Only `first`, first_low and first_high of `given_data`, each shape (k,)."""
     good = np.isfinite(y)
     y, unit = y[good], unit[good]
@@ -71,7 +71,7 @@ def firsts(y: np.ndarray, unit: np.ndarray, seed: int = 0) -> Estimates:
     fine = int(np.clip(round(np.sqrt(len(y)) / 2), 4, 40))
     for j in range(count):
         if np.ptp(unit[:, j]) > 0:
-            value, error = first_order(y, bins(unit[:, j], fine), seed)
+            value, error = first_order(y, bins(unit[:, j], fine, bool(ordered[j])), seed)
             out["first"][j] = value
             out["first_low"][j], out["first_high"][j] = value - Z * error, value + Z * error
     return out

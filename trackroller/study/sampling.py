@@ -65,6 +65,18 @@ class SampledDesign:
         """Number of rows."""
         return len(next(iter(self.columns.values()))) if self.columns else 0
 
+    @property
+    def places(self) -> np.ndarray:
+        """As `unit`, with the index of the listed value for every listed factor of a random sample too."""
+        if self.method not in ("lhs", "sobol", "saltelli"):
+            return self.unit
+        places = self.unit.copy()
+        for j, factor in enumerate(self.factors.values()):
+            if factor.discrete:
+                count = len(factor.levels)
+                places[:, j] = np.minimum((self.unit[:, j] * count).astype(int), count - 1)
+        return places
+
 
 def sample(
     factors: Mapping[str, Any],

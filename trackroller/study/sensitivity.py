@@ -57,7 +57,7 @@ def _saltelli(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, 
     out |= convergence.course(lambda n: sobol(lean[:n].ravel(), count, False, seed), at, ("S1", "ST"))
     # rows of A and B only: their mixtures repeat coordinates and would feign more rows than there are
     row = np.arange(len(y)) % step
-    out |= given_data(np.where((row == 0) | (row == step - 1), y, np.nan), design.unit, _ordered(design), seed)
+    out |= given_data(np.where((row == 0) | (row == step - 1), y, np.nan), design.places, _ordered(design), seed)
     used, total = int(out.pop("blocks_used")), int(out.pop("blocks"))
     return out, used, total, at
 
@@ -85,11 +85,13 @@ def _coded(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int
 
 def _given(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
     ordered = _ordered(design)
-    out = given_data(y, design.unit, ordered, seed)
+    places = design.places
+    out = given_data(y, places, ordered, seed)
     at = convergence.sizes(len(y), smallest=64)
 
     def part(n: int) -> Fields:  # every so many rows: the first rows of a table may be sorted
-        return firsts(y[:: max(1, len(y) // n)], design.unit[:: max(1, len(y) // n)], seed)
+        every = max(1, len(y) // n)
+        return firsts(y[::every], places[::every], ordered, seed)
 
     out |= convergence.course(part, at, ("first",))
     return out, int(out.pop("rows_used")), len(y), at
@@ -251,11 +253,9 @@ def analyse(study_nc: str | Path, out_nc: str | Path, names: Iterable[str] | Non
     -------
     The dataset that was written, see `analyse_dataset`.
     """
-    import os
+    from trackroller.study.files import write_whole
 
     with xr.open_dataset(study_nc) as opened:
         result = analyse_dataset(opened.load(), names, keep, natural)
-    beside = Path(f"{out_nc}.part")
-    result.to_netcdf(beside)
-    os.replace(beside, out_nc)
+    write_whole(Path(out_nc), lambda part: result.to_netcdf(part))
     return result

@@ -223,17 +223,25 @@ def overview(sens: xr.Dataset) -> str:
     return "; ".join(f"{upper(name)} leads for {listing(what)}" for name, what in lead.items()) + "."
 
 
-def band(factor: str, levels: Sequence[str], median: np.ndarray, what: str, unit: str) -> str:
-    """How the median of an output goes along one factor."""
+def band(factor: str, levels: Sequence[str], median: np.ndarray, what: str, unit: str, ordered: bool = True) -> str:
+    """How the median of an output goes along one factor, or between the values of a list without order."""
     good = np.flatnonzero(np.isfinite(median))
     if good.size < 2:
-        return f"The median of {what} cannot be followed along {factor}."
-    first, last = float(median[good[0]]), float(median[good[-1]])
-    verb = "rises" if last > first else "falls"
-    factor_of = max(first, last) / min(first, last) if min(first, last) > 0 else np.nan
-    if abs(last - first) <= 0.05 * max(abs(first), abs(last)):
+        return f"the median {what} cannot be followed along {factor}"
+    low, high = good[np.argmin(median[good])], good[np.argmax(median[good])]
+    least, most = float(median[low]), float(median[high])
+    if most - least <= 0.05 * max(abs(least), abs(most)):
         return f"the median {what} hardly changes with {factor}"
-    times = f" (by a factor of {number(factor_of)})" if np.isfinite(factor_of) else ""
+    if not ordered:
+        return (f"the median {what} is {with_unit(least, unit)} with {factor} {levels[low]} and "
+                f"{with_unit(most, unit)} with {levels[high]}")  # fmt: skip
+    first, last = float(median[good[0]]), float(median[good[-1]])
+    if abs(last - first) < 0.5 * (most - least):
+        return (f"the median {what} goes between {number(least)} and {with_unit(most, unit)} along {factor}, "
+                f"without a steady trend")  # fmt: skip
+    verb = "rises" if last > first else "falls"
+    ratio = max(first, last) / min(first, last) if min(first, last) > 0 else np.nan
+    times = f" (by a factor of {number(ratio)})" if np.isfinite(ratio) else ""
     return (f"the median {what} {verb} from {number(first)} to {with_unit(last, unit)}{times} as {factor} goes from "
             f"{levels[good[0]]} to {levels[good[-1]]}")  # fmt: skip
 
