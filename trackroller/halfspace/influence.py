@@ -12,6 +12,7 @@ The kernels are compiled on first use and cached on disk; the sums release the i
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numba
@@ -115,14 +116,14 @@ def sum_points(points, corners, near, nodes, far, box, reach, kind, out):  # pra
 
 
 @numba.njit(cache=True, error_model="numpy", nogil=True)
-def corner_table(x, y, z):  # pragma: no cover (compiled)
-    """`bilinear_corner` at every pair of y (ny,) and x (nx,), depth z: (36, ny, nx), lengths in the grid's unit."""
-    table = np.empty((36, y.size, x.size))
+def corner_table(x, y, z, poisson_ratio):  # pragma: no cover (compiled)
+    """`bilinear_corner` as A + nu B at every pair of y (ny,) and x (nx,), depth z: (18, ny, nx), in grid units."""
+    table = np.empty((18, y.size, x.size))
     for j in range(y.size):
         for i in range(x.size):
             k = bilinear_corner(x[i], y[j], z)
-            for c in range(36):
-                table[c, j, i] = k[c]
+            for c in range(18):
+                table[c, j, i] = k[c] + poisson_ratio * k[c + 18]
     return table
 
 
@@ -135,13 +136,14 @@ def stress_parts(loads: CornerLoads, points: Array) -> Array:
     return out.reshape(-1, 2, 6)
 
 
-def hat_influence(hx: float, hy: float, nx: int, ny: int, depth: float) -> Array:
-    """Stress of a unit hat load (bilinear, one node) at node offsets -(n-1)..n-1 and `depth` [mm].
+def hat_influence(hx: float, hy: float, nx: int, ny: int, depth: float, poisson_ratio: float) -> Iterator[Array]:
+    """Stress of unit hat loads (bilinear, one node) at node offsets -(n-1)..n-1 and `depth` [mm].
 
-    Result (2, 3, 6, 2 ny - 1, 2 nx - 1): A and B, load, component, offsets [MPa per MPa].
+    Yields (6, 2 ny - 1, 2 nx - 1) for the loads q_x, q_y, q_z in turn [MPa per MPa]; one at a time saves memory.
     """
     length = max(hx, hy)
     gx, gy = hx / length, hy / length
-    table = corner_table(gx * np.arange(-nx, nx + 1), gy * np.arange(-ny, ny + 1), depth / length)
-    hats = np.diff(np.diff(table, n=2, axis=1), n=2, axis=2) / (gx * gy)
-    return hats.reshape(2, 3, 6, 2 * ny - 1, 2 * nx - 1)
+    table = corner_table(gx * np.arange(-nx, nx + 1), gy * np.arange(-ny, ny + 1), depth / length, poisson_ratio)
+    for load in range(3):
+        corners = table[6 * load : 6 * load + 6]
+        yield np.diff(np.diff(corners, n=2, axis=1), n=2, axis=2) / (gx * gy)

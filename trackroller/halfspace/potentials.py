@@ -308,7 +308,9 @@ def main() -> None:
     """Write `kernels.py` beside this file."""
     here = Path(__file__)
     here.with_name("kernels.py").write_text(module_source(), encoding="utf-8")
-    here.with_name("influence.py").touch()  # else numba would go on using sums compiled with the former kernels
+    for module in here.parent.glob("*.py"):
+        if "halfspace.kernels import" in module.read_text(encoding="utf-8"):
+            module.touch()  # else numba would go on using what it compiled with the former kernels
 
 
 if __name__ == "__main__":
