@@ -140,7 +140,7 @@ def stress_on_grid(
 
     Parameters as there; depths : (nz,) [mm]. Returns (nz, ny, nx, 6) [MPa].
     Memory: about 3 kB per node of one plane besides the result (500 x 500 nodes stay under 1 GB); time about 10
-    microseconds per node and plane. Rounding grows with (patch / spacing)^2: 1e-11 of the tractions at 200 nodes a side.
+    microseconds per node and plane. Rounding grows with (patch / spacing)^2: 1e-11 of the tractions at 200 nodes.
     """
     from scipy import fft
 
