@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trackroller.halfspace.ellipse import PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU, _half_chord, _one_wave
+from trackroller.halfspace.ellipse import NO_FIELD, PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU, _half_chord, _one_wave
 from trackroller.halfspace.kernels import point_kernel
 from trackroller.halfspace.plane_waves import plane_wave_stress
 
@@ -48,7 +48,7 @@ def test_chord_kernel_is_the_point_kernel():
             sums = np.zeros(6)
             d = np.array([-1.0, 0.0]) if direction == 0 else np.array([0.0, -1.0])
             patch[9] = 1e9  # slip far along -x: its direction is (+1, 0), subtracted below
-            _half_chord(patch, 0.0, 0.0, z, 1.0, 0.0, -1.0, 2 * r, 0.0, r, 1.0 + d[0], d[1],
+            _half_chord(patch, NO_FIELD, 0.0, 0.0, z, 1.0, 0.0, -1.0, 2 * r, 0.0, r, 1.0 + d[0], d[1],
                         np.array([1.0]), np.array([1.0]), sums)  # fmt: skip
             ee, ee_nu, tt, zz, et, ez = sums / (2 * np.pi * r * r * np.sqrt(r * (r + 1)))  # over the weight of the node
             expected = {"ee": a[0], "tt": a[1], "zz": a[2], "et": a[3], "ez": a[5]}

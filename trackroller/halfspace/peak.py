@@ -77,9 +77,9 @@ def _von_mises(parts, nu, sign):
 
 
 @njit(cache=True, inline="always")
-def _value(patch, nu, sign, u, rule, rule_w, waves, waves_w, parts):
+def _value(patch, field, nu, sign, u, rule, rule_w, waves, waves_w, parts):
     c = min(patch[A], patch[B])
-    stress_at(patch, u[0] * patch[A], u[1] * patch[B], u[2] * c, waves, waves_w, rule, rule_w, parts)
+    stress_at(patch, field, u[0] * patch[A], u[1] * patch[B], u[2] * c, waves, waves_w, rule, rule_w, parts)
     return _von_mises(parts, nu, sign)
 
 
@@ -93,7 +93,7 @@ def _project(u):
 
 
 @njit(cache=True)
-def _climb(patch, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, smallest):
+def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, smallest):
     """Pattern search from u with value f: a parabola along radius, circumference and depth in turn."""
     h = np.array([first, 1.6 * first, first])
     trial, axis = np.empty(3), np.empty(3)
@@ -112,7 +112,9 @@ def _climb(patch, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, sm
                 trial[0], trial[1], trial[2] = u0 + step * axis[0], v0 + step * axis[1], w0 + step * axis[2]
                 _project(trial)
                 same = abs(trial[0] - u0) + abs(trial[1] - v0) + abs(trial[2] - w0) < 1e-12
-                f_side[side] = f0 if same else _value(patch, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
+                f_side[side] = (
+                    f0 if same else _value(patch, field, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
+                )
                 if f_side[side] > f:
                     f = f_side[side]
                     u[:] = trial
@@ -123,7 +125,7 @@ def _climb(patch, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, sm
                 if abs(step) > 0.05 * h[k] and abs(abs(step) - h[k]) > 0.05 * h[k]:
                     trial[0], trial[1], trial[2] = u0 + step * axis[0], v0 + step * axis[1], w0 + step * axis[2]
                     _project(trial)
-                    value = _value(patch, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
+                    value = _value(patch, field, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
                     if value > f:
                         f = value
                         u[:] = trial
@@ -176,7 +178,7 @@ def _seeds(scan, values, count, chosen):
 
 
 @njit(cache=True)
-def _one_peak(patch, nu, rules, seeds, finalists, smallest, floor, out):
+def _one_peak(patch, field, nu, rules, seeds, finalists, smallest, floor, out):
     s_rule, s_w, c_rule, c_w, p_rule, p_w, f_rule, f_w, waves, waves_w = rules
     points = _scan_of(patch)
     count = points.shape[0]
@@ -185,7 +187,7 @@ def _one_peak(patch, nu, rules, seeds, finalists, smallest, floor, out):
     c = min(patch[A], patch[B])
     for i in range(count):
         u = points[i]
-        stress_at(patch, u[0] * patch[A], u[1] * patch[B], u[2] * c, s_rule, s_w, s_rule, s_w, parts)
+        stress_at(patch, field, u[0] * patch[A], u[1] * patch[B], u[2] * c, s_rule, s_w, s_rule, s_w, parts)
         scan[0, i], scan[1, i] = _von_mises(parts, nu[0], 1.0), _von_mises(parts, nu[1], -1.0)
     chosen = np.empty(seeds, np.int64)
     tops, values = np.empty((seeds, 3)), np.empty(seeds)
@@ -195,8 +197,8 @@ def _one_peak(patch, nu, rules, seeds, finalists, smallest, floor, out):
         for s in range(found):
             u = tops[s]
             u[:] = points[chosen[s]]
-            f = _value(patch, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
-            values[s], _ = _climb(patch, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06)
+            f = _value(patch, field, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
+            values[s], _ = _climb(patch, field, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06)
         order = np.argsort(-values[:found])
         best = gained_best = -1.0
         for k in range(min(found, finalists)):
@@ -205,24 +207,26 @@ def _one_peak(patch, nu, rules, seeds, finalists, smallest, floor, out):
                 break
             if k > 0 and np.sum((u - tops[order[0]]) ** 2) < 0.01:
                 continue  # the same summit
-            f = _value(patch, nu[body], sign, u, p_rule, p_w, waves, waves_w, parts)
-            f, gained = _climb(patch, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest)
+            f = _value(patch, field, nu[body], sign, u, p_rule, p_w, waves, waves_w, parts)
+            f, gained = _climb(patch, field, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest)
             if f > best:
                 best, gained_best = f, gained
                 out[body, 1], out[body, 2], out[body, 3] = u[0] * patch[A], u[1] * patch[B], u[2] * c
-        stress_at(patch, out[body, 1], out[body, 2], out[body, 3], f_rule, f_w, f_rule, f_w, parts)
+        stress_at(patch, field, out[body, 1], out[body, 2], out[body, 3], f_rule, f_w, f_rule, f_w, parts)
         f = _von_mises(parts, nu[body], sign)
         out[body, 0] = f
         out[body, 4] = (2.0 * abs(f - best) + 2.0 * gained_best) / f + floor
 
 
 @njit(cache=True, parallel=True)
-def _all_peaks(patches, nu, rules, seeds, finalists, smallest, floor, out):
+def _all_peaks(patches, fields, nu, rules, seeds, finalists, smallest, floor, out):
     for i in prange(patches.shape[0]):
-        _one_peak(patches[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
+        _one_peak(patches[i], fields[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
 
 
-def find_peaks(patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSettings) -> Peak:
+def find_peaks(
+    patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSettings, fields: np.ndarray | None = None
+) -> Peak:
     """Peak von Mises stress of roller and guide under n patches.
 
     Parameters
@@ -230,6 +234,7 @@ def find_peaks(patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSet
     patches : rows of `ellipse.patch_rows`, shape (n, 12)
     poisson_ratio : of roller and guide, shape (n, 2)
     settings : quadrature and search effort
+    fields : traction over its bound at element centres, (n, 2, ny, nx), for models other than full sliding
 
     Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error holds the change from the climb's quadrature
     to the summit's and the last gain of the climb.
@@ -244,7 +249,8 @@ def find_peaks(patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSet
         found = np.empty((group.size, 2, 5))
         orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
         rules = tuple(array for order in orders for array in clustered_rule(int(order * factor)))
-        _all_peaks(patches[group], np.ascontiguousarray(poisson_ratio[group], dtype=float), rules, settings.seeds,
+        chosen = np.zeros((group.size, 2, 1, 1)) if fields is None else np.ascontiguousarray(fields[group])
+        _all_peaks(patches[group], chosen, np.ascontiguousarray(poisson_ratio[group], dtype=float), rules, settings.seeds,
                    settings.finalists, settings.step, settings.floor, found)  # fmt: skip
         out[group] = found
     return Peak(*np.moveaxis(out, 2, 0))
