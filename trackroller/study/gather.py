@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,6 +16,11 @@ from trackroller.study.design import build, draw
 from trackroller.study.factors import Factor, label
 from trackroller.study.files import WorkError, write_whole
 from trackroller.study.plan import Plan, Tell, identify, load_list
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.study.config import Study
 
 BATCH_BYTES = 300_000_000  # of values in memory at once
 
@@ -29,15 +34,14 @@ class Axes:
     factors: dict[str, Factor]
 
 
-def write_design(plan: Plan) -> Path:
+def write_design(study: Study, path: Path, design: xr.Dataset | None = None) -> None:
     """Write `design.nc`, the cases of a study."""
-    design = plan.design if plan.design is not None else build(plan.study)
+    design = build(study) if design is None else design
 
     def save(beside: Path) -> None:
         design.to_netcdf(beside, engine="netcdf4")
 
-    write_whole(plan.folder.design, save)
-    return plan.folder.design
+    write_whole(path, save)
 
 
 def gather(plan: Plan, out: Path | None = None, tell: Tell | None = None) -> Path:
@@ -51,7 +55,7 @@ def gather(plan: Plan, out: Path | None = None, tell: Tell | None = None) -> Pat
     design = build(plan.study, sampled)
     cases = identify(plan.study, design)
     if not plan.folder.design.is_file():
-        write_design(Plan(plan.study, plan.folder, plan.chunks, plan.size, design, cases))
+        write_design(plan.study, plan.folder.design, design)
     listed = np.concatenate([load_list(plan.folder, name).cases for name in plan.chunks])
     order = np.argsort(listed, kind="stable")
     place = np.searchsorted(listed[order], cases).clip(max=len(listed) - 1)
