@@ -43,7 +43,7 @@ def draw_all(study_nc: Path, out_dir: Path) -> list[style.FigureInfo]:
     import xarray as xr
 
     with xr.open_dataset(study_nc) as ds:
-        view = StudyView.of(ds.load())
+        view = StudyView.of(ds)
     infos = []
     with style.look(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here

@@ -29,8 +29,8 @@ def effects(view: StudyView) -> list[tuple[str, list[str], np.ndarray]]:
     table, logs = view.table[good], np.log10(life[good])
     found = []
     for name in view.factors:
-        labels, groups = _groups(view, name, table[name].to_numpy())
-        means = np.array([logs[g].mean() if g.any() else np.nan for g in groups])
+        labels, members = groups(view, name, table[name].to_numpy())
+        means = np.array([logs[g].mean() if g.any() else np.nan for g in members])
         if np.isfinite(means).sum() > 1:
             found.append((name, labels, means))
     return sorted(found, key=lambda item: -float(np.nanmax(item[2]) - np.nanmin(item[2])))
@@ -44,13 +44,18 @@ def _countable(life: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.where(np.isposinf(life), life[finite].max(), life), finite | np.isposinf(life)
 
 
-def _groups(view: StudyView, name: str, values: np.ndarray) -> tuple[list[str], list[np.ndarray]]:
+def groups(view: StudyView, name: str, values: np.ndarray, unit: bool = False) -> tuple[list[str], list[np.ndarray]]:
+    """Names of the levels of a factor (of five bins when there are many) and which of `values` (n,) belong to each.
+
+    With `unit` the names carry their unit and are not cut.
+    """
     levels = view.levels(name)
     if not view.numeric(name) or len(levels) <= MAX_ROWS:
-        return [_short(name, v) for v in levels], [values == v for v in levels]
+        return [style.level_text(name, v) if unit else _short(name, v) for v in levels], [values == v for v in levels]
     edges = np.unique(np.quantile(values[np.isfinite(values)], np.linspace(0, 1, 6)))
     index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
-    names = [f"{style.rounded(a, 3)} … {style.rounded(b, 3)}" for a, b in pairwise(edges)]
+    ending = style.level_text(name, edges[-1]).partition(" ")[2] if unit and name in PARAMETERS else ""
+    names = [f"{style.rounded(a, 3)} … {style.rounded(b, 3)} {ending}".strip() for a, b in pairwise(edges)]
     return names, [index == i for i in range(len(edges) - 1)]
 
 
@@ -106,10 +111,12 @@ def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     style.finish(figure)
     (name, _, means), swing = found[0], 10 ** float(np.nanmax(found[0][2]) - np.nanmin(found[0][2]))
     least = found[-1]
-    sentence = f"{style.capital(style.long_name(name))} moves the mean life most, by a factor of {style.number(swing)}"
+    sentence = (
+        f"{style.capital(style.long_name(name))} moves the mean life most, by a factor of {style.rounded(swing, 3)}"
+    )
     if len(found) > 1:
         low = 10 ** float(np.nanmax(least[2]) - np.nanmin(least[2]))
-        sentence += f"; {style.long_name(least[0])} least, by a factor of {style.number(low)}"
+        sentence += f"; {style.long_name(least[0])} least, by a factor of {style.rounded(low, 3)}"
     caption = (
         f"Geometric mean of the life ({unit}) at each level of each factor, averaged over all other factors, "
         f"the most influential factor on top.{note}"

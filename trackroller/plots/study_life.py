@@ -153,13 +153,13 @@ def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | 
         axes.set_ylabel(style.with_unit("Life" if split else words, unit))
     entries = (
         [
-            (style.level_text(pair, p), {**k, "linestyle": k["linestyle"] if split else "none"} if view.grid else k)
+            (style.level_text(pair, p), {**k, "linestyle": k["linestyle"] if split or not drive else "none"})
             for p, k in zip(pairs, looks, strict=True)
         ]
         if pair
         else []
     )
-    if drive and not split and view.grid:
+    if drive and not split:
         entries += [
             (style.level_text(drive, d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
             for j, d in enumerate(drives)
@@ -214,11 +214,11 @@ def change_sentence(what: str, y0: float, y1: float, x0: float, x1: float, where
     """'Raising friction from 0.02 to 0.4 shortens life by a factor of 7.3 (where).'"""
     ratio = y1 / y0
     place = f" ({where})" if where else ""
-    span = f"Raising {what} from {style.number(x0)} to {style.number(x1)}"
+    span = f"Raising {what} from {style.rounded(x0, 3)} to {style.rounded(x1, 3)}"
     if 0.98 < ratio < 1.02:
         return f"{span} leaves the {result} unchanged within 2 %{place}."
     verb = "shortens" if ratio < 1 else "lengthens"
-    return f"{span} {verb} the {result} by a factor of {style.number(max(ratio, 1 / ratio))}{place}."
+    return f"{span} {verb} the {result} by a factor of {style.rounded(max(ratio, 1 / ratio), 3)}{place}."
 
 
 def _thinned(rows: pd.DataFrame, grid: bool) -> pd.DataFrame:

@@ -41,12 +41,13 @@ def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
 
 def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Peak von Mises stress over the fit, by friction; filled marks at the surface, hollow ones below."""
-    fits = [f for f in ("roller_profile_radius", "guide_profile_radius") if f in view.factors]
+    fits = next((f for f in map(view.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
     bodies = [b for b in ("roller", "guide") if view.has(f"peak_stress_{b}")]
     if not fits or not bodies:
         return None
-    hue = next((f for f in ("friction_coefficient", "material_pair", "motor_force") if f in view.factors), None)
-    rows, held = view.hold((*fits, hue) if hue else tuple(fits))
+    hues = ("friction_coefficient", "material_pair", "motor_force")
+    hue = next((f for f in hues if f in view.factors and f not in fits), None)
+    rows, held = view.hold((*fits, hue) if hue else fits)
     rows, label = add_fit(view, rows)
     groups = _stress_groups(view, rows, hue)
     colours = style.palette(len(groups))
@@ -131,9 +132,9 @@ def _stress_info(view: StudyView, rows: pd.DataFrame, body: str, hue: str | None
     fifth = 1 if view.grid else max(len(good) // 5, 1)
     low, high = good.iloc[:fifth], good.iloc[-fifth:]
     sentence = (
-        f"From a fit of {style.number(low['_fit'].median())} to {style.number(high['_fit'].median())} the "
+        f"From a fit of {style.rounded(low['_fit'].median(), 3)} to {style.rounded(high['_fit'].median(), 3)} the "
         f"{'' if view.grid else 'median '}peak stress of the {body} goes from "
-        f"{style.number(low[y].median())} to {style.number(high[y].median())} MPa"
+        f"{style.rounded(low[y].median(), 3)} to {style.rounded(high[y].median(), 3)} MPa"
     )
     if np.isfinite(share):
         sentence += f"; it lies at the surface in {share:.0%} of the cases shown".replace("%", " %")

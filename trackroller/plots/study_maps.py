@@ -219,7 +219,7 @@ def _life_info(view: StudyView, rows: pd.DataFrame, pair: tuple[str, str], held:
         return " and ".join(f"{style.long_name(f)} {style.level_text(f, row[f])}" for f in pair)
 
     sentence = (
-        f"The shortest life shown is {style.number(worst[column])} {unit} at {at(worst)}, the longest "
-        f"{style.number(best[column])} {unit} at {at(best)}."
+        f"The shortest life shown is {style.rounded(worst[column], 3)} {unit} at {at(worst)}, the longest "
+        f"{style.rounded(best[column], 3)} {unit} at {at(best)}."
     )
     return style.FigureInfo("life_map", caption, sentence)

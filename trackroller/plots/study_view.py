@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -38,7 +38,8 @@ class StudyView:
 
     `table` has one row a case; columns are the factors, `contact`- and `body`-resolved results with the
     suffixes `_1`, `_2`, `_roller`, `_guide` (the worse contact), and plain results. `grid` tells that every
-    combination of levels is there. `base` holds the values of the parameters that are no factors.
+    combination of levels is there. `derived` names the factors that other parameters follow from. `base` holds
+    the values of the parameters that are no factors.
     """
 
     table: pd.DataFrame
@@ -46,6 +47,7 @@ class StudyView:
     base: Mapping[str, Any]
     grid: bool
     attrs: Mapping[str, Any]
+    derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, ds: xr.Dataset) -> StudyView:
@@ -63,7 +65,15 @@ class StudyView:
                 base[name] = ds[name].item()
         full = int(np.prod([table[f].nunique(dropna=False) for f in names], dtype=float)) if names else 1
         grid = full == len(table) and not (len(names) == 1 and dims == ["case"] and len(table) > 60)
-        return cls(table, tuple(names), base, grid, dict(ds.attrs))
+        for name in dims:  # a dimension of one level is held by itself
+            if name not in names and name in table and len(table):
+                base[name] = table[name].iloc[0]
+        derived = {
+            p: tuple(d for d in map(str, ds[p].dims) if d in names)
+            for p in PARAMETERS
+            if p in ds.variables and p not in names
+        }
+        return cls(table, tuple(names), base, grid, dict(ds.attrs), derived)
 
     def levels(self, name: str, table: pd.DataFrame | None = None) -> list[Any]:
         """The values a factor takes: numbers in rising order, categories in order of appearance."""
@@ -73,6 +83,10 @@ class StudyView:
     def numeric(self, name: str) -> bool:
         """Is the factor a number?"""
         return bool(np.issubdtype(np.asarray(self.table[name]).dtype, np.number))
+
+    def behind(self, name: str) -> tuple[str, ...]:
+        """The factors that decide a parameter: itself, those it is computed from, or none when it is fixed."""
+        return (name,) if name in self.factors else self.derived.get(name, ())
 
     def held_level(self, name: str) -> Any:
         """The level at which a factor is held when others are shown: that of the base case, else the middle."""

@@ -41,7 +41,7 @@ SYMBOLS = {
     "n_G": r"$n_\mathrm{G}$",
 }  # fmt: skip
 
-_RC = {
+_RC: dict[Any, Any] = {
     "font.size": 7.5, "axes.titlesize": 8.0, "axes.labelsize": 7.5, "xtick.labelsize": 7.0,
     "ytick.labelsize": 7.0, "legend.fontsize": 7.0, "legend.title_fontsize": 7.0, "figure.titlesize": 8.5,
     "axes.linewidth": 0.7, "lines.linewidth": 1.2, "lines.markersize": 4.0, "grid.linewidth": 0.4,
@@ -69,7 +69,8 @@ def look() -> Iterator[None]:
 
     style: dict[Any, Any] = dict(seaborn.axes_style("ticks"))
     style.update({"axes.grid": True, "grid.color": "0.88"})
-    with matplotlib.rc_context({**style, **_RC}):
+    style.update(_RC)
+    with matplotlib.rc_context(style):
         yield
 
 
@@ -229,14 +230,14 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def level_text(name: str, value: Any, unit: bool = True) -> str:
-    """A level of a factor in words: 'straight' for an infinite curve, 'driven' for a motor force below 0."""
+    """A level of a factor in words: 'straight' for an infinite curve, 'driven −30 N' for a motor force."""
     if isinstance(value, str):
         return _pair(value)
     value = float(value)
     if name == "motor_force" and unit:
         if value == 0:
             return "free rolling"
-        return f"{'driven' if value < 0 else 'braked'} ({number(value)} N)"
+        return f"{'driven' if value < 0 else 'braked'} {number(value)} N"
     if name == "guide_curve_radius" and unit:
         if math.isinf(value):
             return "straight"
