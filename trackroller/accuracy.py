@@ -13,7 +13,8 @@ from trackroller.parameters import ACCURACIES
 class Accuracy:
     """Settings of one accuracy: aimed relative error of the peak and quadrature orders of the stages.
 
-    `force_nodes` are Gauss points per smooth piece of the slip integrals; `coarse_nodes` serve the first pass.
+    `force_nodes` are Gauss points per smooth piece of the slip integrals, `coarse_nodes` serve the first pass, and
+    `elements` along each axis of the ellipse serve the rolling contact models.
     """
 
     name: str
@@ -23,12 +24,13 @@ class Accuracy:
     peak: PeakSettings
     traction_points: int
     section_points: int
+    elements: int
 
 
 PRESETS = {
-    "preview": Accuracy("preview", 2e-2, 8, 6, PeakSettings(8, 8, 8, 16, 3, 1, 0.05, 2e-3), 31, 31),
-    "standard": Accuracy("standard", 2e-3, 12, 6, PeakSettings(8, 8, 16, 24, 4, 2, 0.02, 3e-4), 41, 61),
-    "reference": Accuracy("reference", 1e-4, 20, 8, PeakSettings(12, 16, 24, 48, 6, 4, 0.001, 1e-5), 81, 121),
+    "preview": Accuracy("preview", 2e-2, 8, 6, PeakSettings(8, 8, 8, 16, 3, 1, 0.05, 2e-3), 31, 31, 20),
+    "standard": Accuracy("standard", 2e-3, 12, 6, PeakSettings(8, 8, 16, 24, 4, 2, 0.02, 3e-4), 41, 61, 40),
+    "reference": Accuracy("reference", 1e-4, 20, 8, PeakSettings(12, 16, 24, 48, 6, 4, 0.001, 1e-5), 81, 121, 80),
 }
 
 

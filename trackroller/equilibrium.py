@@ -18,8 +18,7 @@ from trackroller.contact.hertz import HertzShape
 from trackroller.contact.sliding import tractions_full_slip
 
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
-TOLERANCE = 1e-12  # aimed at; 1e-10 counts as converged
-CONVERGED = 1e-10
+TOLERANCE = 0.01  # aimed at, over the residual that counts as converged
 
 # ellipse, slip, friction, rows -> resultants; `fine` chooses the discretisation
 ContactLaw = Callable[[Ellipse, Slip, np.ndarray, np.ndarray, bool], Resultants]
@@ -37,6 +36,8 @@ class Loads:
     guide_profile_radius: np.ndarray
     rolling_radius: np.ndarray
     shape: HertzShape
+    difference_step: float = 1e-5  # for derivatives of the contact law; above the noise of iterative laws
+    converged: float = 1e-10  # largest relative residual of a solution
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Equilibrium:
     """Solution for n rollers: `regime` (n,), shift (n,) [mm], normal_force (n, 2) [N] and the resultants.
 
     `forces` has the fields of `Resultants`, each of shape (n, 2). `residual` is the largest relative
-    imbalance: forces over the applied loads, torque over mu (|F_rad| + |F_ax|) + |F_Motor|. Undefined quantities are NaN.
+    imbalance: forces over the applied loads, torque over mu (|F_rad| + |F_ax|) + |F_Motor|. Undefined is NaN.
     """
 
     regime: np.ndarray
@@ -59,7 +60,8 @@ class _Roller:
     """The equations of a set of rollers; holds nothing but arrays, so that rows can be taken."""
 
     def __init__(self, loads: Loads, law: ContactLaw, rows: np.ndarray) -> None:
-        self.rows, self.law = rows, law
+        self.rows, self.law, self.step = rows, law, loads.difference_step
+        self.goal = TOLERANCE * loads.converged
         for name in ("radial_force", "axial_force", "motor_force", "friction", "guide_profile_radius"):
             setattr(self, name, getattr(loads, name)[rows])
         self.radius = loads.rolling_radius[rows]
@@ -157,7 +159,7 @@ def _bracketed(roller: _Roller, w_low, w_high, fine: bool, sweeps: int, toleranc
 
 def _jacobian(roller: _Roller, w, normal, pick) -> np.ndarray:
     """Derivatives of the balances with respect to (F_N1, F_N2, w), shape (m, 3, 3), coarse law, differences."""
-    h = 1e-5
+    h = roller.step
     shift = roller.shift(w, pick)
     base = roller.contact(shift, normal, False, pick)
     grown = roller.contact(shift, normal * (1 + h), False, pick)
@@ -195,7 +197,7 @@ def _newton(roller: _Roller, w, normal, w_low, w_high, steps: int = 14):
         best[hit], w_best[hit] = size[better], w_a[better]
         n_best[:, hit], f_best[:, :, hit] = n_a[:, better], f[:, :, better]
         stalled = (size > 0.3 * best[active]) & ~better if k > 8 else np.zeros(active.size, bool)
-        go = (size > 1e-15) & np.isfinite(size) & ~stalled & ~((best[active] < TOLERANCE) & ~better)
+        go = (size > 1e-15) & np.isfinite(size) & ~stalled & ~((best[active] < roller.goal) & ~better)
         active, r = active[go], r[go]
         if active.size == 0:
             break
@@ -265,7 +267,7 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
     shift[lifted] = np.nan
     residual[regime == LIFT_OFF] = np.nan
     normal[:, lifted], forces[:, :, lifted] = np.nan, np.nan
-    converged = np.where(regime == LIFT_OFF, True, residual <= CONVERGED)
+    converged = np.where(regime == LIFT_OFF, True, residual <= loads.converged)
     return Equilibrium(regime, converged, residual, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
 
 
@@ -288,14 +290,14 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
     low, high = w_low[go], w_high[go]
     w, n = _bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
     best, w, n, f = _newton(roller, w, n, low, high)
-    bad = np.flatnonzero(~(best <= CONVERGED))
+    bad = np.flatnonzero(~(best <= loads.converged))
     if bad.size:  # slow and sure
         again = _Roller(rolled, law, rows[go][bad])
         w2, n2 = _bracketed(again, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
         b2, w2, n2, f2 = _newton(again, w2, n2, low[bad], high[bad])
         best[bad], w[bad], n[:, bad], f[:, :, bad] = b2, w2, n2, f2
     lift = np.any(n <= 1e-8 * roller.load, axis=0)
-    bad = np.flatnonzero(~(best <= CONVERGED) & ~lift)
+    bad = np.flatnonzero(~(best <= loads.converged) & ~lift)
     if bad.size:
         b3, w3, n3, f3, lift[bad] = _follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
         best[bad], w[bad], n[:, bad], f[:, :, bad] = b3, w3, n3, f3

@@ -101,7 +101,7 @@ def solve(
 
 def _solve_block(table: CaseTable, options: Options) -> stages.Results:
     scene = stages.prepare(table, options)
-    balance = eq.solve_equilibrium(scene.loads, stages.contact_law(scene, options))
+    balance = eq.solve_equilibrium(scene.loads, scene.model.law)
     results = stages.Results.start(scene, balance)
     wanted = set(options.outputs)
     stages.forces(results)

@@ -5,7 +5,7 @@ Arrays have the case as first axis (n,), then contact (2) and body (2: roller, g
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,11 +14,12 @@ from trackroller import equilibrium as eq
 from trackroller import fatigue
 from trackroller.case import CaseTable
 from trackroller.contact import sliding
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Elastic, Ellipse, Slip, SurfaceTractions
 from trackroller.contact.hertz import contact_modulus, shape
+from trackroller.contact.models import ContactModel, contact_model, traction_share
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
-from trackroller.halfspace.ellipse import patch_rows, stress_parts
+from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import find_peaks
 
 if TYPE_CHECKING:
@@ -41,7 +42,7 @@ class Scene:
 
     table: CaseTable
     loads: eq.Loads
-    elastic: Elastic
+    model: ContactModel
     n: int
 
 
@@ -59,6 +60,7 @@ class Results:
     good: np.ndarray  # (2 n,) patches that exist
     bits: np.ndarray
     values: dict[str, np.ndarray] = field(default_factory=dict)
+    surface: SurfaceTractions | None = None  # of the existing patches, once asked for
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
@@ -78,6 +80,11 @@ class Results:
     def by_contact(self, flat: np.ndarray) -> np.ndarray:
         """(2 n, ...) -> (n, 2, ...)."""
         return np.moveaxis(flat.reshape(2, self.scene.n, *flat.shape[1:]), 0, 1)
+
+    @property
+    def rows(self) -> np.ndarray:
+        """The roller that each of the 2 n patches belongs to."""
+        return np.tile(np.arange(self.scene.n), 2)
 
     @property
     def slides_along(self) -> np.ndarray:
@@ -100,29 +107,10 @@ def prepare(table: CaseTable, options: Options) -> Scene:
     bodies = (table.roller.youngs_modulus, table.roller.poisson_ratio,
               table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
     hertz = shape(k_x, k_y, contact_modulus(*bodies), options.hertz)
+    model = contact_model(options.contact_model, options.settings, Elastic.of_pair(*bodies), options.spin_model)
     loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
-                     table.guide_profile_radius, r_a, hertz)  # fmt: skip
-    return Scene(table, loads, Elastic.of_pair(*bodies), len(table))
-
-
-def contact_law(scene: Scene, options: Options) -> eq.ContactLaw:
-    """The contact model as the equilibrium calls it."""
-    settings = options.settings
-    if options.contact_model == "sliding":
-
-        def slide(ellipse: Ellipse, slip: Slip, mu: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
-            nodes = settings.force_nodes if fine else settings.coarse_nodes
-            return sliding.resultants(ellipse, slip, mu, spin_model=options.spin_model, nodes=nodes)
-
-        return slide
-    from trackroller.contact import fastsim, kalker  # type: ignore[attr-defined]
-
-    module = {"fastsim": fastsim, "kalker": kalker}[options.contact_model]
-
-    def roll(ellipse: Ellipse, slip: Slip, mu: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
-        return module.resultants(ellipse, slip, mu, scene.elastic.take(rows), fine)
-
-    return roll
+                     table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual)  # fmt: skip
+    return Scene(table, loads, model, len(table))
 
 
 def forces(results: Results) -> None:
@@ -156,17 +144,22 @@ def contact(results: Results, options: Options) -> None:
         pole_y = np.zeros_like(pole_y)
     pole_y = np.where(np.isfinite(pole_x), pole_y, np.nan)
     v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
-    v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
+    if results.scene.model.full_sliding:
+        v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
+    elif "contact" in options.outputs:
+        t = surface_tractions(results)
+        v["stick_area_fraction"] = results.full(t.stick.sum(axis=(1, 2)) / (t.pressure > 0).sum(axis=(1, 2)))
 
 
 def friction_work(results: Results, options: Options) -> None:
     """Friction power int |tau| |v| at the travel speed and per distance."""
-    good, table = results.good, results.scene.table
+    table = results.scene.table
     per_distance = np.full(2 * results.scene.n, np.nan)
-    rolls = good & (results.slides_along == 0)
-    per_omega = sliding.friction_power(results.ellipse.take(rolls), results.slip.take(rolls), results.friction[rolls],
-                                       spin_model=options.spin_model, nodes=options.settings.force_nodes)  # fmt: skip
-    per_distance[rolls] = per_omega / results.slip.rolling_radius[rolls]
+    rolls = results.good & (results.slides_along == 0)
+    if rolls.any():
+        per_distance[rolls] = results.scene.model.power(
+            results.ellipse.take(rolls), results.slip.take(rolls), results.friction[rolls], results.rows[rolls]
+        )
     w = results.by_contact(per_distance)
     results.values["friction_energy_per_distance"] = w
     results.values["friction_power"] = w * (table.velocity / 60.0)[:, None]
@@ -186,10 +179,19 @@ def _poisson(results: Results, options: Options) -> np.ndarray:
     return np.concatenate([nu, nu])
 
 
+def _traction_fields(results: Results) -> np.ndarray | None:
+    """Traction over its bound on the grid of each existing patch; None where full sliding needs no grid."""
+    if results.scene.model.full_sliding:
+        return None
+    return traction_share(surface_tractions(results), results.friction[results.good])
+
+
 def peak_stress(results: Results, options: Options) -> None:
     """Peak von Mises stress of each contact and body, its place and error estimate."""
     good = results.good
-    peak = find_peaks(_patches(results, options), _poisson(results, options)[good], options.settings.peak)
+    peak = find_peaks(
+        _patches(results, options), _poisson(results, options)[good], options.settings.peak, _traction_fields(results)
+    )
     scale = results.ellipse.max_pressure[good][:, None]
     fields = {"peak_stress": peak.stress * scale, "peak_x": peak.x, "peak_y": peak.y, "peak_z": peak.z,
               "error_estimate": peak.error}  # fmt: skip
@@ -217,25 +219,29 @@ def life(results: Results, options: Options) -> None:
     v["roller_life_hours"], v["guide_life_hours"] = roller.min(axis=1), guide.min(axis=1)
 
 
-def surface_tractions(results: Results, options: Options) -> SurfaceTractions:
-    """Tractions of the existing patches on a grid."""
-    good = results.good
-    ellipse, slip, mu = results.ellipse.take(good), results.slip.take(good), results.friction[good]
-    along = results.slides_along[good]
-    rolling = Slip(slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius,
-                   np.where(along == 0, slip.shift, 0.0))  # fmt: skip
-    t = sliding.tractions(ellipse, rolling, mu, spin_model=options.spin_model, points=options.settings.traction_points)
-    full = (along != 0)[:, None, None]
-    bound = mu[:, None, None] * t.pressure
-    return SurfaceTractions(t.x, t.y, t.pressure, np.where(full, 0.0, t.shear_lateral),
-                            np.where(full, along[:, None, None] * bound, t.shear_rolling),
-                            np.where(full, np.nan, t.slip_lateral), np.where(full, np.nan, t.slip_rolling),
-                            t.stick)  # fmt: skip
+def surface_tractions(results: Results) -> SurfaceTractions:
+    """Tractions of the existing patches on a grid, found once."""
+    if results.surface is None:
+        good = results.good
+        ellipse, slip, mu = results.ellipse.take(good), results.slip.take(good), results.friction[good]
+        along = results.slides_along[good]
+        rolling = replace(slip, shift=np.where(along == 0, slip.shift, 0.0))
+        t = results.scene.model.surface(ellipse, rolling, mu, results.rows[good])
+        full = (along != 0)[:, None, None]
+        results.surface = replace(
+            t,
+            shear_lateral=np.where(full, 0.0, t.shear_lateral),
+            shear_rolling=np.where(full, along[:, None, None] * mu[:, None, None] * t.pressure, t.shear_rolling),
+            slip_lateral=np.where(full, np.nan, t.slip_lateral),
+            slip_rolling=np.where(full, np.nan, t.slip_rolling),
+            stick=t.stick & ~full,
+        )
+    return results.surface
 
 
 def tractions(results: Results, options: Options) -> None:
     """Pressure, shear, slip and friction energy over the patches."""
-    t = surface_tractions(results, options)
+    t = surface_tractions(results)
     fields = {"patch_x": t.x, "patch_y": t.y, "pressure": t.pressure, "shear_lateral": t.shear_lateral,
               "shear_rolling": t.shear_rolling, "slip_lateral": t.slip_lateral, "slip_rolling": t.slip_rolling,
               "friction_energy_density": np.hypot(t.shear_lateral, t.shear_rolling)
@@ -255,7 +261,7 @@ def subsurface(results: Results, options: Options) -> None:
         v[name] = np.full((n, 6, *shape_xz[1:]), np.nan)
     for name, count in (("xz_x", m), ("xz_z", depth_points), ("yz_y", m), ("yz_z", depth_points)):
         v[name] = np.full((n, 2, 2, count), np.nan)
-    rows = _patches(results, options)
+    rows, fields = _patches(results, options), _traction_fields(results)
     nu = _poisson(results, options)
     order = options.settings.peak.polish
     for row, flat in enumerate(np.flatnonzero(results.good)):
@@ -270,7 +276,8 @@ def subsurface(results: Results, options: Options) -> None:
             planes = (("xz", across, np.full(m, y0)), ("yz", np.full(m, x0), along))
             for plane, xs, ys in planes:
                 points = np.stack([np.tile(xs, depth_points), np.tile(ys, depth_points), np.repeat(depth, m)], axis=1)
-                parts = stress_parts(rows[row], points, max(order, 12), order)
+                one = NO_FIELD if fields is None else fields[row]
+                parts = stress_parts(rows[row], points, max(order, 12), order, one)
                 s = p * (parts[:, 0] + nu[flat, body] * parts[:, 1]
                          + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3]))  # fmt: skip
                 v[f"stress_{plane}"][i, :, j, body] = s.T.reshape(6, depth_points, m)
