@@ -25,7 +25,7 @@ log = logging.getLogger(__name__)
 Drawn = tuple["Figure", style.FigureInfo] | None
 MAX_BARS = 12
 FIRST = ("roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_life_cycles", "friction_power",
-         "friction_energy", "roller_peak_stress", "guide_peak_stress", "max_pressure")  # fmt: skip
+         "roller_peak_stress", "guide_peak_stress", "max_pressure", "friction_energy")  # fmt: skip
 AXIS = {
     "S1": "share of variance, alone", "ST": "share of variance", "first": "share of variance, alone",
     "main_share": "share of variance, alone", "mu_star": "mean absolute effect μ*", "effect": "change over the range",

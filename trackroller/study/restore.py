@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.factors import Factor
 from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study
 from trackroller.study.sampling import OPTIONS, SampledDesign, sample
@@ -68,6 +68,10 @@ def _table_design(ds: xr.Dataset, specs: Mapping[str, Any]) -> SampledDesign:
         if len(levels) > 1:
             columns[name] = values.astype(float) if number else values.astype(object)
             free[name] = Factor(name, "values", levels=levels)
+    if "material_pair" in free:  # the two materials are the pair once more
+        for name in MATERIAL_FIELDS:
+            columns.pop(name, None)
+            free.pop(name, None)
     if not free:
         raise InputError("study", list(ds.variables), "a table with at least one column that varies")
     unit = np.stack([columns[n] if f.ordered else _index(columns[n], f) for n, f in free.items()], axis=1)
