@@ -94,6 +94,14 @@ def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:
     beside.rename(out)
 
 
+def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:
+    """The report, with the sensitivity analysis where there is one."""
+    from trackroller.report import write_report
+
+    analysis = Path(sensitivity_nc) if has_analysis(sensitivity_nc) else None
+    write_report(Path(study_nc), Path(figures), Path(out), analysis)
+
+
 def has_analysis(sensitivity_nc: str | Path) -> bool:
     """Does the file hold an analysis (or only say why there is none)?"""
     import netCDF4

@@ -32,6 +32,7 @@ rule report:
     input:
         study=f"{RESULTS}/study.nc",
         figures=f"{RESULTS}/figures",
+        sensitivity=f"{RESULTS}/sensitivity.nc",
         code=sources("report.py", "templates"),
     output:
         f"{RESULTS}/report.html",

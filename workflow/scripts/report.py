@@ -1,9 +1,6 @@
 """Write the report."""
 
-from pathlib import Path
-
-from trackroller.report import write_report
-from trackroller.study.workflow import log_to
+from trackroller.study.workflow import log_to, report_study
 
 log_to(snakemake.log[0])
-write_report(Path(snakemake.input.study), Path(snakemake.input.figures), Path(snakemake.output[0]))
+report_study(snakemake.input.study, snakemake.input.figures, snakemake.input.sensitivity, snakemake.output[0])

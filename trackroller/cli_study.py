@@ -1,0 +1,99 @@
+"""Commands about a study."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from trackroller.study.config import load_study
+from trackroller.study.cost import bytes_a_case, duration, measured_rate, rate, size
+
+
+def print_plan(path: Path, results: Path) -> None:
+    """Cases, chunks, expected time and disk; nothing is written."""
+    from trackroller.study.plan import chunk_size, study_folder
+    from trackroller.study.status import status_of
+
+    study = load_study(path)
+    status = status_of(study, results)
+    chunk = chunk_size(study, status.missing)
+    measured = measured_rate(study_folder(study.name, results).root / "store")
+    chunks = -(-status.missing // chunk)
+    seconds = status.missing / (measured or rate(study.options))
+    told = "measured" if measured else "estimated"
+    print(f"study     {study.name} ({study.config.design})")
+    print(f"cases     {status.total}, {status.done} of them solved already")
+    print(f"chunks    {chunks} of up to {chunk} cases")
+    print(f"time      {duration(seconds)} on one core, {duration(seconds / 2)} on two ({told} cases/s: "
+          f"{measured or rate(study.options):.0f})")  # fmt: skip
+    print(f"disk      about {size(status.total * bytes_a_case(study.config.outputs))}")
+
+
+def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool) -> None:
+    """Run a study with a bar that shows cases/s and the time left."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    from trackroller.study.run import run_study
+
+    study = load_study(path)
+    console = Console(file=sys.stderr, soft_wrap=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+               TextColumn("{task.fields[rate]} cases/s, left"), TimeRemainingColumn())  # fmt: skip
+    with Progress(*columns, console=console, disable=quiet, speed_estimate_period=120) as bar:
+        task = bar.add_task(study.name, total=None, rate="-")
+        began: dict[str, float] = {}
+
+        def started(total: int, done: int) -> None:
+            began["done"] = done
+            bar.update(task, total=total, completed=done)
+
+        def progress(count: int) -> None:
+            bar.advance(task, count)
+            shown = bar.tasks[0]
+            spent = max(shown.elapsed or 0.0, 1e-3)
+            bar.update(task, rate=f"{(shown.completed - began['done']) / spent:.0f}")
+
+        plan = run_study(study, results, rerun_failed=rerun_failed, scheduler=scheduler, started=started,
+                         tell=lambda line: console.print(line, highlight=False, markup=False),
+                         progress=progress)  # fmt: skip
+    print(plan.folder.gathered)
+
+
+def print_status(name: str, results: Path) -> None:
+    """State of a study."""
+    from trackroller.study.status import find_study, status_of
+
+    study = find_study(name, results)
+    status = status_of(study, results)
+    print(f"study     {study.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
+          f"{status.failed} failed")  # fmt: skip
+    if status.missing:
+        print(f"time left {duration(status.seconds_left)} on one core")
+    else:
+        print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
+    print("regimes   " + ", ".join(f"{count} {name}" for name, count in status.regimes.items() if count))
+    for reason, count in status.by_reason.items():
+        print(f"failed    {count} x {reason}")
+    for (factor, level), count in status.by_level.items():
+        print(f"failed    {count} at {factor} = {level}")
+    for line in status.corrupt:
+        print(f"corrupt   {line} (the next run solves its cases again)")
+    if status.failed:
+        print("          `trackroller run STUDY --rerun-failed` solves just these again")
+
+
+def print_repeat(name: str, case: int, results: Path) -> int:
+    """Solve a case anew; 0 when it is what is stored."""
+    from trackroller.study.repeat import repeat_case
+    from trackroller.study.status import find_study
+
+    again = repeat_case(find_study(name, results), case, results)
+    print(again.command())
+    if again.largest == 0.0:
+        print(f"case {case}: equal to the stored result in every number")
+        return 0
+    for variable, apart in again.differences.items():
+        if apart > 0:
+            print(f"{variable}: differs by {apart:.1e} (relative)")
+    return 1
