@@ -56,7 +56,7 @@ def write_result(dataset: xr.Dataset, out: Path) -> None:
 
     if not out.parent.is_dir():
         raise InputError("--out", str(out), "the folder does not exist")
-    write_whole(out, lambda beside: dataset.to_netcdf(beside, engine="netcdf4") and None)
+    write_whole(out, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
 
 
 def _json(value: Any) -> Any:

@@ -156,7 +156,7 @@ def _base_value(key: Any, value: Any) -> Any:
 def _material_name(value: Any, where: str) -> str:
     if not isinstance(value, str) or not value:
         raise InputError(where, value, "the name of a material in the database",
-                         "Put a material of your own into config/materials.yaml (`trackroller materials add`).")  # fmt: skip
+                         "Put your own into config/materials.yaml (`trackroller materials add`).")  # fmt: skip
     return value
 
 

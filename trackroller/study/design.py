@@ -101,7 +101,7 @@ def _columns(study: Study, design: SampledDesign, n: int) -> dict[str, np.ndarra
     if "material_pair" in columns:
         pairs = columns.pop("material_pair")
         if any(isinstance(p, str) for p in pairs):  # a table's cell: "roller / guide"
-            pairs = [_split_pair(p) for p in pairs]
+            pairs = np.array([None, *map(_split_pair, pairs)], dtype=object)[1:]
         for i, name in enumerate(MATERIAL_FIELDS):
             columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
     columns["friction_coefficient"] = _friction(study, columns)
@@ -161,8 +161,8 @@ def check_geometry(study: Study) -> None:
     """
     config = study.config
     if config.design == "table" or any("expression" in spec for spec in study.factors.values()):
-        rows = build(study)
-        problem = geometry_problem({name: rows[name].values for name in _GEOMETRY})
+        design = build(study)
+        problem = geometry_problem({name: design[name].values for name in _GEOMETRY})
     else:
         levels = [_ends(study, name) for name in _GEOMETRY]
         if math.prod(map(len, levels)) > MAX_CASES:

@@ -86,7 +86,7 @@ def disk_error(exc: OSError, path: Path) -> WorkError:
                      "every finished case is kept.")  # fmt: skip
 
 
-def write_whole(path: Path, write: Callable[[Path], None]) -> None:
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     """Write a file beside its place, flush it to the disk, and move it there in one step.
 
     `write` gets the path of the temporary file. A failure leaves nothing behind; `OSError` (and netCDF's
@@ -139,7 +139,7 @@ def locked(path: Path, tell: Callable[[str], None] | None = None) -> Iterator[No
 
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
-        stream = open(path, "a")  # noqa: SIM115 - held over the yield
+        stream = open(path, "a")
     except OSError as exc:
         raise disk_error(exc, path) from None
     with stream:

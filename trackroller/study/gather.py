@@ -90,7 +90,10 @@ def _read_chunk(plan: Plan, name: str) -> store.Block:
 
 
 def _layout(plan: Plan) -> tuple[dict[str, store.Layout], dict[str, Any], dict[str, Any], dict[str, str]]:
-    layouts, coords, attrs, reasons = [], {}, {}, {}
+    layouts: list[dict[str, store.Layout]] = []
+    coords: dict[str, Any] = {}
+    attrs: dict[str, Any] = {}
+    reasons: dict[str, str] = {}
     for name in plan.chunks:
         block = _read_chunk(plan, name)
         layouts.append(block.layout)

@@ -195,7 +195,7 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
 
 
 def _write_text(path: Path, text: str) -> None:
-    write_whole(path, lambda beside: Path(beside).write_text(text, encoding="utf-8") and None)
+    write_whole(path, lambda beside: Path(beside).write_text(text, encoding="utf-8"))
 
 
 def _listed(path: Path, tell: Tell) -> np.ndarray | None:

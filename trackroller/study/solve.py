@@ -29,7 +29,9 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
     with regime failed and the exception as its reason. `InputError` (options that cannot be) goes on.
     """
     if solver is None:
-        from trackroller.solver import solve as solver
+        from trackroller.solver import solve
+
+        solver = solve
     started = time.perf_counter()
     blocks: list[store.Block] = []
     pending = [index]

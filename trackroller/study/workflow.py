@@ -75,7 +75,7 @@ def analyse_study(study_nc: str, out: str) -> None:
 
         log.info("no sensitivity analysis: %s", exc)
         empty = xr.Dataset(attrs={"comment": f"no sensitivity analysis: {exc}"})
-        write_whole(Path(out), lambda beside: empty.to_netcdf(beside) and None)
+        write_whole(Path(out), lambda beside: empty.to_netcdf(beside))
 
 
 def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:

@@ -58,7 +58,7 @@ def read_text(path: Path | str, what: str) -> str:
 def parse_mapping(text: str, what: str) -> dict[str, Any]:
     """A mapping from YAML text; raises `InputError` with the line for text that is none."""
     try:
-        data = yaml.load(text, Loader=_Loader)  # noqa: S506 - a SafeLoader
+        data = yaml.load(text, Loader=_Loader)  # a SafeLoader
     except InputError:
         raise
     except yaml.MarkedYAMLError as exc:

@@ -2,6 +2,8 @@
 
 import logging
 
+from snakemake.script import snakemake
+
 from trackroller.study.gather import gather
 from trackroller.study.workflow import log_to, workflow_plan
 

@@ -1,5 +1,7 @@
 """Write the report."""
 
+from snakemake.script import snakemake
+
 from trackroller.study.workflow import log_to, report_study
 
 log_to(snakemake.log[0])
