@@ -69,6 +69,12 @@ def test_sentence_tells_the_size_and_the_ends():
     assert "life of the roller from" in text and "friction power of both contacts from" in text
 
 
+def test_a_single_best_design_is_called_so():
+    """Where one design wins in everything there is nothing to trade."""
+    front = pareto(trade(lambda a, b: 100 - a, lambda a, b: a), {"roller_life_hours": "max", "friction_power": "min"})
+    assert words.pareto(front).startswith("One of 400 allowed designs is best in everything: life of the roller 99")
+
+
 @pytest.mark.parametrize(
     ("objectives", "constraints", "says"),
     [

@@ -132,7 +132,9 @@ def _share_words(sens: xr.Dataset, output: str, ranks: list[Rank], what: str, in
         text += f"; then {listing(more)}"
     small = [r.name for r in ranks if (r.high if np.isfinite(r.high) else r.value) < SMALL]
     if small:
-        text += f". {upper(listing(small))} may be left out (below {SMALL * 100:.0f} %)"
+        # only a total index speaks of what a factor does together with others
+        end = "may be left out" if index == "ST" else f"explain{'s' if len(small) == 1 else ''} next to nothing alone"
+        text += f". {upper(listing(small))} {end} (below {SMALL * 100:.0f} %)"
     return text + "."
 
 
@@ -252,6 +254,13 @@ def pareto(front: xr.Dataset) -> str:
     count, allowed = int(best.sum()), front.sizes["row"]
     if not count:
         return f"No design is left: {front.attrs['excluded']}."
+    if count == 1:
+        row = int(np.flatnonzero(best)[0])
+        goals = [item.split(" ")[0] for item in front.attrs["objectives"].split(", ")]
+        ends = [f"{front[n].attrs.get('long_name', n)} "
+                f"{with_unit(float(front[n].values[row]), front[n].attrs.get('units', ''))}" for n in goals]  # fmt: skip
+        return (f"One of {allowed} allowed designs is best in everything: {listing(ends)}. "
+                f"Left out: {front.attrs['excluded']}.")  # fmt: skip
     said = []
     for item in front.attrs["objectives"].split(", "):
         name, direction = item.split(" ")
