@@ -257,9 +257,11 @@ def pareto(front: xr.Dataset) -> str:
     if count == 1:
         row = int(np.flatnonzero(best)[0])
         goals = [item.split(" ")[0] for item in front.attrs["objectives"].split(", ")]
-        ends = [f"{front[n].attrs.get('long_name', n)} "
-                f"{with_unit(float(front[n].values[row]), front[n].attrs.get('units', ''))}" for n in goals]  # fmt: skip
-        return (f"One of {allowed} allowed designs is best in everything: {listing(ends)}. "
+        reached = []
+        for name in goals:
+            attrs, value = front[name].attrs, float(front[name].values[row])
+            reached.append(f"{attrs.get('long_name', name)} {with_unit(value, attrs.get('units', ''))}")
+        return (f"One of {allowed} allowed designs is best in everything: {listing(reached)}. "
                 f"Left out: {front.attrs['excluded']}.")  # fmt: skip
     said = []
     for item in front.attrs["objectives"].split(", "):
