@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-from snakemake.script import snakemake
-
 from trackroller.study.config import load_study
 from trackroller.study.gather import write_design
 from trackroller.study.workflow import log_to

@@ -1,7 +1,5 @@
 """Draw the figures."""
 
-from snakemake.script import snakemake
-
 from trackroller.study.workflow import draw_study, log_to
 
 log_to(snakemake.log[0])

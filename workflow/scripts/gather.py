@@ -2,8 +2,6 @@
 
 import logging
 
-from snakemake.script import snakemake
-
 from trackroller.study.gather import gather
 from trackroller.study.workflow import log_to, workflow_plan
 

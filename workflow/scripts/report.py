@@ -1,7 +1,5 @@
 """Write the report."""
 
-from snakemake.script import snakemake
-
 from trackroller.study.workflow import log_to, report_study
 
 log_to(snakemake.log[0])

@@ -1,7 +1,5 @@
 """Analyse what decides the results."""
 
-from snakemake.script import snakemake
-
 from trackroller.study.workflow import analyse_study, log_to
 
 log_to(snakemake.log[0])

@@ -3,8 +3,6 @@
 import logging
 from pathlib import Path
 
-from snakemake.script import snakemake
-
 from trackroller.study.files import StudyFolder
 from trackroller.study.solve import solve_chunk
 from trackroller.study.workflow import log_to
