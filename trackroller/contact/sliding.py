@@ -11,11 +11,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.errors import unknown_name
 from trackroller.parameters import SPIN_MODELS
+from trackroller.threads import share_rows
 
 _CONCENTRIC, _EDGE, _SKEWED = range(3)
 _TINY = 1e-13  # keeps logarithms finite on the column through the pole; its weight there is of order eps^2
@@ -35,7 +36,7 @@ def clustered_rule(n: int) -> tuple[np.ndarray, np.ndarray]:
     return v * v * (3 - 2 * v), w * 6 * v * (1 - v)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def rolling_slip(x, sine, cosine, radius, shift):
     """v_y / omega [mm] at lateral position x, eq. (21) with its misprint mended."""
     rest = radius * radius * cosine * cosine - x * cosine * (2.0 * radius * sine + x * cosine)
@@ -45,7 +46,7 @@ def rolling_slip(x, sine, cosine, radius, shift):
     return shift - x * cosine * (2.0 * radius * sine + x * cosine) / (root + radius * cosine)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def pole_offset(x, pole_x, pole_y, a, model):
     """y_C where v_x vanishes at lateral position x [mm], eqs (22) and (25)."""
     if model == 0 or abs(pole_x) >= a:
@@ -76,13 +77,16 @@ def _breakpoints(a, sine, cosine, radius, shift, model, out):
             if abs(zero) < a:
                 out[count] = zero
                 count += 1
-    if count > 1:
-        out[1:count] = np.sort(out[1:count])
+    for i in range(2, count):  # by insertion: at most three, and cheaper to compile than a library sort
+        j = i
+        while j > 1 and out[j - 1] > out[j]:
+            out[j - 1], out[j] = out[j], out[j - 1]
+            j -= 1
     out[count] = a
     return count + 1
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def _column(d, eps, nodes, weights):
     """Integrals over t in (-1, 1) of sqrt(1-t^2) times (t-d)/rho, t (t-d)/rho, eps/rho and rho.
 
@@ -143,12 +147,10 @@ def _one_patch(a, b, sine, cosine, radius, shift, model, nodes, weights):
     return f_t, f_a, m_r, power
 
 
-@njit(cache=True, parallel=True)
-def _all_patches(a, b, scale, sine, cosine, radius, shift, model, nodes, weights, out):
-    for i in prange(a.size):
-        f_t, f_a, m_r, power = _one_patch(
-            a[i], b[i], sine[i], cosine[i], radius[i], shift[i], model, nodes, weights
-        )
+@njit(cache=True, nogil=True)
+def _all_patches(first, last, a, b, scale, sine, cosine, radius, shift, model, nodes, weights, out):
+    for i in range(first, last):
+        f_t, f_a, m_r, power = _one_patch(a[i], b[i], sine[i], cosine[i], radius[i], shift[i], model, nodes, weights)
         out[0, i] = scale[i] * f_t
         out[1, i] = scale[i] * f_a
         out[2, i] = scale[i] * m_r
@@ -156,10 +158,13 @@ def _all_patches(a, b, scale, sine, cosine, radius, shift, model, nodes, weights
 
 
 def _integrals(ellipse: Ellipse, slip: Slip, friction: np.ndarray, spin_model: str, nodes: int) -> np.ndarray:
-    out = np.empty((4, np.size(friction)))
-    _all_patches(ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.max_pressure, slip.sine,
-                 slip.cosine, slip.guide_profile_radius, slip.shift, spin_model_index(spin_model),
-                 *clustered_rule(nodes), out)  # fmt: skip
+    n = np.size(friction)
+    out = np.empty((4, n))
+    columns = (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.max_pressure, slip.sine,
+               slip.cosine, slip.guide_profile_radius, slip.shift)  # fmt: skip
+    columns = tuple(np.ascontiguousarray(np.broadcast_to(c, (n,)), dtype=float) for c in columns)
+    rest = (spin_model_index(spin_model), *clustered_rule(nodes), out)
+    share_rows(lambda first, last: _all_patches(first, last, *columns, *rest), n, 64)
     return out
 
 
@@ -195,10 +200,10 @@ def friction_power(ellipse: Ellipse, slip: Slip, friction: np.ndarray, *, spin_m
     return _integrals(ellipse, slip, friction, spin_model, nodes)[3]
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def shear_directions(a, b, sine, cosine, radius, shift, model, x, y, slip_x, slip_y):
     """Rigid slip v/omega [mm] at points (x, y) [mm] of each patch; arrays (n,), (n, m) -> slip_x, slip_y."""
-    for i in prange(a.size):
+    for i in range(a.size):
         pole_x = shift[i] / sine[i]
         inside = abs(pole_x) < a[i]
         pole_y = -b[i] * math.sqrt(1.0 - (pole_x / a[i]) ** 2) if inside else 0.0

@@ -22,10 +22,11 @@ import cmath
 import math
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from trackroller.contact.sliding import clustered_rule
 from trackroller.halfspace.kernels import point_kernel
+from trackroller.threads import share_rows
 
 PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU = range(4)  # rows of the result
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
@@ -37,7 +38,7 @@ A, B, FRICTION, SINE, COSINE, RADIUS, SHIFT, FIXED, POLE_X, K0, K1, K2 = range(1
 _FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets the inner loop run in vectors; keeps NaN and inf
 
 
-@njit(cache=True, inline="always", fastmath=_FAST, error_model="numpy")
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def _slip(patch, x, y):
     """Rigid slip v/omega of the roller against the guide at (x, y) [mm], eqs (21), (24), without branches."""
     left = patch[K1] * (x + patch[A])
@@ -48,7 +49,7 @@ def _slip(patch, x, y):
     return v_x, patch[SHIFT] - product / (math.sqrt(flat * flat - product) + flat)
 
 
-@njit(cache=True, inline="always", error_model="numpy")
+@njit(cache=True, error_model="numpy")
 def _interpolated(field, u, v):
     """Shares (x, y) of the traction bound at (u, v) in [-1, 1]^2, bilinear between element centres."""
     ny, nx = field.shape[1], field.shape[2]
@@ -76,7 +77,7 @@ def _direction(patch, field, x, y):
     return -v_x / speed, -v_y / speed
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def _rotate(out, row, c, s, ee, tt, zz, et, ez, tz):
     """Adds a tensor given along e = (c, s), t = (-s, c), z."""
     out[row, 0] += c * c * ee + s * s * tt - 2.0 * c * s * et
@@ -87,7 +88,7 @@ def _rotate(out, row, c, s, ee, tt, zz, et, ez, tz):
     out[row, 5] += c * ez - s * tz
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def _spread(start, end, center, scale, u, v, w):
     """Point and weight of a piece [start, end] one end of which is `center`, dense there on `scale`.
 
@@ -131,7 +132,7 @@ def _plane_waves(patch, x, y, z, d_x, d_y, nodes, weights, out):
             _one_wave(a, b, px, py, z, phi, w, patch[FRICTION], d_x, d_y, out)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def _one_wave(a, b, px, py, z, phi, w, friction, d_x, d_y, out):
     kx, ky = math.cos(phi), math.sin(phi)
     across = px * kx + py * ky
@@ -293,9 +294,9 @@ def stress_at(patch, field, x, y, z, waves, wave_weights, nodes, weights, out):
         _rest_of_friction(patch, field, x, y, z, d_x, d_y, nodes, weights, out)
 
 
-@njit(cache=True, parallel=True)
-def _stress_many(patch, field, points, waves, wave_weights, nodes, weights, out):
-    for i in prange(points.shape[0]):
+@njit(cache=True, nogil=True)
+def _stress_many(first, last, patch, field, points, waves, wave_weights, nodes, weights, out):
+    for i in range(first, last):
         stress_at(patch, field, points[i, 0], points[i, 1], points[i, 2], waves, wave_weights, nodes, weights, out[i])
 
 
@@ -320,7 +321,8 @@ def stress_parts(
     points = np.ascontiguousarray(points, dtype=float)
     out = np.empty((len(points), 4, 6))
     patch, field = np.ascontiguousarray(patch, dtype=float), np.ascontiguousarray(field, dtype=float)
-    _stress_many(patch, field, points, *clustered_rule(waves), *clustered_rule(nodes), out)
+    rest = (patch, field, points, *clustered_rule(waves), *clustered_rule(nodes), out)
+    share_rows(lambda first, last: _stress_many(first, last, *rest), len(points), 32)
     return out
 
 

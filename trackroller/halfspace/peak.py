@@ -11,10 +11,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from trackroller.contact.sliding import clustered_rule
 from trackroller.halfspace.ellipse import K0, K1, K2, POLE_X, A, B, stress_at
+from trackroller.threads import share_rows
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def _scan_points() -> np.ndarray:
 SCAN = _scan_points()
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def _von_mises(parts, nu, sign):
     """von Mises stress, eq. (6), from stress parts (4, 6)."""
     s0 = parts[0, 0] + nu * parts[1, 0] + sign * (parts[2, 0] + nu * parts[3, 0])
@@ -76,14 +77,19 @@ def _von_mises(parts, nu, sign):
                      + 3.0 * (t0 * t0 + t1 * t1 + t2 * t2))  # fmt: skip
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def _value(patch, field, nu, sign, u, rule, rule_w, waves, waves_w, parts):
     c = min(patch[A], patch[B])
     stress_at(patch, field, u[0] * patch[A], u[1] * patch[B], u[2] * c, waves, waves_w, rule, rule_w, parts)
     return _von_mises(parts, nu, sign)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
+def _distance2(u, v):
+    return (u[0] - v[0]) ** 2 + (u[1] - v[1]) ** 2 + (u[2] - v[2]) ** 2
+
+
+@njit(cache=True)
 def _project(u):
     r = math.hypot(u[0], u[1])
     if r > 1.0:
@@ -134,7 +140,8 @@ def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, fi
             if distance < 0.5 * h[k]:
                 h[k] *= 0.35
         gained = f - before
-        if np.max(h) < smallest or (gained < 1e-6 * f and moved < 1e-9 and np.max(h) < 4 * smallest):
+        widest = max(h[0], h[1], h[2])
+        if widest < smallest or (gained < 1e-6 * f and moved < 1e-9 and widest < 4 * smallest):
             break
     return f, gained
 
@@ -159,7 +166,9 @@ def _scan_of(patch):
 def _seeds(scan, values, count, chosen):
     """Indices of the best scan points that lie apart from each other; returns how many."""
     found = 0
-    best = values.max()
+    best = 0.0
+    for i in range(values.size):
+        best = max(best, values[i])
     taken = np.zeros(values.size)
     while found < count:
         k, top = -1, 0.85 * best
@@ -199,13 +208,22 @@ def _one_peak(patch, field, nu, rules, seeds, finalists, smallest, floor, out):
             u[:] = points[chosen[s]]
             f = _value(patch, field, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
             values[s], _ = _climb(patch, field, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06)
-        order = np.argsort(-values[:found])
+        best_seed = 0
+        for k in range(1, found):
+            if values[k] > values[best_seed]:
+                best_seed = k
+        top = values[best_seed]
         best = gained_best = -1.0
         for k in range(min(found, finalists)):
-            u = tops[order[k]]
-            if values[order[k]] < 0.97 * values[order[0]]:
+            s, high = best_seed, -1.0  # the highest not yet polished
+            for j in range(found):
+                if values[j] > high:
+                    s, high = j, values[j]
+            values[s] = -1.0
+            u = tops[s]
+            if high < 0.97 * top:
                 break
-            if k > 0 and np.sum((u - tops[order[0]]) ** 2) < 0.01:
+            if k > 0 and _distance2(u, tops[best_seed]) < 0.01:
                 continue  # the same summit
             f = _value(patch, field, nu[body], sign, u, p_rule, p_w, waves, waves_w, parts)
             f, gained = _climb(patch, field, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest)
@@ -218,9 +236,9 @@ def _one_peak(patch, field, nu, rules, seeds, finalists, smallest, floor, out):
         out[body, 4] = (2.0 * abs(f - best) + 2.0 * gained_best) / f + floor
 
 
-@njit(cache=True, parallel=True)
-def _all_peaks(patches, fields, nu, rules, seeds, finalists, smallest, floor, out):
-    for i in prange(patches.shape[0]):
+@njit(cache=True, nogil=True)
+def _all_peaks(first, last, patches, fields, nu, rules, seeds, finalists, smallest, floor, out):
+    for i in range(first, last):
         _one_peak(patches[i], fields[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
 
 
@@ -250,7 +268,9 @@ def find_peaks(
         orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
         rules = tuple(array for order in orders for array in clustered_rule(int(order * factor)))
         chosen = np.zeros((group.size, 2, 1, 1)) if fields is None else np.ascontiguousarray(fields[group])
-        _all_peaks(patches[group], chosen, np.ascontiguousarray(poisson_ratio[group], dtype=float), rules, settings.seeds,
-                   settings.finalists, settings.step, settings.floor, found)  # fmt: skip
+        ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
+        rest = (patches[group], chosen, ratios, rules, settings.seeds, settings.finalists, settings.step,
+                settings.floor, found)  # fmt: skip
+        share_rows(lambda first, last, rest=rest: _all_peaks(first, last, *rest), group.size, 1)
         out[group] = found
     return Peak(*np.moveaxis(out, 2, 0))
