@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,22 +12,18 @@ from typing import TYPE_CHECKING, Any, Literal
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import (
     ACCURACIES,
-    CONTACT_MODELS,
     DEFAULT_OUTPUTS,
-    FRICTION_LEVELS,
     HERTZ,
     LIFE_RULES,
     MATERIAL_FIELDS,
     OUTPUT_GROUPS,
-    PARAMETERS,
-    SPIN_MODELS,
     STRESS_BODIES,
 )
-from trackroller.study import expressions
-from trackroller.study.factors import LISTS, parse
+from trackroller.study.entries import OPTION_FACTORS, base_value, choice, factor
+from trackroller.study.factors import LISTS
 from trackroller.study.sampling import METHODS
 from trackroller.study.yamlfile import parse_mapping, read_text
 
@@ -37,9 +32,6 @@ if TYPE_CHECKING:
 
     from trackroller.materials import MaterialDatabase
 
-CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS)
-OPTION_FACTORS: dict[str, tuple[str, ...]] = {"contact_model": CONTACT_MODELS, "spin_model": SPIN_MODELS}
-FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
@@ -49,12 +41,6 @@ def check_name(name: str, where: str = "name") -> str:
         raise InputError(where, name, "letters, digits, '.', '_' and '-', at most 64, a letter or digit first",
                          "It names the results folder: no path parts.")  # fmt: skip
     return name
-
-
-def _choice(value: Any, where: str, options: tuple[str, ...]) -> str:
-    if not isinstance(value, str) or value not in options:
-        raise unknown_name(where, value, options)
-    return value
 
 
 class StudyFile(BaseModel):
@@ -90,7 +76,7 @@ class StudyFile(BaseModel):
     @field_validator("design")
     @classmethod
     def _design(cls, value: str) -> str:
-        return _choice(value, "design", METHODS)
+        return choice(value, "design", METHODS)
 
     @field_validator("outputs")
     @classmethod
@@ -98,7 +84,7 @@ class StudyFile(BaseModel):
         if not value:
             raise InputError("outputs", [], f"at least one of {', '.join(OUTPUT_GROUPS)}")
         for name in value:
-            _choice(name, "outputs", OUTPUT_GROUPS)
+            choice(name, "outputs", OUTPUT_GROUPS)
         if len(set(value)) < len(value):
             raise InputError("outputs", list(value), "each group may stand once")
         return value
@@ -110,20 +96,20 @@ class StudyFile(BaseModel):
         if not several or len(set(several)) < len(several):
             raise InputError(info.field_name, list(several), "a list without repetition that is not empty")
         for name in several:
-            _choice(name, info.field_name, OPTION_FACTORS[info.field_name])
+            choice(name, info.field_name, OPTION_FACTORS[info.field_name])
         return several[0] if len(several) == 1 else value
 
     @field_validator("hertz", "stress_bodies", "life_rule")
     @classmethod
     def _options(cls, value: str, info: Any) -> str:
         options = {"hertz": HERTZ, "stress_bodies": STRESS_BODIES, "life_rule": LIFE_RULES}
-        return _choice(value, info.field_name, options[info.field_name])
+        return choice(value, info.field_name, options[info.field_name])
 
     @field_validator("accuracy", mode="before")
     @classmethod
     def _accuracy(cls, value: Any) -> Any:
         if isinstance(value, str):
-            return _choice(value, "accuracy", ACCURACIES)
+            return choice(value, "accuracy", ACCURACIES)
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < 1:
             raise InputError("accuracy", value, f"{', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
         return float(value)
@@ -133,104 +119,14 @@ class StudyFile(BaseModel):
     def _base(cls, value: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError("base", value, "a mapping of parameters to values")
-        return {key: _base_value(key, entry) for key, entry in value.items()}
+        return {key: base_value(key, entry) for key, entry in value.items()}
 
     @field_validator("factors", mode="before")
     @classmethod
     def _factors(cls, value: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError("factors", value, "a mapping of factors to their values")
-        return {key: _factor(key, spec, value) for key, spec in value.items()}
-
-
-def _base_value(key: Any, value: Any) -> Any:
-    if key == "material_pair":
-        return list(_pair(value, "base.material_pair"))
-    if key not in CASE_FIELDS:
-        raise unknown_name("base", str(key), (*CASE_FIELDS, "material_pair"))
-    if key in MATERIAL_FIELDS:
-        return _material_name(value, f"base.{key}")
-    return _number(key, value, f"base.{key}")
-
-
-def _material_name(value: Any, where: str) -> str:
-    if not isinstance(value, str) or not value:
-        raise InputError(where, value, "the name of a material in the database",
-                         "Put your own into config/materials.yaml (`trackroller materials add`).")  # fmt: skip
-    return value
-
-
-def _pair(value: Any, where: str) -> tuple[str, str]:
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise InputError(where, value, "a pair [roller material, guide material]")
-    return _material_name(value[0], where), _material_name(value[1], where)
-
-
-def _number(name: str, value: Any, where: str) -> Any:
-    """A value of parameter `name` as a float (or a word of the friction levels, or None)."""
-    parameter = PARAMETERS[name]
-    if value is None and parameter.allow_missing:
-        return None
-    if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
-        return value
-    if isinstance(value, (list, dict, bool)) or value is None:
-        raise InputError(where, value, parameter.allowed())
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
-        remedy = ""
-        if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
-            remedy = f"Did you mean '{close}'?"
-        raise InputError(where, value, parameter.allowed(), remedy) from None
-    if math.isnan(number) or not parameter.accepts(number):
-        raise InputError(where, value, parameter.allowed())
-    return number
-
-
-def _factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
-    where = f"factors.{key}"
-    if key not in FACTOR_NAMES:
-        if not isinstance(key, str) or not key.isidentifier() or not _used(key, factors):
-            raise unknown_name("factors", str(key), FACTOR_NAMES)
-        parse(key, spec)
-        return dict(spec)
-    if isinstance(spec, Mapping):
-        spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
-    factor = parse(key, spec)
-    if key not in PARAMETERS and factor.kind != "values":
-        raise InputError(where, factor.kind, "names are given as {values: [...]}")
-    if key in PARAMETERS:
-        for level in (*factor.levels, *(factor.numbers if factor.kind == "uniform" else ())):
-            _number(key, level, f"{where}.{factor.kind}")
-    return dict(spec)
-
-
-def _used(name: str, factors: Mapping[Any, Any]) -> bool:
-    """Is the name an auxiliary factor, there for an expression of another one?"""
-    texts = [s["expression"] for s in factors.values() if isinstance(s, Mapping) and "expression" in s]
-    return any(isinstance(t, str) and name in expressions.names(t, "factors") for t in texts)
-
-
-def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
-    """Entries of a factor's list in their own type: numbers as floats, pairs checked, names as texts."""
-    if not isinstance(value, list):
-        return value
-    if kind != "values":
-        return [_to_float(v) for v in value]
-    if key in PARAMETERS:
-        return [_number(key, v, where) for v in value]
-    if key == "material_pair":
-        return [list(_pair(v, where)) for v in value]
-    if key in OPTION_FACTORS:
-        return [_choice(v, where, OPTION_FACTORS[key]) for v in value]
-    return [_material_name(v, where) for v in value]
-
-
-def _to_float(value: Any) -> Any:
-    try:
-        return float(value) if isinstance(value, str) else value
-    except ValueError:
-        return value
+        return {key: factor(key, spec, value) for key, spec in value.items()}
 
 
 def _translate(error: ValidationError) -> InputError:
