@@ -119,4 +119,7 @@ def sampled_study(n: int = 400, seed: int = 3, **options) -> xr.Dataset:
     ds = xr.Dataset({k: (("case", *dims), v) for k, (dims, v) in results(columns, **options).items()})
     ds = ds.assign_coords({k: ("case", v.astype(str) if k == "material_pair" else v) for k, v in columns.items()})
     ds = ds.assign_coords(case=np.arange(n))
-    return _finish(ds, {"friction_coefficient": {"uniform": [0.02, 0.4]}}, "lhs")
+    factors = {"friction_coefficient": {"uniform": [0.02, 0.4]}, "roller_profile_radius": {"uniform": [-9, -6.3]},
+               "axial_force": {"uniform": [0, 140]}, "motor_force": {"values": [-30.0, 0.0]},
+               "material_pair": {"values": [p.split(" / ") for p in PAIRS[:3]]}}  # fmt: skip
+    return _finish(ds, factors, "lhs")

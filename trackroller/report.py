@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
+from trackroller.plots.study_loads import surface_share
 from trackroller.plots.study_view import StudyView, study_settings
 from trackroller.report_papers import conventions, papers
 from trackroller.report_tables import (
@@ -141,7 +142,7 @@ def summary(view: StudyView) -> list[str]:
             low, high = style.number(np.nanmin(peak)), style.number(np.nanmax(peak))
             text = f"Peak von Mises stress of the {body}: from {low} to {high} MPa"
             if view.has(f"at_surface_{body}"):
-                text += f", at the surface in {100 * np.nanmean(table[f'at_surface_{body}']):.0f} % of the cases"
+                text += f", {surface_share(view.table[f'at_surface_{body}'].to_numpy())}"
             said.append(text + ".")
     return said
 

@@ -230,8 +230,8 @@ def design_rows(view: StudyView, designs: pd.DataFrame) -> list[tuple[str, list[
         if column in designs and designs[column].notna().any():
             rows.append((words, ["unlimited" if np.isposinf(v) else style.rounded(v, 4) for v in designs[column]]))
     if "at_surface_roller" in designs:
-        places = {1.0: "surface", 0.0: "below it"}
-        rows.append(("Peak of the roller lies", [places.get(v, "–") for v in designs["at_surface_roller"]]))
+        places = {1.0: "at the surface", 0.0: "below the surface"}
+        rows.append(("Peak stress of the roller", [places.get(v, "–") for v in designs["at_surface_roller"]]))
     if "regime" in designs:
         rows.append(("Regime", [style.REGIME_LABELS[int(v)] for v in designs["regime"]]))
     return rows

@@ -74,13 +74,16 @@ def series(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any],
 
 
 def binned_median(x: pd.Series, y: pd.Series, bins: int = 6) -> tuple[np.ndarray, np.ndarray]:
-    """Median of y in bins of equal numbers of points along x; empty for fewer than five points a bin."""
+    """Median of y at few levels of x, else in bins of equally many points; empty for fewer than five a bin."""
     good = np.isfinite(x) & np.isfinite(y)
-    order = np.argsort(x[good].to_numpy())
-    if len(order) < 5 * bins:
+    at, value = x[good].to_numpy(), y[good].to_numpy()
+    levels = np.unique(at)
+    if 2 <= len(levels) <= bins:
+        return levels, np.array([np.median(value[at == level]) for level in levels])
+    if len(at) < 5 * bins:
         return np.array([]), np.array([])
-    parts = np.array_split(order, bins)
-    return tuple(np.array([np.median(v[good].to_numpy()[p]) for p in parts]) for v in (x, y))  # type: ignore[return-value]
+    parts = np.array_split(np.argsort(at), bins)
+    return np.array([np.median(at[p]) for p in parts]), np.array([np.median(value[p]) for p in parts])
 
 
 def legend(
@@ -114,12 +117,12 @@ def hollow_entry(rows: pd.DataFrame) -> list[tuple[str, dict[str, Any]]]:
 def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Life over the friction coefficient, a line a material pair, by drive."""
     x = "friction_coefficient"
-    if view.life is None or x not in view.factors or not view.numeric(x) or not view.has(view.life[0], x):
+    if view.life is None or not view.behind(x) or not view.numeric(x) or not view.has(view.life[0], x):
         return None
     column, words, unit = view.life
     pair = next((f for f in ("material_pair", "roller_material", "guide_material") if f in view.factors), None)
     drive = "motor_force" if "motor_force" in view.factors and len(view.levels("motor_force")) <= 5 else None
-    rows, held = view.hold(tuple(f for f in (x, pair, drive) if f))
+    rows, held = view.hold(tuple(f for f in (*view.behind(x), pair, drive) if f))
     rows = _thinned(rows, view.grid).copy()
     rows["_life"], top = capped(rows[column].to_numpy())
     if not np.isfinite(rows["_life"]).any():
@@ -181,32 +184,31 @@ def _friction_info(
         + f". {held}"
         + ("" if view.grid else " Lines: medians.")
     )
-    shown = rows
-    if pair:
-        level = view.held_level(pair)
-        shown = rows[rows[pair] == level]
-    if drives[0] is not None:
-        shown = shown[shown["motor_force"] == view.held_level("motor_force")]
-    where = ", ".join(style.level_text(n, view.held_level(n)) for n in (pair, "motor_force") if n in view.factors)
-    shown = shown[np.isfinite(shown["_life"])].sort_values("friction_coefficient")
+    name, x = "life_against_friction", "friction_coefficient"
+    shown = rows[np.isfinite(rows["_life"])].sort_values(x)
+    if not view.grid:
+        return style.FigureInfo(name, caption, _sample_sentence(shown, x, unit))
+    for factor in (pair, "motor_force" if drives[0] is not None else None):
+        if factor:
+            shown = shown[shown[factor] == view.held_level(factor)]
     if len(shown) < 2:
-        return style.FigureInfo("life_against_friction", caption, "Too few cases have a finite life to state a trend.")
-    if view.grid:
-        first, last = shown.iloc[0], shown.iloc[-1]
-        ends = first["_life"], last["_life"], first["friction_coefficient"], last["friction_coefficient"]
-    else:
-        fifth = max(len(shown) // 5, 1)
-        low, high = shown.iloc[:fifth], shown.iloc[-fifth:]
-        ends = (
-            low["_life"].median(),
-            high["_life"].median(),
-            low["friction_coefficient"].median(),
-            high["friction_coefficient"].median(),
-        )
-    return style.FigureInfo(
-        "life_against_friction",
-        caption,
-        change_sentence("friction", *ends, where, "life" if view.grid else "median life"),
+        return style.FigureInfo(name, caption, "Too few cases have a life to state a trend.")
+    where = ", ".join(style.level_text(n, view.held_level(n)) for n in (pair, "motor_force") if n in view.factors)
+    first, last = shown.iloc[0], shown.iloc[-1]
+    sentence = change_sentence("friction", first["_life"], last["_life"], first[x], last[x], where, "life")
+    return style.FigureInfo(name, caption, sentence)
+
+
+def _sample_sentence(shown: pd.DataFrame, x: str, unit: str) -> str:
+    """Median life of the fifths of a sample with the lowest and the highest friction: other factors vary as well."""
+    fifth = len(shown) // 5
+    if fifth < 3:
+        return "Too few cases have a life to state a trend."
+    low, high = shown.iloc[:fifth], shown.iloc[-fifth:]
+    said = [f"{style.rounded(part['_life'].median(), 3)} {unit}" for part in (low, high)]
+    return (
+        f"The fifth of the cases with the lowest friction (up to {style.rounded(low[x].max(), 3)}) has a median "
+        f"life of {said[0]}, the fifth with the highest (from {style.rounded(high[x].min(), 3)}) one of {said[1]}."
     )
 
 

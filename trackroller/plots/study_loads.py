@@ -128,7 +128,6 @@ def _stress_info(view: StudyView, rows: pd.DataFrame, body: str, hue: str | None
         return style.FigureInfo("stress_against_fit", caption, "Too few cases have a peak stress to state a trend.")
     if view.grid and hue:
         good = good[good[hue] == view.held_level(hue)]
-    share = float((rows[flag] == 1).mean()) if flag in rows else float("nan")
     fifth = 1 if view.grid else max(len(good) // 5, 1)
     low, high = good.iloc[:fifth], good.iloc[-fifth:]
     sentence = (
@@ -136,21 +135,29 @@ def _stress_info(view: StudyView, rows: pd.DataFrame, body: str, hue: str | None
         f"{'' if view.grid else 'median '}peak stress of the {body} goes from "
         f"{style.rounded(low[y].median(), 3)} to {style.rounded(high[y].median(), 3)} MPa"
     )
-    if np.isfinite(share):
-        sentence += f"; it lies at the surface in {share:.0%} of the cases shown".replace("%", " %")
+    if flag in rows and np.isfinite(rows[flag]).any():
+        sentence += f"; it lies {surface_share(rows[flag].to_numpy())}"
     return style.FigureInfo("stress_against_fit", caption, sentence + ".")
+
+
+def surface_share(flags: np.ndarray) -> str:
+    """'at the surface in 40 % of the cases' from flags (1 surface, 0 below, NaN unknown), shape (n,)."""
+    share = float(np.nanmean(flags))
+    if share in (0.0, 1.0):
+        return "at the surface in every case" if share else "below the surface in every case"
+    return f"at the surface in {max(1.0, min(99.0, 100 * share)):.0f} % of the cases"
 
 
 def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Normal, lateral and driving force of both contacts over the axial force, by drive."""
     x = "axial_force"
-    if x not in view.factors or not view.numeric(x):
+    if not view.behind(x) or not view.numeric(x):
         return None
     kinds = [k for k in FORCES if f"{k[0]}_1" in view.table and (view.has(f"{k[0]}_1") or view.has(f"{k[0]}_2"))]
     if not kinds:
         return None
     drive = "motor_force" if "motor_force" in view.factors and len(view.levels("motor_force")) <= 5 else None
-    rows, held = view.hold((x, drive) if drive else (x,))
+    rows, held = view.hold((*view.behind(x), drive) if drive else view.behind(x))
     drives = view.levels(drive, rows) if drive else [None]
     if not view.grid and len(rows) > MAX_POINTS:
         rows = rows.sample(MAX_POINTS, random_state=0)
@@ -261,7 +268,6 @@ def _force_info(rows: pd.DataFrame, held: str, drives: int) -> style.FigureInfo:
         return style.FigureInfo(name, caption, "Too few cases have forces in both contacts to compare them.")
     last = np.flatnonzero(good)[np.argmax(np.abs(axial[good]))]
     one, two = (style.number(v) for v in both[last])
-    sentence = (
-        f"At an axial force of {style.number(axial[last])} N the contacts carry {one} and {two} N; none lifts off."
-    )
+    at = style.number(axial[last])
+    sentence = f"At an axial force of {at} N the contacts carry {one} and {two} N; no case shown lifts off."
     return style.FigureInfo(name, caption, sentence)

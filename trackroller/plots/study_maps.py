@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_TICKS = 9
+MAX_CELLS = 12  # levels a sampled factor may take to be drawn as cells
 
 
 def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
@@ -33,7 +34,8 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
         return None
     figure = style.new_figure(96)
     axes = figure.subplots()
-    image = _life_cells(axes, view, rows, pair, column) if view.grid else _life_points(axes, rows, pair, column)
+    cells = view.grid or all(len(view.levels(f)) <= MAX_CELLS for f in pair)
+    image = _life_cells(axes, view, rows, pair, column) if cells else _life_points(axes, rows, pair, column)
     bar = figure.colorbar(
         image,
         ax=axes,
@@ -72,10 +74,11 @@ def _life_pair(view: StudyView) -> tuple[str, str] | None:
 
 
 def _table(rows: pd.DataFrame, pair: tuple[str, str], column: str, levels: tuple[list, list]) -> np.ndarray:
-    """Values over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
+    """Values (medians of a sample) over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
     cells = np.full((len(levels[1]), len(levels[0])), np.nan)
     place = [{v: i for i, v in enumerate(part)} for part in levels]
-    for x, y, value in zip(rows[pair[0]], rows[pair[1]], rows[column], strict=True):
+    medians = rows.groupby(list(pair), as_index=False)[column].median()
+    for x, y, value in zip(medians[pair[0]], medians[pair[1]], medians[column], strict=True):
         cells[place[1][y], place[0][x]] = value
     return cells
 
@@ -97,7 +100,7 @@ def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: tuple[str
         linewidth=0.1,
     )
     _ticks(axes, pair, levels)
-    if "regime" in rows:
+    if "regime" in rows and view.grid:
         regime = _table(rows, pair, "regime", levels)
         for code in (1, 2, 3):
             _hatched(axes, regime == code, code)

@@ -69,9 +69,9 @@ class StudyView:
             if name not in names and name in table and len(table):
                 base[name] = table[name].iloc[0]
         derived = {
-            p: tuple(d for d in map(str, ds[p].dims) if d in names)
+            p: tuple(d for d in map(str, ds[p].dims) if d in names or d == "case")
             for p in PARAMETERS
-            if p in ds.variables and p not in names
+            if p in ds.variables and p in table and p not in names and table[p].nunique() > 1
         }
         return cls(table, tuple(names), base, grid, dict(ds.attrs), derived)
 
@@ -219,6 +219,10 @@ def _factor_names(ds: xr.Dataset, dims: list[str], table: pd.DataFrame) -> list[
         if v.dims == ("case",) and n in table and n not in PLAIN_RESULTS and n != "case"
     ]
     varying = [n for n in listed if table[n].nunique(dropna=False) > 1]
+    given = study_settings(ds.attrs).get("factors")
+    if isinstance(given, Mapping):  # what is computed from other factors is no factor of its own
+        free = [str(n) for n, spec in given.items() if not (isinstance(spec, Mapping) and "expression" in spec)]
+        varying = [n for n in free if n in varying] or varying
     if "material_pair" in varying:
         varying = [n for n in varying if n not in ("roller_material", "guide_material")]
     return names + varying

@@ -75,10 +75,12 @@ def look() -> Iterator[None]:
 
 
 def palette(count: int) -> list[Any]:
-    """`count` colours that colour-blind readers tell apart."""
+    """`count` colours that colour-blind readers tell apart, without those too light for a line; after eight again."""
     import seaborn
 
-    return list(seaborn.color_palette("colorblind", max(count, 1)))
+    colours = seaborn.color_palette("colorblind")
+    dark = [colours[i] for i in (0, 1, 2, 3, 4, 5, 7, 9)]
+    return [dark[i % len(dark)] for i in range(max(count, 1))]
 
 
 def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> Figure:
@@ -201,7 +203,7 @@ def factor_label(name: str, units: str | None = None) -> str:
     """Axis label of a factor: long name, symbol, unit."""
     parameter = PARAMETERS.get(name)
     if parameter is None:
-        return f"{plain(name)} [{unit_text(units)}]" if units else plain(name)
+        return with_unit(capital(plain(name)), units) if units else capital(plain(name))
     text = parameter.long_name[0].upper() + parameter.long_name[1:]
     return with_unit(f"{text} {SYMBOLS.get(parameter.symbol, parameter.symbol)}", parameter.unit)
 
