@@ -85,6 +85,11 @@ def _value(patch, field, nu, sign, u, rule, rule_w, waves, waves_w, parts):
 
 
 @njit(cache=True)
+def _copy(source, target):
+    target[0], target[1], target[2] = source[0], source[1], source[2]
+
+
+@njit(cache=True)
 def _distance2(u, v):
     return (u[0] - v[0]) ** 2 + (u[1] - v[1]) ** 2 + (u[2] - v[2]) ** 2
 
@@ -101,8 +106,8 @@ def _project(u):
 @njit(cache=True)
 def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, smallest):
     """Pattern search from u with value f: a parabola along radius, circumference and depth in turn."""
-    h = np.array([first, 1.6 * first, first])
-    trial, axis = np.empty(3), np.empty(3)
+    h, trial, axis, f_side = np.empty(3), np.empty(3), np.empty(3), np.empty(2)
+    h[0], h[1], h[2] = first, 1.6 * first, first
     gained = 0.0
     for _sweep in range(12):
         before = f
@@ -110,9 +115,10 @@ def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, fi
         cx, cy = (u[0] / r, u[1] / r) if r > 1e-9 else (1.0, 0.0)
         moved = 0.0
         for k in range(3):
-            axis[0], axis[1], axis[2] = (cx, cy, 0.0) if k == 0 else ((-cy, cx, 0.0) if k == 1 else (0.0, 0.0, 1.0))
+            axis[0] = cx if k == 0 else (-cy if k == 1 else 0.0)
+            axis[1] = cy if k == 0 else (cx if k == 1 else 0.0)
+            axis[2] = 1.0 if k == 2 else 0.0
             u0, v0, w0, f0 = u[0], u[1], u[2], f
-            f_side = np.empty(2)
             for side in range(2):
                 step = h[k] if side == 0 else -h[k]
                 trial[0], trial[1], trial[2] = u0 + step * axis[0], v0 + step * axis[1], w0 + step * axis[2]
@@ -123,7 +129,7 @@ def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, fi
                 )
                 if f_side[side] > f:
                     f = f_side[side]
-                    u[:] = trial
+                    _copy(trial, u)
             curve = f_side[0] - 2.0 * f0 + f_side[1]
             if curve < 0.0:
                 step = 0.5 * h[k] * (f_side[1] - f_side[0]) / curve
@@ -134,7 +140,7 @@ def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, fi
                     value = _value(patch, field, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
                     if value > f:
                         f = value
-                        u[:] = trial
+                        _copy(trial, u)
             distance = abs(u[0] - u0) + abs(u[1] - v0) + abs(u[2] - w0)
             moved = max(moved, distance / h[k])
             if distance < 0.5 * h[k]:
@@ -146,20 +152,20 @@ def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, fi
     return f, gained
 
 
-@njit(cache=True)
-def _scan_of(patch):
-    """The common scan and points on the line where the lateral slip turns: its sharp fold carries ridges of stress."""
-    pole = min(max(patch[POLE_X] / patch[A], -1.0), 1.0)
-    points = np.empty((SCAN.shape[0] + 8, 3))
-    points[: SCAN.shape[0]] = SCAN
-    for i in range(8):
-        share = (0.15, 0.4, 0.6, 0.85)[i % 4]
-        x = pole + share * (-1.0 - pole if i < 4 else 1.0 - pole)
-        slope = patch[K1] * (x + 1.0) if i < 4 else patch[K2] * (x - 1.0)
-        u = points[SCAN.shape[0] + i]
-        u[0], u[1], u[2] = x, (patch[K0] + slope * patch[A]) / patch[B], 0.0
-        _project(u)
-    return points
+def _scans(patches: np.ndarray) -> np.ndarray:
+    """Points (n, m, 3) of the scans: the common ones and some on the line where the lateral slip turns.
+
+    The sharp fold of the slip carries ridges of stress in slender patches.
+    """
+    pole = np.clip(patches[:, POLE_X] / patches[:, A], -1.0, 1.0)[:, None]
+    share = np.array([0.15, 0.4, 0.6, 0.85])
+    left, right = pole - share * (1.0 + pole), pole + share * (1.0 - pole)
+    a, b = patches[:, A, None], patches[:, B, None]
+    fold = np.concatenate([patches[:, K1, None] * (left + 1.0), patches[:, K2, None] * (right - 1.0)], axis=1)
+    u = np.stack([np.concatenate([left, right], axis=1), (patches[:, K0, None] + fold * a) / b], axis=2)
+    u /= np.maximum(np.hypot(u[..., 0], u[..., 1]), 1.0)[..., None]
+    turning = np.concatenate([u, np.zeros((*u.shape[:2], 1))], axis=2)
+    return np.concatenate([np.broadcast_to(SCAN, (len(patches), *SCAN.shape)), turning], axis=1)
 
 
 @njit(cache=True)
@@ -187,9 +193,8 @@ def _seeds(scan, values, count, chosen):
 
 
 @njit(cache=True)
-def _one_peak(patch, field, nu, rules, seeds, finalists, smallest, floor, out):
+def _one_peak(patch, field, points, nu, rules, seeds, finalists, smallest, floor, out):
     s_rule, s_w, c_rule, c_w, p_rule, p_w, f_rule, f_w, waves, waves_w = rules
-    points = _scan_of(patch)
     count = points.shape[0]
     parts = np.empty((4, 6))
     scan = np.empty((2, count))
@@ -205,7 +210,7 @@ def _one_peak(patch, field, nu, rules, seeds, finalists, smallest, floor, out):
         found = _seeds(points, scan[body], seeds, chosen)
         for s in range(found):
             u = tops[s]
-            u[:] = points[chosen[s]]
+            _copy(points[chosen[s]], u)
             f = _value(patch, field, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
             values[s], _ = _climb(patch, field, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06)
         best_seed = 0
@@ -237,9 +242,9 @@ def _one_peak(patch, field, nu, rules, seeds, finalists, smallest, floor, out):
 
 
 @njit(cache=True, nogil=True)
-def _all_peaks(first, last, patches, fields, nu, rules, seeds, finalists, smallest, floor, out):
+def _all_peaks(first, last, patches, fields, scans, nu, rules, seeds, finalists, smallest, floor, out):
     for i in range(first, last):
-        _one_peak(patches[i], fields[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
+        _one_peak(patches[i], fields[i], scans[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
 
 
 def find_peaks(
@@ -269,8 +274,8 @@ def find_peaks(
         rules = tuple(array for order in orders for array in clustered_rule(int(order * factor)))
         chosen = np.zeros((group.size, 2, 1, 1)) if fields is None else np.ascontiguousarray(fields[group])
         ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
-        rest = (patches[group], chosen, ratios, rules, settings.seeds, settings.finalists, settings.step,
-                settings.floor, found)  # fmt: skip
+        effort = (settings.seeds, settings.finalists, settings.step, settings.floor)
+        rest = (patches[group], chosen, _scans(patches[group]), ratios, rules, *effort, found)
         share_rows(lambda first, last, rest=rest: _all_peaks(first, last, *rest), group.size, 1)
         out[group] = found
     return Peak(*np.moveaxis(out, 2, 0))
