@@ -122,8 +122,8 @@ def causes(view: StudyView, hit: np.ndarray) -> list[str]:
 
 def _percent(share: float) -> str:
     if 0 < share < 0.01:
-        return "< 1 %"
-    return f"{100 * share:.0f} %" if share > 0.995 or share < 0.99 else "99 %"
+        return "<\u00a01\u00a0%"
+    return f"{100 * share if share == 1 else min(100 * share, 99.0):.0f}\u00a0%"
 
 
 def regime_table(view: StudyView) -> Table:

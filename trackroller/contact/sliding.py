@@ -234,8 +234,8 @@ def tractions(
     n = len(x)
     root = np.sqrt(np.maximum(1.0 - unit[None, :] ** 2 - unit[:, None] ** 2, 0.0))
     pressure = ellipse.max_pressure[:, None, None] * root
-    x_all = np.broadcast_to(x[:, None, :], pressure.shape).reshape(n, -1)
-    y_all = np.broadcast_to(y[:, :, None], pressure.shape).reshape(n, -1)
+    x_all = np.broadcast_to(x[:, None, :], pressure.shape).reshape(n, points * points)
+    y_all = np.broadcast_to(y[:, :, None], pressure.shape).reshape(n, points * points)
     slip_x, slip_y = (v.reshape(pressure.shape) for v in slip_field(ellipse, slip, x_all, y_all, spin_model))
     speed = np.hypot(slip_x, slip_y)
     bound = friction[:, None, None] * pressure / np.where(speed > 0, speed, np.inf)

@@ -100,7 +100,7 @@ def wrapped(text: str, width_mm: float, size: float, weight: str = "normal") -> 
 
     font, measure, limit = FontProperties(size=size, weight=weight), TextToPath(), width_mm / 25.4 * 72
     lines: list[str] = []
-    for word in text.split():
+    for word in text.split(" "):
         longer = f"{lines[-1]} {word}" if lines else word
         if lines and measure.get_text_width_height_descent(longer, font, False)[0] <= limit:
             lines[-1] = longer
@@ -219,7 +219,7 @@ def number(value: float) -> str:
         mantissa, exponent = f"{value:.1e}".split("e")
         return f"{mantissa.replace('-', '−')}·10{str(int(exponent)).translate(_RAISED)}"
     if size >= 1e4:
-        return f"{float(f'{value:.3g}'):,.0f}".replace(",", " ").replace("-", "−")
+        return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u00a0").replace("-", "−")
     return f"{value:.4g}".replace("-", "−")
 
 
