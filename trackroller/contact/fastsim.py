@@ -19,7 +19,7 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Surfa
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.linear import creepage_coefficients
 
-SWEEPS = 30  # of the fixed point between slip speed and friction in one step
+SWEEPS = 30  # halvings of the interval in which a step finds the friction of its slip speed
 SUBSTEPS = 4  # between the points of a grid of tractions
 
 
@@ -44,23 +44,24 @@ def _step(tx, ty, dx, dy, h, flexibility, bound, speeds, factors, out):
     """One step: tractions (tx, ty) with drives w/L (dx, dy) over h; out = tau_x, tau_y, s_x, s_y, friction change."""
     trial_x, trial_y = tx - h * dx, ty - h * dy
     trial = math.hypot(trial_x, trial_y)
-    friction, change = factors[0], 0.0
-    share = 1.0
-    for _ in range(SWEEPS):
-        g = bound * friction
-        share = g / trial if trial > g else 1.0
-        if speeds.size == 1:
-            break
-        speed = flexibility * (1.0 - share) * trial / h
-        new = np.interp(speed, speeds, factors)
-        change = abs(new - friction) / max(new, 1e-30)
-        if change < 1e-6:
-            break
-        friction += 0.7 * (new - friction)
+    friction = factors[0]
+    if speeds.size > 1 and trial > 0.0:
+        # a falling law may be met more than once: halving the interval finds one of them for sure
+        low, high = factors.min(), factors.max()
+        for _ in range(SWEEPS):
+            friction = 0.5 * (low + high)
+            speed = flexibility * max(trial - bound * friction, 0.0) / h
+            if np.interp(speed, speeds, factors) < friction:
+                high = friction
+            else:
+                low = friction
+        if trial > bound * friction:
+            out[4] = max(out[4], (high - low) / factors.max())
+    g = bound * friction
+    share = g / trial if trial > g else 1.0
     out[0], out[1] = share * trial_x, share * trial_y
     out[2] = -flexibility * (1.0 - share) * trial_x / h
     out[3] = -flexibility * (1.0 - share) * trial_y / h
-    out[4] = max(out[4], change)
 
 
 @njit(cache=True)
@@ -143,9 +144,9 @@ class FastsimSolution:
 
 def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic):
     """Arrays a, b, mu p_max, drives (n, 3) and the mean flexibility [mm/MPa] of n patches."""
-    a, b, p, xi, eta, phi, mu, g, nu = (np.ascontiguousarray(v, float) for v in np.broadcast_arrays(
-        ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure, longitudinal, lateral, spin, friction,
-        elastic.shear_modulus, elastic.poisson_ratio))  # fmt: skip
+    a, b, p, xi, eta, phi, mu, g, nu = (np.array(v, float, order="C") for v in np.broadcast_arrays(
+        ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure, longitudinal, lateral, spin,
+        friction, elastic.shear_modulus, elastic.poisson_ratio))  # fmt: skip
     c = creepage_coefficients(b / a, nu)
     l_1, l_2 = 8.0 * b / (3.0 * g * c.c11), 8.0 * b / (3.0 * g * c.c22)
     l_3 = np.pi * b * np.sqrt(b / a) / (4.0 * g * c.c23)

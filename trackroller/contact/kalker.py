@@ -19,8 +19,9 @@ from trackroller.contact.kalker_grid import unit_cells
 from trackroller.contact.sliding import rolling_slip
 
 BLOCK = 256  # patches whose tractions are held at once
-# Two grids h and 2h: F = F_h + WEIGHT (F_h - F_2h). The observed order lies between 1 (stick) and 2 (sliding).
-WEIGHT = 0.5
+# Two grids h and 2h: F = F_h + weight (F_h - F_2h). The observed order is near 2 in sliding and 1 in full stick,
+# so the weight lies between 1/3 and 1; it grows with the stick fraction f as 0.5 (1 + f^2).
+SLIDING_WEIGHT = 0.5
 
 
 @dataclass(frozen=True)
@@ -112,7 +113,7 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settin
     """Solve on one grid; `traction` is the start. Returns slips and the report (n, REPORT)."""
     n = friction.size
     height, share = unit_cells(elements, elements)
-    a, b = (np.ascontiguousarray(v, float) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling))
+    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     scale = friction * ellipse.max_pressure
     x = a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
     law = settings.law or constant()
@@ -120,8 +121,8 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settin
         coupling = elastic.coupling / friction
     slip, report = np.empty_like(traction), np.empty((n, batch.REPORT))
     control = np.array([settings.tolerance, settings.steps, settings.krylov])
-    batch.solve_batch(a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x), creep.lateral, creep.spin,
-                      height, share, law.speed / settings.travel_speed, law.factor, control,
+    batch.solve_batch(a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x),
+                      creep.lateral, creep.spin, height, share, law.speed / settings.travel_speed, law.factor, control,
                       traction, slip, report)  # fmt: skip
     return slip, report
 
@@ -144,8 +145,9 @@ def _solve_block(ellipse, creep, friction, elastic, settings: KalkerSettings, st
     work = fine[:, batch.WORK]
     if coarse is not None:
         error = np.abs(value - coarse[:, :3])
-        value = value + WEIGHT * (value - coarse[:, :3])
-        work = work + WEIGHT * (work - coarse[:, batch.WORK])
+        weight = SLIDING_WEIGHT * (1.0 + fine[:, batch.STICK] ** 2)
+        value = value + weight[:, None] * (value - coarse[:, :3])
+        work = work + weight * (work - coarse[:, batch.WORK])
     with np.errstate(divide="ignore", invalid="ignore"):
         energy = np.where(fine[:, batch.WORK] != 0, fine[:, batch.POWER] / fine[:, batch.WORK] - 1.0, 0.0)
     good = (fine[:, batch.RESIDUAL] <= settings.tolerance) & (
@@ -157,12 +159,16 @@ def _solve_block(ellipse, creep, friction, elastic, settings: KalkerSettings, st
     )  # fmt: skip
 
 
+def _full(value, n: int) -> np.ndarray:
+    # always a fresh array of one layout: compiled code is made anew for every other kind
+    return np.array(np.broadcast_to(np.asarray(value, float), n), order="C")
+
+
 def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np.ndarray, Elastic]:
     n = np.size(ellipse.semi_axis_lateral)
-    full = lambda v: np.ascontiguousarray(np.broadcast_to(np.asarray(v, float), n))  # noqa: E731
-    ellipse = Ellipse(*(full(v) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure)))
-    elastic = Elastic(*(full(v) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling)))
-    return ellipse, full(friction), elastic
+    a, b, p = (_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure))
+    g, nu, k = (_full(v, n) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling))
+    return Ellipse(a, b, p), _full(friction, n), Elastic(g, nu, k)
 
 
 def solve_patch(
@@ -186,8 +192,8 @@ def solve_patch(
     settings = settings or KalkerSettings()
     ellipse, friction, elastic = _prepared(ellipse, friction, elastic)
     n = friction.size
-    creep = Creepage(*(np.ascontiguousarray(np.broadcast_to(np.asarray(v, float), n))
-                       for v in (creep.longitudinal, creep.lateral, creep.spin)), creep.slip)  # fmt: skip
+    xi, eta, phi = (_full(v, n) for v in (creep.longitudinal, creep.lateral, creep.spin))
+    creep = Creepage(xi, eta, phi, creep.slip)
     parts = []
     for i in range(0, max(n, 1), BLOCK):
         rows = slice(i, i + BLOCK)

@@ -152,8 +152,8 @@ def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, hei
     traction (n, 2, ny, nx): start and result over mu p_max; slip likewise, per travel speed; report (n, REPORT).
     """
     for i in prange(a.size):
-        _one_patch(a[i], b[i], scale[i], ratio[i], poisson[i], coupling[i], along[i], lateral[i], spin[i], height, share,
-                   speeds, values, control, traction[i], slip[i], report[i])  # fmt: skip
+        _one_patch(a[i], b[i], scale[i], ratio[i], poisson[i], coupling[i], along[i], lateral[i], spin[i], height,
+                   share, speeds, values, control, traction[i], slip[i], report[i])  # fmt: skip
 
 
 @njit(cache=True, parallel=True)

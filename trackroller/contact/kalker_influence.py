@@ -1,7 +1,7 @@
 """Influence functions of steady rolling on the elastic half-space, and their fast products.
 
 Displacement differences of rectangular elements with constant traction: closed forms of Cerruti's and
-Boussinesq's solutions (Kalker 1990, Three-Dimensional Elastic Bodies in Rolling Contact, section 5.?); the slip
+Boussinesq's solutions (Kalker 1990, Three-Dimensional Elastic Bodies in Rolling Contact, chapter 3); the slip
 needs their derivative in the rolling direction.
 
 Lengths are scaled by c = sqrt(a b), tractions by the largest traction bound, slips by that over G.
@@ -35,7 +35,7 @@ def _log_part(x, y):
 def displacements(hx, hy, poisson, ny, nx, below, above):
     """Displacement differences at distances (j hy, i hx) of a unit traction on an element hx x hy, G = 1.
 
-    Kalker (1990) eq. (4.?): u_x = 1/(pi G) int [(1-nu)/r + nu x^2/r^3] tau_x + nu x y/r^3 tau_y.
+    Kalker (1990) chapter 3: u_x = 1/(pi G) int [(1-nu)/r + nu x^2/r^3] tau_x + nu x y/r^3 tau_y.
     Returns (3, ny + below + above + ..., ...): xx, yy, xy for j = -(ny-1)-below .. ny-1+above and
     i = -(nx-1) .. nx-1.
     """

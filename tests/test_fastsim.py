@@ -1,0 +1,84 @@
+"""The simplified theory against the linear theory, full sliding and the exact theory."""
+
+import numpy as np
+import pytest
+
+from trackroller.contact import fastsim, kalker, linear
+from trackroller.contact.common import Elastic, Ellipse, Slip
+from trackroller.contact.fastsim import FastsimSettings
+from trackroller.contact.friction_laws import exponential_falling
+
+STEEL = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
+
+
+def patch(a=0.3, b=0.18, p=700.0):
+    return Ellipse(*(np.atleast_1d(np.asarray(v, float)) for v in (a, b, p)))
+
+
+def values(r):
+    return np.stack([r.lateral_force, r.driving_force, r.spin_moment], axis=-1)
+
+
+@pytest.mark.parametrize("b", [0.02, 0.18, 1.5])
+def test_small_creepages_give_the_forces_of_the_linear_theory(b):
+    ellipse = patch(b=b)
+    for creep in ((1e-7, 0, 0), (0, 1e-7, 0), (0, 0, 1e-7)):
+        f = values(fastsim.solve_patch(ellipse, *creep, 0.3, STEEL).resultants)[0]
+        exact = values(linear.resultants(ellipse, *creep, STEEL))[0]
+        np.testing.assert_allclose(f[:2], exact[:2], rtol=3e-3, atol=1e-9)
+
+
+def test_full_sliding_and_pure_drilling():
+    ellipse = patch(0.2, 0.2)
+    full = 0.1 * ellipse.normal_force[0]
+    f = values(fastsim.solve_patch(ellipse, -0.5, 0.0, 0.0, 0.1, STEEL).resultants)[0]
+    assert f[1] == pytest.approx(full, rel=2e-3)
+    f = values(fastsim.solve_patch(ellipse, 0.0, 0.0, 50.0, 0.1, STEEL).resultants)[0]
+    assert f[2] == pytest.approx(-3 * np.pi / 16 * full * 0.2, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("creep", "tolerance"),
+    [((1e-3, 0.0, 0.0), 0.05), ((3e-4, 3e-4, 0.0), 0.06), ((-0.0035, 0.0, 0.03), 0.14), ((0.0, 0.0, 0.03), 0.15)],
+)
+def test_forces_near_the_exact_theory(creep, tolerance):
+    fast = values(fastsim.solve_patch(patch(), *creep, 0.3, STEEL).resultants)[0]
+    rigid = kalker.Creepage(*(np.array([c]) for c in creep))
+    exact = values(kalker.solve_patch(patch(), rigid, 0.3, STEEL).resultants)[0]
+    limit = 0.3 * patch().normal_force[0]
+    np.testing.assert_allclose(fast[:2], exact[:2], rtol=tolerance, atol=2e-3 * limit)
+
+
+def test_mirror_and_bound():
+    slip = Slip(np.array([0.5, -0.5]), np.full(2, 0.866), np.full(2, 6.0), np.full(2, 16.5), np.full(2, -0.06))
+    ellipse = patch([0.3, 0.3], [0.18, 0.18], [700.0, 700.0])
+    f = values(fastsim.resultants(ellipse, slip, 0.3, STEEL))
+    np.testing.assert_allclose(f[1], f[0] * [-1, 1, -1], rtol=1e-9)
+    t = fastsim.tractions(ellipse, slip, 0.3, STEEL)
+    size = np.hypot(t.shear_lateral, t.shear_rolling)
+    assert np.all(size <= 0.3 * t.pressure * (1 + 1e-12))
+    assert t.shear_lateral.shape == (2, 40, 40)
+    cell = 4 * 0.3 * 0.18 / 1600
+    np.testing.assert_allclose(t.shear_rolling.sum(axis=(1, 2)) * cell, f[:, 1], rtol=0.02)
+
+
+def test_steps_and_strips_are_fine_enough():
+    fine = FastsimSettings(strips=96, steps=384)
+    for creep in ((-0.0035, 0.0, 0.03), (1e-4, 0.0, 0.03)):
+        f, g = (values(fastsim.solve_patch(patch(), *creep, 0.3, STEEL, s).resultants)[0] for s in (None, fine))
+        np.testing.assert_allclose(f, g, rtol=1e-2)
+
+
+def test_falling_friction_lowers_the_forces_and_converges():
+    s = fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.3, STEEL,
+                            FastsimSettings(law=exponential_falling(30.0, 0.4), travel_speed=2000.0))  # fmt: skip
+    assert s.friction_change[0] < 1e-5
+    constant = fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.3, STEEL)
+    assert abs(s.resultants.spin_moment[0]) < abs(constant.resultants.spin_moment[0])
+
+
+def test_vanishing_friction_or_creepage():
+    f = values(fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.0, STEEL).resultants)
+    np.testing.assert_allclose(f, 0.0, atol=1e-15)
+    f = values(fastsim.solve_patch(patch(), 0.0, 0.0, 0.0, 0.3, STEEL).resultants)
+    np.testing.assert_allclose(f, 0.0, atol=1e-15)

@@ -1,0 +1,99 @@
+"""Influence functions and their fast products against definitions."""
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from trackroller.contact import kalker_fft as fft
+from trackroller.contact import kalker_influence as influence
+from trackroller.contact.kalker_grid import unit_cells
+
+NU = 0.31
+
+
+def test_transform_of_mixed_length_is_the_discrete_fourier_transform():
+    rng = np.random.default_rng(3)
+    for n in (1, 2, 8, 45, 60, 96):
+        x = rng.normal(size=(n, 3)) + 1j * rng.normal(size=(n, 3))
+        parts = [x.real.ravel().copy(), x.imag.ravel().copy(), np.empty(3 * n), np.empty(3 * n)]
+        k = 2 if fft.transform(*parts, n, 3, -1.0) else 0
+        result = (parts[k] + 1j * parts[k + 1]).reshape(n, 3)
+        np.testing.assert_allclose(result, np.fft.fft(x, axis=0), atol=1e-12)
+
+
+def test_padded_lengths_have_small_factors_only():
+    for n in (7, 82, 97, 131, 241):
+        m = fft.good_length(n)
+        assert m >= n
+        for factor in (2, 3, 5):
+            while m % factor == 0:
+                m //= factor
+        assert m == 1
+
+
+@pytest.mark.parametrize("offset", [(2, 1), (-3, 2), (0, 4)])
+def test_influence_numbers_are_the_integrals_of_cerruti_and_boussinesq(offset):
+    """Elements away from the point, where plain quadrature of the kernels of Kalker (1990) converges."""
+    hx, hy, n = 0.3, 0.2, 6
+    i, j = offset
+    u = influence.displacements(hx, hy, NU, n, n, 0, 0)[:, j + n - 1, i + n - 1]
+    v = influence.pressure_displacements(hx, hy, n, n, 0, 0)[:, j + n - 1, i + n - 1]
+    kernels = (
+        lambda y, x: (1 - NU) / np.hypot(x, y) + NU * x**2 / np.hypot(x, y) ** 3,
+        lambda y, x: (1 - NU) / np.hypot(x, y) + NU * y**2 / np.hypot(x, y) ** 3,
+        lambda y, x: NU * x * y / np.hypot(x, y) ** 3,
+        lambda y, x: -x / (x * x + y * y),
+        lambda y, x: -y / (x * x + y * y),
+    )
+    for value, kernel in zip([*u, *v], kernels, strict=True):
+        exact = dblquad(kernel, (i - 0.5) * hx, (i + 0.5) * hx, (j - 0.5) * hy, (j + 0.5) * hy)[0] / np.pi
+        assert value == pytest.approx(exact, rel=1e-8, abs=1e-12)
+
+
+def test_fast_product_equals_the_sum_over_elements():
+    ny, nx, hx, hy = 9, 7, 0.11, 0.07
+    rng = np.random.default_rng(5)
+    field = rng.normal(size=(2, ny, nx))
+    multipliers, _ = influence.prepare(hx, hy, NU, ny, nx)
+    ly, lx = influence.padded_lengths(ny, nx)
+    halo = np.empty((2, ny + influence.HALO, nx))
+    influence.displace(multipliers, field, ly, lx, fft.workspace(ly, lx), halo)
+    u = influence.displacements(hx, hy, NU, ny, nx, 1, 2)
+    for row, column in ((0, 0), (4, 6), (ny + 2, 3)):
+        j = row + ny - 1 - np.arange(ny)[:, None]
+        i = column + nx - 1 - np.arange(nx)[None, :]
+        xx, yy, xy = u[:, j, i]
+        assert halo[0, row, column] == pytest.approx((xx * field[0] + xy * field[1]).sum(), abs=1e-12)
+        assert halo[1, row, column] == pytest.approx((xy * field[0] + yy * field[1]).sum(), abs=1e-12)
+
+
+def test_coupling_slip_of_a_hertzian_circle():
+    """u_r of Hertz pressure on a circle: -(K/G) p0 (a^2/3r)(1 - (1 - r^2/a^2)^1.5) 2 (Johnson 1985, eq. 3.41b)."""
+    n = 40
+    height, _ = unit_cells(n, n)
+    slip = influence.coupling_slip(np.array(height), 2 / n, 2 / n)
+    x = (2 * np.arange(n) + 1) / n - 1
+    xx, yy = np.meshgrid(x, x)
+
+    def displacement(px, py):
+        r2 = px**2 + py**2
+        radial = -2 / 3 * (1 - (1 - r2) ** 1.5) / r2
+        return radial * px, radial * py
+
+    inside = xx**2 + yy**2 < 0.6
+    px, py, step = xx[inside], yy[inside], 1e-5
+    for component in (0, 1):
+        ahead, behind = (displacement(px, py + d)[component] for d in (step, -step))
+        np.testing.assert_allclose(slip[component][inside], -(ahead - behind) / (2 * step), atol=6e-3)
+
+
+def test_element_means_carry_the_load_and_area_of_the_patch():
+    for ny, nx in ((20, 20), (40, 24)):
+        height, share = unit_cells(ny, nx)
+        cell = 4 / (nx * ny)
+        assert height.sum() * cell == pytest.approx(2 * np.pi / 3, rel=1e-12)
+        assert share.sum() * cell == pytest.approx(np.pi, rel=1e-12)
+        assert np.all((share >= 0) & (share < 1.001))
+        y, x = (2 * ny // 4, 2 * nx // 4)
+        at_centre = np.sqrt(1 - ((2 * y + 1) / ny - 1) ** 2 - ((2 * x + 1) / nx - 1) ** 2)
+        assert height[y, x] == pytest.approx(at_centre, rel=2e-3)
