@@ -94,6 +94,26 @@ def test_all_equilibria_agree_with_contact(case):
     compare_with_contact(case)
 
 
+def test_stick_and_dissipation_of_all_patches_agree_with_contact():
+    """At CONTACT's own loads and slips: stick within two points (all stick little), dissipation within 1 %."""
+    def both(name, weight=2.0):
+        fine, coarse = (np.array([c[grid][name] for c in CONTACT], float) for grid in ("grid_60x60", "grid_40x40"))
+        value = fine + weight * (fine - coarse)
+        return value.reshape(-1) if value.ndim == 2 else np.repeat(value, 2)
+
+    of_case = lambda name: np.repeat([float(c["case"][name]) for c in CONTACT], 2)  # noqa: E731
+    alpha = np.deg2rad(of_case("contact_angle"))
+    radius = rolling_radius(of_case("axis_distance"), of_case("guide_profile_radius"), alpha)
+    sign = np.tile([1.0, -1.0], len(CONTACT))
+    ellipse = Ellipse(both("semi_axis_lateral", 0), both("semi_axis_rolling", 0), both("max_pressure", 0))
+    creep = creepage(both("rolling_radius_shift", 0) / radius, 0.0, -sign * np.sin(alpha) / radius)
+    s = solve_patch(ellipse, creep, of_case("friction_coefficient"), STEEL, KalkerSettings(elements=32))
+    assert s.converged.all()
+    np.testing.assert_allclose(s.stick_fraction, both("stick_area_fraction", 0), atol=0.02)
+    np.testing.assert_allclose(s.friction_energy_per_distance, both("friction_power_per_speed"), rtol=1e-2, atol=2.5e-4)
+    assert np.max(np.abs(s.energy_residual)) < 1e-2
+
+
 def test_carter_in_a_slender_patch():
     """Patch 20 times as wide as long: every strip is Carter's problem (Johnson 1985, section 8.3)."""
     kappa = 0.001 * STEEL.shear_modulus / (2 * (1 - 0.33) * 0.3 * 700.0)
