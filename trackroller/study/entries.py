@@ -9,10 +9,11 @@ from typing import Any
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.parameters import CONTACT_MODELS, FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS, SPIN_MODELS
 from trackroller.study import expressions
-from trackroller.study.factors import parse
+from trackroller.study.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS)
 OPTION_FACTORS: dict[str, tuple[str, ...]] = {"contact_model": CONTACT_MODELS, "spin_model": SPIN_MODELS}
+MAX_LEVELS = 1_000_000
 FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 
 
@@ -74,6 +75,8 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
     if key not in FACTOR_NAMES:
         if not isinstance(key, str) or not key.isidentifier() or not _used(key, factors):
             raise unknown_name("factors", str(key), FACTOR_NAMES)
+        if isinstance(spec, Mapping):
+            spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
         parse(key, spec)
         return dict(spec)
     if isinstance(spec, Mapping):
@@ -98,14 +101,25 @@ def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
     if not isinstance(value, list):
         return value
     if kind != "values":
-        return [_to_float(v) for v in value]
+        numbers = [_to_float(v) for v in value]
+        if kind in LISTS and len(numbers) == 3:
+            _check_count(numbers[2], where)
+        return numbers
     if key in PARAMETERS:
         return [_number(key, v, where) for v in value]
     if key == "material_pair":
         return [list(_pair(v, where)) for v in value]
+    if key not in FACTOR_NAMES:
+        return value
     if key in OPTION_FACTORS:
         return [choice(v, where, OPTION_FACTORS[key]) for v in value]
     return [_material_name(v, where) for v in value]
+
+
+def _check_count(count: Any, where: str) -> None:
+    """A slip of the finger may not fill the memory before it is found."""
+    if isinstance(count, (int, float)) and not count <= MAX_LEVELS:
+        raise InputError(where, count, f"at most {MAX_LEVELS} levels of a factor")
 
 
 def _to_float(value: Any) -> Any:
