@@ -24,10 +24,11 @@ import trackroller as tr
 def load_study(n: int, seed: int = 1) -> list[tr.Case]:
     """Load, friction and material vary; the curvatures are fixed."""
     rng = np.random.default_rng(seed)
-    materials = ("1.7225-normalised", "PA6", "POM", "EN AW-7075")
+    steel = "1.7225-normalised"
+    materials = (steel, "PA6", "POM", "EN AW-7075")
     return [tr.Case(friction_coefficient=rng.uniform(0.02, 0.4), axial_force=rng.uniform(-30, 30),
                     motor_force=rng.uniform(-20, 20), radial_force=-rng.uniform(100, 300),
-                    roller_material=str(rng.choice(materials)), guide_material=materials[0]) for _ in range(n)]  # fmt: skip
+                    roller_material=str(rng.choice(materials)), guide_material=steel) for _ in range(n)]  # fmt: skip
 
 
 def geometry_study(n: int, seed: int = 2) -> list[tr.Case]:

@@ -140,5 +140,5 @@ def _assemble(blocks: list[stages.Results], options: Options, single: bool) -> x
         "life_conventions": stages.LIFE_CONVENTIONS,
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }
-    return build(values, *(np.concatenate([getattr(b, n) for b in blocks]) for n in ("regime", "converged", "bits")),
-                 attrs, single)  # fmt: skip
+    regime, converged, bits = (np.concatenate([getattr(b, n) for b in blocks]) for n in ("regime", "converged", "bits"))
+    return build(values, regime, converged, bits, attrs, single)

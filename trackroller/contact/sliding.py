@@ -160,9 +160,9 @@ def _all_patches(first, last, a, b, scale, sine, cosine, radius, shift, model, n
 def _integrals(ellipse: Ellipse, slip: Slip, friction: np.ndarray, spin_model: str, nodes: int) -> np.ndarray:
     n = np.size(friction)
     out = np.empty((4, n))
-    columns = (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.max_pressure, slip.sine,
-               slip.cosine, slip.guide_profile_radius, slip.shift)  # fmt: skip
-    columns = tuple(np.ascontiguousarray(np.broadcast_to(c, (n,)), dtype=float) for c in columns)
+    given = (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.max_pressure, slip.sine,
+             slip.cosine, slip.guide_profile_radius, slip.shift)  # fmt: skip
+    columns = [np.ascontiguousarray(np.broadcast_to(c, (n,)), dtype=float) for c in given]
     rest = (spin_model_index(spin_model), *clustered_rule(nodes), out)
     share_rows(lambda first, last: _all_patches(first, last, *columns, *rest), n, 64)
     return out

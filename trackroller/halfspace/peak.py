@@ -7,6 +7,7 @@ is evaluated again with finer quadrature. Stresses per unit p_max, depth in unit
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -247,6 +248,10 @@ def _all_peaks(first, last, patches, fields, scans, nu, rules, seeds, finalists,
         _one_peak(patches[i], fields[i], scans[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
 
 
+def _search_rows(rest: tuple, first: int, last: int) -> None:
+    _all_peaks(first, last, *rest)
+
+
 def find_peaks(
     patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSettings, fields: np.ndarray | None = None
 ) -> Peak:
@@ -276,6 +281,6 @@ def find_peaks(
         ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
         effort = (settings.seeds, settings.finalists, settings.step, settings.floor)
         rest = (patches[group], chosen, _scans(patches[group]), ratios, rules, *effort, found)
-        share_rows(lambda first, last, rest=rest: _all_peaks(first, last, *rest), group.size, 1)
+        share_rows(functools.partial(_search_rows, rest), group.size, 1)
         out[group] = found
     return Peak(*np.moveaxis(out, 2, 0))
