@@ -9,6 +9,7 @@ smooth whatever eps. Both use Gauss-Legendre points clustered at the ends, where
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -163,8 +164,8 @@ def _integrals(ellipse: Ellipse, slip: Slip, friction: np.ndarray, spin_model: s
     given = (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.max_pressure, slip.sine,
              slip.cosine, slip.guide_profile_radius, slip.shift)  # fmt: skip
     columns = [np.ascontiguousarray(np.broadcast_to(c, (n,)), dtype=float) for c in given]
-    rest = (spin_model_index(spin_model), *clustered_rule(nodes), out)
-    share_rows(lambda first, last: _all_patches(first, last, *columns, *rest), n, 64)
+    arguments: Any = (*columns, spin_model_index(spin_model), *clustered_rule(nodes), out)
+    share_rows(lambda first, last: _all_patches(first, last, *arguments), n, 64)
     return out
 
 
