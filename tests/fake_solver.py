@@ -12,7 +12,6 @@ import xarray as xr
 
 def solve(design: xr.Dataset, database=None, **options) -> xr.Dataset:
     """Forces that depend on every parameter; appends one line a case to the file $FAKE_SOLVED."""
-    n = design.sizes["case"]
     load = design["axial_force"].values
     if (load == 13.0).any():
         raise ArithmeticError("thirteen cannot be solved")
@@ -20,7 +19,8 @@ def solve(design: xr.Dataset, database=None, **options) -> xr.Dataset:
         with open(told, "a", encoding="ascii") as stream:
             for axial, friction in zip(load, design["friction_coefficient"].values, strict=True):
                 stream.write(f"{float(axial)!r} {float(friction)!r}\n")
-    if (kill := os.environ.get("FAKE_KILL")) and len(Path(os.environ["FAKE_SOLVED"]).read_text().split("\n")) > int(kill):
+    kill = os.environ.get("FAKE_KILL")
+    if kill and len(Path(os.environ["FAKE_SOLVED"]).read_text().splitlines()) >= int(kill):
         os.kill(os.getpid(), signal.SIGKILL)
     force = np.sin(load)[:, None] + design["friction_coefficient"].values[:, None] * np.array([1.0, 2.0])
     return xr.Dataset(

@@ -130,7 +130,7 @@ _values = st.recursive(_scalars, lambda inner: st.lists(inner, max_size=3) | st.
     st.sampled_from(["values", "linspace", "uniform", "normal", "expression", "scatter"]) | st.text(max_size=4),
     inner, max_size=2), max_leaves=6)  # fmt: skip
 _keys = st.sampled_from([*parse_study({"name": "a"}).config.model_dump(), "nam"])
-_names = st.sampled_from(["axial_force", "friction_coefficient", "material_pair", "roller_material", "contact_model", "u"])
+_names = st.sampled_from(["axial_force", "friction_coefficient", "material_pair", "roller_material", "u"])
 
 
 @settings(max_examples=400, deadline=None)

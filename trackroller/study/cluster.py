@@ -11,7 +11,8 @@ import numpy as np
 from trackroller.errors import InputError
 from trackroller.study import store
 from trackroller.study.files import WorkError, locked
-from trackroller.study.plan import CaseList, Plan, Tell, load_list, read_parts
+from trackroller.study.mend import Tell
+from trackroller.study.plan import CaseList, Plan, load_list, read_parts
 from trackroller.study.solve import check_identity, finish, missing_rows, solve_rows, write_part
 
 BATCH_SECONDS = 2.0

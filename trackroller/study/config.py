@@ -53,7 +53,7 @@ class StudyFile(BaseModel):
     base: dict[str, Any] = Field({}, description="values of all cases; what is not given takes its default")
     factors: dict[str, dict[str, Any]] = Field({}, description="what is varied, a list or a distribution each")
     design: str = Field("grid", description="how the factors are combined")
-    samples: int = Field(1024, ge=1, le=10_000_000, description="rows, trajectories or base samples of a sampled design")
+    samples: int = Field(1024, ge=1, le=10_000_000, description="rows, trajectories or base samples of a sample")
     seed: int = Field(1, ge=0, le=2**32 - 2, description="same seed, same design")
     table: str | None = Field(None, description="CSV of cases for design: table, beside the study file")
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")

@@ -15,7 +15,8 @@ from trackroller.study import provenance, store
 from trackroller.study.design import build, draw
 from trackroller.study.factors import Factor, label
 from trackroller.study.files import WorkError, write_whole
-from trackroller.study.plan import Plan, Tell, identify, load_list
+from trackroller.study.mend import Tell
+from trackroller.study.plan import Plan, identify, load_list
 
 if TYPE_CHECKING:
     import xarray as xr

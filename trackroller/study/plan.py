@@ -13,7 +13,7 @@ import json
 import math
 import shutil
 import zipfile
-from collections.abc import Callable
+import zlib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,15 +24,15 @@ from trackroller.case import to_table
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import store
 from trackroller.study.design import build, table_path
-from trackroller.study.files import StudyFolder, link_or_copy, locked, sweep, write_whole
+from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
 from trackroller.study.identity import RESULTS_VERSION, chunk_name, fingerprints
+from trackroller.study.mend import Tell, drop_corrupt
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.study.config import Study
 
-Tell = Callable[[str], None]
 CHUNK_SECONDS = 8.0  # of solving, so that starting a job (2-3 s) stays a small part; bounded by the two below
 MOST_CHUNKS = 400
 SMALLEST_CHUNK = 100
@@ -138,6 +138,8 @@ def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | Non
     with locked(folder.plan_lock):
         if check:
             drop_corrupt(folder, tell)
+            for path in sorted((folder.root / "plan").glob("*.npz")):
+                _listed(path, tell)
         ready = _kept_plan(study, folder)
         return ready if ready is not None else _new_plan(study, folder, tell)
 
@@ -157,6 +159,8 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
     design = build(study)
     cases = identify(study, design)
     wanted, first = np.unique(cases, return_index=True)
+    options, group = case_options(study, design)
+    _relist(folder, design, cases, options)
     chunks: dict[str, int] = {}
     covered = np.zeros(len(wanted), dtype=bool)
     for path in sorted((folder.root / "plan").glob("*.npz")):
@@ -179,7 +183,6 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
         covered[place[hit]] = True
         chunks[name] = len(listed)
     missing = np.sort(first[~covered])
-    options, group = case_options(study, design)
     size = chunk_size(study, len(missing))
     for number in range(int(group.max()) + 1 if len(group) else 0):
         rows = missing[group[missing] == number]
@@ -203,10 +206,12 @@ def _listed(path: Path, tell: Tell) -> np.ndarray | None:
     try:
         with np.load(path, allow_pickle=False) as file:
             cases = file["cases"]
+            for key in file.files:  # reading compares each with its checksum
+                file[key]
         if chunk_name(cases) == path.stem:
             return cases
         why = "its content does not fit its name"
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as exc:
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as exc:
         why = str(exc)
     tell(f"{path}: corrupt case list ({why}); its cases are planned anew")
     path.unlink(missing_ok=True)
@@ -229,7 +234,7 @@ def _save_list(path: Path, cases: np.ndarray, columns: dict[str, np.ndarray], op
     def save(beside: Path) -> None:
         plain = {k: v.astype(str) if v.dtype == object else v for k, v in columns.items()}
         with open(beside, "wb") as stream:
-            np.savez(stream, cases=cases, options=np.array(json.dumps(options)), allow_pickle=False, **plain)
+            np.savez_compressed(stream, cases=cases, options=np.array(json.dumps(options)), allow_pickle=False, **plain)
 
     write_whole(path, save)
 
@@ -254,12 +259,33 @@ def read_parts(folder: StudyFolder, name: str, tell: Tell) -> list[store.Block]:
     return blocks
 
 
+def _relist(folder: StudyFolder, design: xr.Dataset, cases: np.ndarray, options: Any) -> None:
+    """Case lists for solved chunks that have lost theirs, of the cases that are still wanted."""
+    for path in sorted((folder.root / "store").glob("*.nc")):
+        if folder.case_list(path.stem).is_file():
+            continue
+        with contextlib.suppress(store.CorruptFile):
+            block = store.read(path)
+            where = {case: i for i, case in enumerate(cases.tolist())}
+            kept = np.array([i for i, case in enumerate(block.cases.tolist()) if case in where], dtype=int)
+            if not len(kept):
+                continue
+            block = block.take(kept)
+            rows = np.array([where[case] for case in block.cases.tolist()])
+            told = options if isinstance(options, dict) else options[rows[0]]
+            name = _write_list(folder, design, cases, rows, told)
+            if name != path.stem:
+                keep(folder, name, block)
+                path.unlink()
+                folder.chunk(path.stem).unlink(missing_ok=True)
+
+
 def _seal(folder: StudyFolder, name: str, tell: Tell) -> tuple[str, np.ndarray]:
     """Turn what is finished of a chunk that is no longer wanted whole into a chunk of its own."""
     blocks = read_parts(folder, name, tell)
     try:
         listed = load_list(folder, name)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error):
         listed = None
     sealed = ("", np.empty(0, dtype="S32"))
     if blocks and listed is not None:
@@ -282,42 +308,3 @@ def keep(folder: StudyFolder, name: str, block: store.Block) -> None:
     store.write(folder.kept(name), block)
     link_or_copy(folder.kept(name), folder.chunk(name))
     shutil.rmtree(folder.parts(name), ignore_errors=True)
-
-
-def drop_corrupt(folder: StudyFolder, tell: Tell) -> list[str]:
-    """Remove, and name, every solved chunk that cannot be trusted; returns their names."""
-    for place in ("plan", "chunks", "store"):
-        sweep(folder.root / place)
-    dropped = []
-    for path in sorted((folder.root / "store").glob("*.nc")):
-        name = path.stem
-        linked = folder.chunk(name)
-        try:
-            store.read(path)
-        except store.CorruptFile as exc:
-            tell(f"corrupt chunk, its cases are solved again: {exc}")
-            path.unlink(missing_ok=True)
-            linked.unlink(missing_ok=True)
-            dropped.append(name)
-            continue
-        if linked.exists() and not linked.samefile(path) and linked.read_bytes() != path.read_bytes():
-            tell(f"corrupt chunk, restored from the store: {linked}")
-            linked.unlink(missing_ok=True)
-            link_or_copy(path, linked)
-    for path in sorted((folder.root / "chunks").glob("*.nc")):
-        if not folder.kept(path.stem).is_file():
-            if path.stem not in dropped and _adopt(folder, path, tell):
-                continue
-            path.unlink(missing_ok=True)
-    return dropped
-
-
-def _adopt(folder: StudyFolder, path: Path, tell: Tell) -> bool:
-    """A good chunk whose other name is missing (a copied folder) is taken into the store."""
-    try:
-        store.read(path)
-    except store.CorruptFile as exc:
-        tell(f"corrupt chunk, its cases are solved again: {exc}")
-        return False
-    link_or_copy(path, folder.kept(path.stem))
-    return True

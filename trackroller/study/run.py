@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller.study import store
-from trackroller.study.plan import Plan, Tell, make_plan, read_parts
+from trackroller.study.mend import Tell
+from trackroller.study.plan import Plan, make_plan, read_parts
 from trackroller.study.solve import Solver, forget_failed, solve_chunk, solved
 
 if TYPE_CHECKING:

@@ -14,7 +14,8 @@ from trackroller.errors import InputError
 from trackroller.study import store
 from trackroller.study.files import StudyFolder, WorkError, link_or_copy, locked
 from trackroller.study.identity import fingerprints, physics_code
-from trackroller.study.plan import CaseList, Tell, keep, load_list, read_parts
+from trackroller.study.mend import Tell
+from trackroller.study.plan import CaseList, keep, load_list, read_parts
 
 log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # at most so much work is lost when a process is killed
