@@ -54,9 +54,10 @@ def _scan_points() -> np.ndarray:
     for rho, count in ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)):
         angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
         rows += [(rho * math.cos(t), rho * math.sin(t), 0.0) for t in angles]
-    for depth in (0.12, 0.3, 0.5, 0.75):
+    for depth, rings in ((0.12, ((0.4, 6), (0.8, 6))), (0.3, ((0.4, 6), (0.8, 6))), (0.5, ((0.45, 6),)),
+                         (0.75, ((0.45, 4),))):  # fmt: skip
         rows.append((0.0, 0.0, depth))
-        for rho, count in ((0.4, 6), (0.8, 6)):
+        for rho, count in rings:
             angles = 2 * np.pi * (np.arange(count) + 0.5 * (rho == 0.4)) / count
             rows += [(rho * math.cos(t), rho * math.sin(t), depth) for t in angles]
     return np.array(rows)
@@ -105,12 +106,12 @@ def _project(u):
 
 
 @njit(cache=True)
-def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, smallest):
+def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, smallest, sweeps):
     """Pattern search from u with value f: a parabola along radius, circumference and depth in turn."""
     h, trial, axis, f_side = np.empty(3), np.empty(3), np.empty(3), np.empty(2)
     h[0], h[1], h[2] = first, 1.6 * first, first
     gained = 0.0
-    for _sweep in range(12):
+    for _sweep in range(sweeps):
         before = f
         r = math.hypot(u[0], u[1])
         cx, cy = (u[0] / r, u[1] / r) if r > 1e-9 else (1.0, 0.0)
@@ -213,11 +214,21 @@ def _one_peak(patch, field, points, nu, rules, seeds, finalists, smallest, floor
             u = tops[s]
             _copy(points[chosen[s]], u)
             f = _value(patch, field, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
-            values[s], _ = _climb(patch, field, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06)
+            values[s], _ = _climb(
+                patch, field, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06, 1
+            )
         best_seed = 0
         for k in range(1, found):
             if values[k] > values[best_seed]:
                 best_seed = k
+        top = values[best_seed]
+        for k in range(found):  # only those that may still win climb on
+            if values[k] > 0.95 * top:
+                values[k], _ = _climb(
+                    patch, field, nu[body], sign, tops[k], values[k], c_rule, c_w, c_rule, c_w, parts, 0.08, 0.06, 3
+                )
+                if values[k] > values[best_seed]:
+                    best_seed = k
         top = values[best_seed]
         best = gained_best = -1.0
         for k in range(min(found, finalists)):
@@ -232,7 +243,7 @@ def _one_peak(patch, field, points, nu, rules, seeds, finalists, smallest, floor
             if k > 0 and _distance2(u, tops[best_seed]) < 0.01:
                 continue  # the same summit
             f = _value(patch, field, nu[body], sign, u, p_rule, p_w, waves, waves_w, parts)
-            f, gained = _climb(patch, field, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest)
+            f, gained = _climb(patch, field, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest, 12)
             if f > best:
                 best, gained_best = f, gained
                 out[body, 1], out[body, 2], out[body, 3] = u[0] * patch[A], u[1] * patch[B], u[2] * c
