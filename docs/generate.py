@@ -1,0 +1,88 @@
+"""Writes docs/parameters.md from the tables of the package: `python docs/generate.py`, `--check` only compares."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+from trackroller import parameters as p
+from trackroller.dataset import VALIDITY_BITS, VARIABLES
+
+TARGET = Path(__file__).parent / "parameters.md"
+HEAD = """# Parameters, options and results
+
+*Made by `python docs/generate.py` from `trackroller/parameters.py` and `trackroller/dataset.py`; do not edit.
+What the quantities mean physically is told in [theory.md](theory.md).*
+"""
+OPTIONS = (
+    ("outputs", p.OUTPUT_GROUPS, ", ".join(p.DEFAULT_OUTPUTS), "groups of results; each is computed only when asked for"),
+    ("contact_model", p.CONTACT_MODELS, "sliding", "how friction is distributed over the patch"),
+    ("spin_model", p.SPIN_MODELS, "skewed", "place of the spin pole (the paper's assumptions 0, 1, 2), for `sliding` only"),
+    ("accuracy", (*p.ACCURACIES, "a number in (0, 1)"), "standard", "preset, or relative tolerance of the peak stress"),
+    ("hertz", p.HERTZ, "exact", "elliptic integrals, or the table of the published program"),
+    ("stress_bodies", p.STRESS_BODIES, "both", "each body with its own Poisson's ratio, or one with the mean"),
+    ("life_rule", p.LIFE_RULES, "elementary", "what happens below the fatigue limit"),
+)
+
+
+def _row(*cells: object) -> str:
+    return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
+
+
+def _table(heads: tuple[str, ...], rows: list[tuple[object, ...]]) -> list[str]:
+    return [_row(*heads), _row(*("---" for _ in heads)), *(_row(*row) for row in rows), ""]
+
+
+def _range(parameter: p.Parameter) -> str:
+    parts = []
+    if math.isfinite(parameter.lower):
+        parts.append(f"{'>' if parameter.open_lower else '>='} {parameter.lower:g}")
+    if math.isfinite(parameter.upper):
+        parts.append(f"{'<' if parameter.open_upper else '<='} {parameter.upper:g}")
+    if parameter.nonzero:
+        parts.append("not 0")
+    parts.append("inf allowed" if parameter.allow_infinite else "finite")
+    if parameter.allow_missing:
+        parts.append("may be left out")
+    return ", ".join(parts)
+
+
+def render() -> str:
+    """The whole page."""
+    lines = [HEAD, "## Parameters of a case\n"]
+    lines += _table(
+        ("name", "symbol", "unit", "default", "allowed", "meaning"),
+        [(f"`{v.name}`", v.symbol, v.unit, "not given" if math.isnan(v.default) else f"{v.default:g}", _range(v),
+          v.meaning) for v in p.PARAMETERS.values()],
+    )  # fmt: skip
+    lines += [
+        "`roller_material` and `guide_material` take a name of the material database, or a mapping of material values;",
+        "the default is `1.7225-normalised`. Both relative curvatures must be positive, else the input is refused.\n",
+        "## Options\n",
+    ]
+    lines += _table(
+        ("name", "values", "default", "meaning"),
+        [(f"`{name}`", ", ".join(f"`{v}`" if " " not in v else v for v in values), default, meaning)
+         for name, values, default, meaning in OPTIONS],
+    )  # fmt: skip
+    lines.append("## Results\n")
+    for group in dict.fromkeys(v.group for v in VARIABLES.values()):
+        always = ", always there or with the peak" if group == "status" else ""
+        lines.append(f"### {group}{always}\n")
+        lines += _table(
+            ("name", "dimensions behind `case`", "unit", "symbol", "meaning"),
+            [(f"`{v.name}`", ", ".join(v.dims) or "-", v.units, v.symbol or "-", v.long_name)
+             for v in VARIABLES.values() if v.group == group],
+        )  # fmt: skip
+    lines += ["### regime\n", "`regime` is an integer; each row has one.\n"]
+    lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
+    lines += ["### validity\n", "`validity` is a sum of bits; 0 means that nothing is to be said.\n"]
+    lines += _table(("bit", "name", "meaning"), [(1 << i, f"`{k}`", v) for i, (k, v) in enumerate(VALIDITY_BITS.items())])
+    return "\n".join(lines).rstrip() + "\n"
+
+
+if __name__ == "__main__":
+    if "--check" in sys.argv[1:]:
+        raise SystemExit(0 if TARGET.read_text(encoding="utf-8") == render() else f"{TARGET} is not up to date")
+    TARGET.write_text(render(), encoding="utf-8")
