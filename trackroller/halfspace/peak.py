@@ -243,7 +243,9 @@ def _one_peak(patch, field, points, nu, rules, seeds, finalists, smallest, floor
             if k > 0 and _distance2(u, tops[best_seed]) < 0.01:
                 continue  # the same summit
             f = _value(patch, field, nu[body], sign, u, p_rule, p_w, waves, waves_w, parts)
-            f, gained = _climb(patch, field, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest, 12)
+            f, gained = _climb(
+                patch, field, nu[body], sign, u, f, p_rule, p_w, waves, waves_w, parts, 0.05, smallest, 12
+            )
             if f > best:
                 best, gained_best = f, gained
                 out[body, 1], out[body, 2], out[body, 3] = u[0] * patch[A], u[1] * patch[B], u[2] * c
