@@ -76,6 +76,7 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
         return 2 * x + np.log(d) - np.log(b) - target
 
     step = 1e-5
+    done = np.zeros(target.shape, dtype=bool)
     for _ in range(60):
         f = mismatch(x)
         high = np.where(f > 0, np.minimum(high, x), high)
@@ -83,10 +84,11 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
         slope = (mismatch(x + step) - mismatch(x - step)) / (2 * step)
         new = x - f / slope
         new = np.where((new > low) & (new < high), new, np.where(f == 0, x, (low + high) / 2))
-        if np.all(np.abs(new - x) <= 2e-15 * np.maximum(1.0, np.abs(x))):
-            x = new
-            break
+        new = np.where(done, x, new)  # a ratio that is found stays: its last digit may not depend on its neighbours
+        done |= np.abs(new - x) <= 2e-15 * np.maximum(1.0, np.abs(x))
         x = new
+        if done.all():
+            break
     return np.exp(np.minimum(x, 0.0))
 
 
