@@ -16,9 +16,9 @@ HEAD = """# Parameters, options and results
 What the quantities mean physically is told in [theory.md](theory.md).*
 """
 OPTIONS = (
-    ("outputs", p.OUTPUT_GROUPS, ", ".join(p.DEFAULT_OUTPUTS), "groups of results; each is computed only when asked for"),
+    ("outputs", p.OUTPUT_GROUPS, ", ".join(p.DEFAULT_OUTPUTS), "groups of results; computed only when asked for"),
     ("contact_model", p.CONTACT_MODELS, "sliding", "how friction is distributed over the patch"),
-    ("spin_model", p.SPIN_MODELS, "skewed", "place of the spin pole (the paper's assumptions 0, 1, 2), for `sliding` only"),
+    ("spin_model", p.SPIN_MODELS, "skewed", "the spin pole, the paper's assumptions 0, 1, 2; for `sliding` only"),
     ("accuracy", (*p.ACCURACIES, "a number in (0, 1)"), "standard", "preset, or relative tolerance of the peak stress"),
     ("hertz", p.HERTZ, "exact", "elliptic integrals, or the table of the published program"),
     ("stress_bodies", p.STRESS_BODIES, "both", "each body with its own Poisson's ratio, or one with the mean"),
@@ -78,7 +78,8 @@ def render() -> str:
     lines += ["### regime\n", "`regime` is an integer; each row has one.\n"]
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += ["### validity\n", "`validity` is a sum of bits; 0 means that nothing is to be said.\n"]
-    lines += _table(("bit", "name", "meaning"), [(1 << i, f"`{k}`", v) for i, (k, v) in enumerate(VALIDITY_BITS.items())])
+    bits = [(1 << i, f"`{name}`", meaning) for i, (name, meaning) in enumerate(VALIDITY_BITS.items())]
+    lines += _table(("bit", "name", "meaning"), bits)
     return "\n".join(lines).rstrip() + "\n"
 
 
