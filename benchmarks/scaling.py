@@ -118,8 +118,8 @@ def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folde
         right.margins(x=0.15)
         left.legend()
         style.head(figure, "Time grows linearly with the number of cases" if linear(by_size) else "Time and memory",
-                   f"{last['threads']} thread{'s' if last['threads'] > 1 else ''}; left and middle at standard accuracy, right with "
-                   f"{by_accuracy[0]['cases']} cases")  # fmt: skip
+                   f"{last['threads']} thread{'s' if last['threads'] > 1 else ''}; left and middle at standard "
+                   f"accuracy, right with {by_accuracy[0]['cases']} cases")  # fmt: skip
         style.finish(figure)
         return style.save(figure, folder, "scaling")
 
