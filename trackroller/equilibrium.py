@@ -111,7 +111,8 @@ class _Roller:
         return np.stack([lateral, radial, self.torque(f, pick)])
 
     def shift(self, w: np.ndarray, pick=slice(None)) -> np.ndarray:
-        return self.slip_scale[pick] * w / np.sqrt((1 - w) * (1 + w))
+        with np.errstate(divide="ignore"):
+            return self.slip_scale[pick] * w / np.sqrt((1 - w) * (1 + w))
 
     def w_of(self, shift: np.ndarray) -> np.ndarray:
         return shift / np.hypot(self.slip_scale, shift)
@@ -210,14 +211,18 @@ def _newton(roller: _Roller, w, normal, w_low, w_high, steps: int = 14):
             jac[active] += miss[:, :, None] * s[:, None, :] / np.sum(s * s, axis=1)[:, None, None]
         step = _solve3(jac[active], -r)
         room = np.stack([0.9 * normal[0, active], 0.9 * normal[1, active]], axis=1)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             damp = np.min(np.where(step[:, :2] < 0, room / -step[:, :2], np.inf), axis=1)
             gap = np.where(step[:, 2] > 0, w_high[active] - w[active], w[active] - w_low[active])
             damp = np.minimum(np.minimum(damp, 0.9 * gap / np.abs(step[:, 2])), 1.0)
-        step *= np.nan_to_num(damp, nan=0.0)[:, None]
+        sound = np.all(np.isfinite(step), axis=1) & np.isfinite(damp)  # a singular system ends the row
+        step = np.where(sound[:, None], step * damp[:, None], 0.0)
         step_old[active], r_old[active] = step, r
         normal[:, active] += step[:, :2].T
         w[active] += step[:, 2]
+        active = active[sound]
+        if active.size == 0:
+            break
     return best, w_best, n_best, f_best
 
 
@@ -317,7 +322,7 @@ def _follow_friction(loads, law, rows, low, high):
     m = rows.size
     lifted, w, normal = np.zeros(m, bool), np.zeros(m), None
     best, f = np.full(m, np.inf), np.full((3, 2, m), np.nan)
-    lost = np.zeros(m, bool)
+    lost, found = np.zeros(m, bool), np.zeros(m, bool)
     scale = np.ones_like(loads.friction)
     for share in (*np.linspace(0.05, 0.95, 19), 1.0):
         scale[rows] = share
@@ -327,12 +332,12 @@ def _follow_friction(loads, law, rows, low, high):
             w, normal = _bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
         best, w_new, n_new, f = _newton(roller, w.copy(), normal.copy(), low, high)
         fine = best <= 1e-8
-        lost |= ~fine
+        lost, found = lost | ~fine, found | fine
         shrunk = np.any(normal < 0.15 * roller.load, axis=0)
         lifted |= np.where(fine, np.any(n_new < 1e-6 * roller.load, axis=0), shrunk)
         w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
     best = np.where(lost, np.inf, best)
-    return best, w, normal, f, lifted
+    return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing
 
 
 def _forces_at(roller: _Roller, w) -> np.ndarray:

@@ -163,6 +163,23 @@ def friction_work(results: Results, options: Options) -> None:
     w = results.by_contact(per_distance)
     results.values["friction_energy_per_distance"] = w
     results.values["friction_power"] = w * (table.velocity / 60.0)[:, None]
+    _energy_balance(results, w)
+
+
+def _energy_balance(results: Results, local: np.ndarray) -> None:
+    """Dissipation that the resultants imply, -(xi F_A + phi M_R), and how far the local one is from the work put in.
+
+    Work of the motor less that of the transmitted force per distance: -F_Motor - (1 + xi) (F_A1 + F_A2), which the
+    balance of the drive torque makes equal to the sum over both contacts.
+    """
+    v, loads = results.values, results.scene.loads
+    xi = v["slip"]
+    spin = results.by_contact(results.slip.spin)
+    v["friction_energy_balance"] = -(xi[:, None] * v["driving_force"] + spin * v["spin_moment"])
+    put_in = -loads.motor_force - (1.0 + xi) * v["transmitted_force"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        residual = np.abs(local.sum(axis=1) - put_in) / np.abs(put_in)
+    v["energy_residual"] = np.where(loads.friction > 0, residual, np.nan)
 
 
 def _patches(results: Results, options: Options) -> np.ndarray:

@@ -83,13 +83,17 @@ class KalkerModel:
         return kalker.tractions(ellipse, slip, friction, self.elastic.take(rows), self.settings)
 
     def power(self, ellipse, slip, friction, rows):
-        # steady rolling: what the resultants do on the rigid slip is what the patch dissipates
-        r = self._law(ellipse, slip, friction, rows, True)
-        return -(slip.longitudinal * r.driving_force + slip.spin * r.spin_moment)
+        from trackroller.contact import kalker
+
+        solution = kalker.solve_patch(
+            ellipse, kalker.Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings
+        )
+        # summed over the elements: the work of the rigid slip and its relative difference from that sum
+        return solution.friction_energy_per_distance * (1.0 + solution.energy_residual)
 
 
 class FastsimModel(KalkerModel):
-    """Kalker's simplified theory."""
+    """Kalker's simplified theory; NaN where the ellipse is more slender than its coefficients reach."""
 
     def __init__(self, settings: Accuracy, elastic: Elastic) -> None:
         from trackroller.contact import fastsim
@@ -97,15 +101,34 @@ class FastsimModel(KalkerModel):
         self.elastic = elastic
         self._fastsim = fastsim
 
+    def _solution(self, ellipse, slip, friction, rows):
+        from trackroller.contact.linear import LARGEST_RATIO
+
+        ratio = ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
+        known = np.flatnonzero((ratio > 1 / LARGEST_RATIO) & (ratio < LARGEST_RATIO))
+        part = slip.take(known)
+        solution = self._fastsim.solve_patch(
+            ellipse.take(known), part.longitudinal, 0.0, part.spin, friction[known], self.elastic.take(rows[known])
+        )
+
+        def spread(values):
+            full = np.full(len(rows), np.nan)
+            full[known] = values
+            return full
+
+        return solution, spread
+
     def law(self, ellipse, slip, friction, rows, fine):
-        return self._fastsim.resultants(ellipse, slip, friction, self.elastic.take(rows), None)
+        solution, spread = self._solution(ellipse, slip, friction, rows)
+        r = solution.resultants
+        return Resultants(*(spread(v) for v in (r.lateral_force, r.driving_force, r.spin_moment)))
 
     def surface(self, ellipse, slip, friction, rows):
         return self._fastsim.tractions(ellipse, slip, friction, self.elastic.take(rows), None)
 
     def power(self, ellipse, slip, friction, rows):
-        r = self.law(ellipse, slip, friction, rows, True)
-        return -(slip.longitudinal * r.driving_force + slip.spin * r.spin_moment)
+        solution, spread = self._solution(ellipse, slip, friction, rows)
+        return spread(solution.friction_energy_per_distance)
 
 
 def contact_model(name: str, settings: Accuracy, elastic: Elastic, spin_model: str) -> ContactModel:

@@ -1,0 +1,93 @@
+"""The ladder of contact models inside the roller: CONTACT's numbers, energy balance, stress on gridded tractions."""
+
+import json
+
+import numpy as np
+import pytest
+from reference_cases import DATA
+
+import trackroller as tr
+
+OUTPUTS = ("forces", "contact", "friction_work", "peak_stress")
+NAMES = ("mu0.3_FM-30_rC220_Fax30", "mu0.2_FM-15_rCinf_Fax0", "mu0.4_FM-30_rC220_Fax30")
+
+
+@pytest.fixture(scope="module")
+def contact_records():
+    records = json.loads((DATA / "contact.json").read_text())["cases"]
+    return [next(r for r in records if r["name"] == name) for name in NAMES]
+
+
+def solve(records, model, **options):
+    cases = [{k: float(v) if v == "inf" else v for k, v in r["case"].items()} for r in records]
+    return tr.solve(cases, outputs=OUTPUTS, contact_model=model, **options)
+
+
+@pytest.fixture(scope="module")
+def kalker(contact_records):
+    return solve(contact_records, "kalker")
+
+
+def test_kalker_matches_contact_in_the_roller(contact_records, kalker):
+    """Forces, moments and slip within 1 % of CONTACT's extrapolated values, stick within 2 points."""
+    for i, r in enumerate(contact_records):
+        fine, rough = r["grid_60x60"], r["grid_40x40"]
+        for name in ("normal_force", "lateral_force", "driving_force", "spin_moment", "rolling_radius_shift"):
+            expected = 3 * np.array(fine[name]) - 2 * np.array(rough[name])
+            np.testing.assert_allclose(kalker[name][i], expected, rtol=1e-2, err_msg=name)
+        np.testing.assert_allclose(kalker.stick_area_fraction[i], fine["stick_area_fraction"], atol=0.02)
+    assert np.all(kalker.converged == 1)
+
+
+def test_peaks_under_kalkers_tractions_match_contact(contact_records, kalker):
+    """Peak stresses of contact and body within 2 % of those computed from CONTACT's tractions."""
+    compared = 0
+    for i, r in enumerate(contact_records):
+        for key, values in r.get("subsurface", {}).items():
+            contact, body = int(key[1]), key[3:]
+            peak = float(kalker.peak_stress.isel(case=i).sel(contact=contact, body=body))
+            assert peak == pytest.approx(values["global_max"]["sigma_vm_MPa"], rel=2e-2)
+            compared += 1
+    assert compared >= 8
+
+
+def test_energy_balance(contact_records, kalker):
+    """Kalker's dissipation equals the work put in; the sliding model's local product exceeds it by about 40 %."""
+    assert np.all(kalker.energy_residual < 1e-2)
+    np.testing.assert_allclose(kalker.friction_energy_per_distance, kalker.friction_energy_balance, rtol=1e-2)
+    sliding = solve(contact_records[:1], "sliding")
+    assert 0.35 < float(sliding.energy_residual[0]) < 0.5
+    assert float(sliding.friction_energy_balance.sum()) == pytest.approx(0.331, abs=2e-3)  # N
+
+
+def test_fastsim_is_a_step_towards_kalker(contact_records, kalker):
+    """FASTSIM's forces lie nearer to the exact theory than full sliding; beyond its table a patch is a failed row."""
+    fastsim, sliding = (solve(contact_records, m) for m in ("fastsim", "sliding"))
+    off = [np.abs(ds.lateral_force - kalker.lateral_force).sum() for ds in (fastsim, sliding)]
+    assert off[0] < 0.6 * off[1]
+    slender = tr.solve(tr.Case(roller_profile_radius=-6.0001), contact_model="fastsim", outputs=("forces",))
+    assert slender.regime == 3
+
+
+def test_gridded_tractions_give_the_stress_of_the_formula():
+    """The kernel fed with sliding tractions on a grid finds the peak of the closed slip field."""
+    from trackroller import stages
+    from trackroller.case import to_table
+    from trackroller.contact.models import traction_share
+    from trackroller.equilibrium import solve_equilibrium
+    from trackroller.halfspace.peak import find_peaks
+    from trackroller.solver import Options
+
+    options = Options()
+    scene = stages.prepare(to_table([tr.Case()]), options)
+    results = stages.Results.start(scene, solve_equilibrium(scene.loads, scene.model.law))
+    from trackroller.contact import sliding
+
+    t = sliding.tractions(results.ellipse, results.slip, results.friction, points=201)
+    # cell centres of a grid of 200: the mean of the corners' directions is good enough far from the pole
+    share = traction_share(t, results.friction)
+    share = 0.25 * (share[:, :, 1:, 1:] + share[:, :, :-1, 1:] + share[:, :, 1:, :-1] + share[:, :, :-1, :-1])
+    rows, nu = stages._patches(results, options), stages._poisson(results, options)
+    exact = find_peaks(rows, nu, options.settings.peak).stress
+    gridded = find_peaks(rows, nu, options.settings.peak, np.ascontiguousarray(share)).stress
+    np.testing.assert_allclose(gridded, exact, rtol=5e-3)
