@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -100,6 +101,43 @@ def test_dask_workers_give_the_same_numbers(tmp_path):
     trackroller("run", "tiny.yaml", "-q", "--results", "dask", "--scheduler", "local", cwd=tmp_path)
     sets = [xr.load_dataset(tmp_path / name / "tiny" / "study.nc") for name in ("results", "dask")]
     xr.testing.assert_identical(*(ds.drop_attrs() for ds in sets))
+
+
+def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
+    """Scheduler and workers are processes of their own; one worker dies in mid-run, every case is there."""
+    study = STUDY.replace("[0, 20, 40]", "[" + ", ".join(f"{v / 10}" for v in range(600)) + "]")
+    (tmp_path / "tiny.yaml").write_text(study.replace("outputs: [forces]", "outputs: [forces, peak_stress]"))
+    dask = [sys.executable, "-m", "dask"]
+    quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    helpers = [subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                                 "--scheduler-file", "s.json"], **quiet)]  # fmt: skip
+    try:
+        for _ in range(2):
+            helpers.append(subprocess.Popen([*dask, "worker", "--scheduler-file", "s.json", "--nworkers", "1",
+                                             "--nthreads", "1", "--no-dashboard", "--no-nanny"], **quiet))  # fmt: skip
+        wait_until(lambda: (tmp_path / "s.json").is_file())
+        address = json.loads((tmp_path / "s.json").read_text())["address"]
+        run = subprocess.Popen([sys.executable, "-c", "from trackroller.cli import main; main()", "run", "tiny.yaml",
+                                "-q", "--scheduler", address], **quiet)  # fmt: skip
+        store = tmp_path / "results" / "tiny" / "store"
+        wait_until(lambda: any(store.glob("*.parts/*.nc")) or any(store.glob("*.nc")))
+        helpers[1].kill()
+        assert run.wait(timeout=120) == 0
+    finally:
+        for helper in reversed(helpers):
+            helper.kill()
+            helper.wait()
+    trackroller("run", "tiny.yaml", "-q", "--results", "alone", cwd=tmp_path)
+    sets = [xr.load_dataset(tmp_path / name / "tiny" / "study.nc") for name in ("results", "alone")]
+    xr.testing.assert_identical(*(ds.drop_attrs() for ds in sets))
+
+
+def wait_until(there, seconds=60):
+    for _ in range(seconds * 10):
+        if there():
+            return
+        time.sleep(0.1)
+    raise AssertionError("waited in vain")
 
 
 def test_version_and_help_are_quick_to_import():

@@ -181,9 +181,13 @@ class Study:
         values = {name: getattr(self.config, name) for name in names if name not in self.factors}
         return values
 
-    def merged(self) -> str:
-        """The study as YAML with every default written out."""
+    def merged(self, whole_paths: bool = False) -> str:
+        """The study as YAML with every default written out (and the table's path from the root on)."""
         data = self.config.model_dump(mode="json", exclude_none=True)
+        if whole_paths and self.config.table is not None:
+            from trackroller.study.design import table_path
+
+            data["table"] = str(Path(table_path(self)).resolve())
         return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
 
     def design(self) -> xr.Dataset:

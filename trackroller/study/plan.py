@@ -26,7 +26,7 @@ from trackroller.study import store
 from trackroller.study.design import build, table_path
 from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
 from trackroller.study.identity import RESULTS_VERSION, chunk_name, fingerprints
-from trackroller.study.mend import Tell, drop_corrupt
+from trackroller.study.mend import Tell, drop_corrupt, tell_changed_code
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -140,6 +140,7 @@ def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | Non
             drop_corrupt(folder, tell)
             for path in sorted((folder.root / "plan").glob("*.npz")):
                 _listed(path, tell)
+            tell_changed_code(folder, tell)
         ready = _kept_plan(study, folder)
         return ready if ready is not None else _new_plan(study, folder, tell)
 
@@ -193,7 +194,7 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
                 chunks[_write_list(folder, design, cases, part, told)] = len(part)
     data = {"key": plan_key(study), "study": study.name, "size": len(cases), "chunks": chunks}
     _write_text(folder.plan_file, json.dumps(data))
-    _write_text(folder.root / "study.yaml", study.merged())
+    _write_text(folder.root / "study.yaml", study.merged(whole_paths=True))
     return Plan(study, folder, chunks, len(cases), design, cases)
 
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from trackroller.study import store
 from trackroller.study.mend import Tell
 from trackroller.study.plan import Plan, make_plan, read_parts
 from trackroller.study.solve import Solver, forget_failed, solve_chunk, solved
@@ -56,15 +55,3 @@ def run_study(
         solve_chunks(plan, open_chunks, scheduler, tell=tell, progress=progress)
     gather(plan, tell=tell)
     return plan
-
-
-def changed_code(plan: Plan) -> bool:
-    """Were kept chunks solved by other source code of the same results version?"""
-    from trackroller.study.identity import physics_code
-
-    now = physics_code()
-    for name in plan.chunks:
-        if plan.folder.kept(name).is_file():
-            told: Any = store.read(plan.folder.kept(name)).attrs.get("physics_code", now)
-            return bool(told != now)
-    return False
