@@ -1,4 +1,7 @@
-"""Writes docs/parameters.md from the tables of the package: `python docs/generate.py`, `--check` only compares."""
+"""Writes docs/parameters.md and the presets in docs/accuracy.md from the tables of the package.
+
+`python docs/generate.py` writes; with `--check` it only compares and ends with 1 if a page is not up to date.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,12 @@ import sys
 from pathlib import Path
 
 from trackroller import parameters as p
+from trackroller.accuracy import PRESETS
 from trackroller.dataset import VALIDITY_BITS, VARIABLES
 
-TARGET = Path(__file__).parent / "parameters.md"
+FOLDER = Path(__file__).parent
+START, END = "<!-- presets: made by docs/generate.py -->\n", "<!-- end of presets -->"
+USES = {"preview": "a first look", "standard": "studies", "reference": "to check `standard`; single cases"}
 HEAD = """# Parameters, options and results
 
 *Made by `python docs/generate.py` from `trackroller/parameters.py` and `trackroller/dataset.py`; do not edit.
@@ -83,7 +89,37 @@ def render() -> str:
     return "\n".join(lines).rstrip() + "\n"
 
 
+def presets() -> str:
+    """The table of presets."""
+    heads = ("preset", "tolerance of the peak", "Gauss points per smooth piece of the slip integrals",
+             "quadrature of scan / climb / polish / summit", "floor of the error estimate",
+             "elements across a patch (`kalker`)", "use")  # fmt: skip
+    rows: list[tuple[object, ...]] = []
+    for name, v in PRESETS.items():
+        orders = f"{v.peak.scan} / {v.peak.climb} / {v.peak.polish} / {v.peak.summit}"
+        rows.append(
+            (f"`{name}`", f"{v.tolerance:g}", v.force_nodes, orders, f"{v.peak.floor:g}", v.elements, USES[name])
+        )
+    return "\n".join(_table(heads, rows))
+
+
+def pages() -> dict[Path, str]:
+    """Every page that is made, whole or in part, and its text."""
+    accuracy = FOLDER / "accuracy.md"
+    before, _, rest = accuracy.read_text(encoding="utf-8").partition(START)
+    return {FOLDER / "parameters.md": render(), accuracy: f"{before}{START}{presets()}{END}{rest.partition(END)[2]}"}
+
+
+def main(check: bool) -> int:
+    """Write the pages, or tell which are not up to date."""
+    stale = [page for page, text in pages().items() if page.read_text(encoding="utf-8") != text]
+    for page in stale:
+        if check:
+            print(f"{page} is not up to date", file=sys.stderr)
+        else:
+            page.write_text(pages()[page], encoding="utf-8")
+    return 1 if check and stale else 0
+
+
 if __name__ == "__main__":
-    if "--check" in sys.argv[1:]:
-        raise SystemExit(0 if TARGET.read_text(encoding="utf-8") == render() else f"{TARGET} is not up to date")
-    TARGET.write_text(render(), encoding="utf-8")
+    raise SystemExit(main("--check" in sys.argv[1:]))

@@ -84,8 +84,8 @@ def test_every_code_block_runs(page, tmp_path, monkeypatch):
                 assert promise is None or promise[1] in re.sub(r"\s+", " ", done.output), done.output
 
 
-def test_parameter_tables_are_those_of_the_code():
-    """docs/parameters.md is what docs/generate.py makes."""
+def test_tables_are_those_of_the_code():
+    """docs/parameters.md and the presets in docs/accuracy.md are what docs/generate.py makes."""
     words = [sys.executable, str(ROOT / "docs" / "generate.py"), "--check"]
     done = subprocess.run(words, capture_output=True, text=True)
     assert done.returncode == 0, f"run: python docs/generate.py\n{done.stderr}"
@@ -97,20 +97,6 @@ def test_links_between_pages_lead_to_files():
         for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", page.read_text(encoding="utf-8")):
             if "://" not in target:
                 assert (page.parent / target).exists(), f"{page.name}: {target}"
-
-
-def test_presets_of_the_accuracy_page_are_those_of_the_code():
-    """Tolerance and quadrature of each preset as the page tells them."""
-    from trackroller.accuracy import PRESETS
-
-    text = (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8")
-    for name, preset in PRESETS.items():
-        row = next(line for line in text.splitlines() if line.startswith(f"| `{name}` |"))
-        cells = [cell.strip() for cell in row.strip("|").split("|")]
-        peak = preset.peak
-        assert float(cells[1]) == preset.tolerance
-        assert [int(cells[2]), int(cells[4])] == [preset.force_nodes, preset.elements]
-        assert cells[3] == f"{peak.scan} / {peak.climb} / {peak.polish} / {peak.summit}"
 
 
 def test_the_command_is_installed():
