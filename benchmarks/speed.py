@@ -13,6 +13,7 @@ import os
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -61,7 +62,7 @@ def main() -> None:
     first = time.perf_counter() - start
     start = time.perf_counter()
     tr.solve(tr.Case(), outputs=complete)
-    result = {
+    result: dict[str, Any] = {
         "cores": os.cpu_count(),
         "first_call_seconds": first,
         "one_case_seconds": time.perf_counter() - start,

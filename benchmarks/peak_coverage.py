@@ -1,6 +1,6 @@
 """How far `standard` lies from `reference`, and how often its `error_estimate` covers the difference.
 
-    python benchmarks/coverage.py [--cases N] [--seed S]
+    python benchmarks/peak_coverage.py [--cases N] [--seed S]
 
 A random sample over friction, angles, radii, curves, loads, materials and drive, wider than what anybody builds. A case
 counts by its worst peak of up to four (two contacts, two bodies). A peak that only one of the two accuracies finds, or
@@ -9,10 +9,6 @@ settings, so errors that both share do not show here; the tests hold the method 
 """
 
 from __future__ import annotations
-
-if __name__ == "coverage":
-    # the folder of a script is searched first, and numba looks for the coverage tool by this name
-    raise ImportError("this is a benchmark, not the coverage tool")
 
 import argparse
 import json
