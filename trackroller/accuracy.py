@@ -29,7 +29,7 @@ class Accuracy:
 
 PRESETS = {
     "preview": Accuracy("preview", 2e-2, 8, 6, PeakSettings(8, 8, 8, 16, 3, 1, 0.05, 2e-3), 31, 31, 20),
-    "standard": Accuracy("standard", 2e-3, 12, 6, PeakSettings(8, 8, 16, 24, 5, 3, 0.015, 3e-4), 41, 61, 40),
+    "standard": Accuracy("standard", 2e-3, 12, 6, PeakSettings(6, 8, 12, 24, 5, 3, 0.015, 3e-4), 41, 61, 40),
     "reference": Accuracy("reference", 1e-4, 20, 8, PeakSettings(12, 16, 24, 48, 8, 6, 0.001, 1e-5), 81, 121, 80),
 }
 

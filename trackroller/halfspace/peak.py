@@ -222,18 +222,23 @@ def _one_peak(patch, field, points, nu, rules, seeds, finalists, smallest, floor
     for body in range(2):
         sign = 1.0 if body == 0 else -1.0
         found = _seeds(points, scan[body], seeds, chosen)
+        high = 0.0
         for s in range(found):
-            u = tops[s]
-            _copy(points[chosen[s]], u)
-            f = _value(patch, field, nu[body], sign, u, c_rule, c_w, c_rule, c_w, parts)
-            values[s], _ = _climb(patch, field, nu[body], sign, u, f, c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06, 1)
+            _copy(points[chosen[s]], tops[s])
+            values[s] = _value(patch, field, nu[body], sign, tops[s], c_rule, c_w, c_rule, c_w, parts)
+            high = max(high, values[s])
+        for s in range(found):  # the scan is rough: seeds that fall behind with better quadrature are given up
+            if values[s] > 0.9 * high:
+                values[s], _ = _climb(
+                    patch, field, nu[body], sign, tops[s], values[s], c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06, 1
+                )
         best_seed = 0
         for k in range(1, found):
             if values[k] > values[best_seed]:
                 best_seed = k
         top = values[best_seed]
         for k in range(found):  # only those that may still win climb on
-            if values[k] > 0.95 * top:
+            if values[k] > 0.965 * top:
                 values[k], _ = _climb(
                     patch, field, nu[body], sign, tops[k], values[k], c_rule, c_w, c_rule, c_w, parts, 0.08, 0.06, 3
                 )
