@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numba.core.registry import cpu_target
 
 from trackroller import equilibrium as eq
 from trackroller import stages
@@ -27,6 +29,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.materials import MaterialDatabase
+
+# What every solution needs anyway is loaded with this module, so that the first call is as quick as the others.
+importlib.import_module("scipy.special")
+importlib.import_module("dask.array")  # xarray asks for it at the first data set
+cpu_target.typing_context.refresh()
+cpu_target.target_context.refresh()
 
 BLOCK = 2048  # cases worked on at once: bounds the memory whatever the size of the batch
 
