@@ -7,7 +7,7 @@ from reference_cases import case_of, published_cases
 import trackroller as tr
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
-from trackroller.stages import von_mises
+from trackroller.halfspace.stress import von_mises
 
 
 def patch(a=1.0, b=1.0, mu=0.0, shift=0.0, fixed=0.0, alpha=0.5, model=2):

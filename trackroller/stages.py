@@ -21,6 +21,7 @@ from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import find_peaks
+from trackroller.halfspace.stress import von_mises
 
 if TYPE_CHECKING:
     from trackroller.solver import Options
@@ -301,12 +302,6 @@ def subsurface(results: Results, options: Options) -> None:
                 v[f"von_mises_{plane}"][i, j, body] = von_mises(s).reshape(depth_points, m)
             v["xz_x"][i, j, body], v["yz_y"][i, j, body] = across, along
             v["xz_z"][i, j, body] = v["yz_z"][i, j, body] = depth
-
-
-def von_mises(s: np.ndarray) -> np.ndarray:
-    """Equivalent stress, eq. (6), of components (..., 6) in the order xx, yy, zz, xy, yz, zx."""
-    normal = (s[..., 0] - s[..., 1]) ** 2 + (s[..., 2] - s[..., 0]) ** 2 + (s[..., 1] - s[..., 2]) ** 2
-    return np.sqrt(0.5 * normal + 3.0 * (s[..., 3] ** 2 + s[..., 4] ** 2 + s[..., 5] ** 2))
 
 
 def validity(results: Results) -> None:

@@ -16,10 +16,11 @@ def thread_count() -> int:
     return int(os.environ.get("NUMBA_NUM_THREADS", 0)) or os.cpu_count() or 1
 
 
-def share_rows(work: Callable[[int, int], object], rows: int, smallest: int) -> None:
-    """Calls `work(first, last)` for pieces of `rows` rows, at least `smallest` long, on all threads."""
+def share_rows(work: Callable[[int, int], object], rows: int, smallest: int, largest: int | None = None) -> None:
+    """Calls `work(first, last)` for pieces of `rows` rows, between `smallest` and `largest` long, on all threads."""
     threads = thread_count()
     size = max(smallest, -(-rows // (8 * threads)))
+    size = size if largest is None else min(size, largest)
     pieces = [(i, min(i + size, rows)) for i in range(0, rows, size)]
     if threads == 1 or len(pieces) < 2:
         for first, last in pieces:

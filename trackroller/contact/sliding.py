@@ -19,7 +19,6 @@ from trackroller.errors import unknown_name
 from trackroller.parameters import SPIN_MODELS
 from trackroller.threads import share_rows
 
-_CONCENTRIC, _EDGE, _SKEWED = range(3)
 _TINY = 1e-13  # keeps logarithms finite on the column through the pole; its weight there is of order eps^2
 
 

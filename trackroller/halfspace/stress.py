@@ -7,14 +7,12 @@ Stresses come as a last axis of six in the order of COMPONENTS. Young's modulus 
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from trackroller.errors import InputError
 from trackroller.halfspace import influence
+from trackroller.threads import share_rows
 
 Array = NDArray[np.float64]
 COMPONENTS = ("sigma_x", "sigma_y", "sigma_z", "tau_xy", "tau_yz", "tau_xz")
@@ -52,10 +50,6 @@ def _check_depth(field: str, depth: Array) -> None:
 def _check_poisson(poisson_ratio: float) -> None:
     if not 0.0 <= poisson_ratio <= 0.5:
         raise InputError("poisson_ratio", poisson_ratio, "0 <= poisson_ratio <= 0.5")
-
-
-def _threads() -> int:
-    return int(os.environ.get("NUMBA_NUM_THREADS", 0)) or os.cpu_count() or 1
 
 
 def stress_from_tractions(
@@ -112,15 +106,7 @@ def stress_from_tractions(
         parts = influence.stress_parts(loads, flat[start:stop])
         out[start:stop] = parts[:, 0] + poisson_ratio * parts[:, 1]
 
-    threads = _threads()
-    size = min(_CHUNK, max(64, -(-flat.shape[0] // (4 * threads))))
-    pieces = [(i, min(i + size, flat.shape[0])) for i in range(0, flat.shape[0], size)]
-    if threads == 1 or len(pieces) == 1:
-        for piece in pieces:
-            work(*piece)
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            list(pool.map(lambda piece: work(*piece), pieces))
+    share_rows(work, flat.shape[0], 64, _CHUNK)
     return out.reshape((*at.shape[:-1], 6))
 
 
