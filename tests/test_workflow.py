@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -12,8 +11,8 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from workflow_place import lay_workflow
 
-ROOT = Path(__file__).parent.parent
 STUDY = """
 name: tiny
 description: a small study
@@ -28,11 +27,7 @@ chunk_size: {size}
 @pytest.fixture
 def place(tmp_path):
     """A folder with the workflow in it, as a clone has it."""
-    for name in ("workflow", "profiles"):
-        shutil.copytree(ROOT / name, tmp_path / name)
-    shutil.copy(ROOT / "Snakefile", tmp_path)
-    (tmp_path / "config").mkdir()
-    (tmp_path / "config" / "config.yaml").write_text("study: tiny.yaml\nresults: results\n")
+    lay_workflow(tmp_path)
     return tmp_path
 
 

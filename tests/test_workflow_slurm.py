@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from workflow_place import lay_workflow
 
 ROOT = Path(__file__).parent.parent
 STUDY = """
@@ -45,11 +46,7 @@ def slurm(tmp_path_factory):
 @pytest.fixture
 def place(tmp_path):
     """A folder with the workflow in it."""
-    for name in ("workflow", "profiles"):
-        shutil.copytree(ROOT / name, tmp_path / name)
-    shutil.copy(ROOT / "Snakefile", tmp_path)
-    (tmp_path / "config").mkdir()
-    (tmp_path / "config" / "config.yaml").write_text("study: tiny.yaml\nresults: results\n")
+    lay_workflow(tmp_path)
     (tmp_path / "tiny.yaml").write_text(STUDY)
     return tmp_path
 
