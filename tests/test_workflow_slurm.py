@@ -14,7 +14,6 @@ import pytest
 import xarray as xr
 from workflow_place import lay_workflow
 
-ROOT = Path(__file__).parent.parent
 STUDY = """
 name: tiny
 factors:
