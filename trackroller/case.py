@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -12,12 +13,31 @@ import numpy as np
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.geometry import curvatures, rolling_radius
-from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
 
-FIELDS = (*PARAMETERS, *MATERIAL_FIELDS)
+FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
+
+
+def mapping_text(name: str, value: Any) -> str:
+    """Canonical JSON of an entry that is a mapping (or its JSON), '' for none; raises `InputError`."""
+    if value is None or (isinstance(value, str) and not value.strip()):
+        return ""
+    if isinstance(value, str):
+        try:
+            value = json.loads(value)
+        except ValueError:
+            raise InputError(name, value, "a mapping, or one written as JSON") from None
+    if not isinstance(value, Mapping):
+        raise InputError(name, value, "a mapping, or not given")
+    if name == "friction_law":
+        from trackroller.contact.friction_laws import canonical
+    else:
+        from trackroller.profiles import canonical
+    told = canonical(value, name)
+    return json.dumps(told, sort_keys=True) if told else ""
 
 
 def _number(name: str, value: Any) -> float:
@@ -38,7 +58,9 @@ class Case:
 
     Units and signs are those of `trackroller.parameters.PARAMETERS`. A material is a name of the database
     or a mapping with its values. `friction_coefficient=None` takes the typical value of the material
-    pair ('upper' or 'lower' take the bounds). Raises `InputError` for a value outside its range and for
+    pair ('upper' or 'lower' take the bounds). `friction_law` lets friction depend on the slip speed (see
+    `trackroller.contact.friction_laws.canonical`), `guide_profile` and `roller_profile` are drawn or measured
+    cross-sections for `normal="halfspace"` (see `trackroller.profiles.canonical`). Raises `InputError` for a value outside its range and for
     surfaces that conform or interlock.
     """
 
@@ -55,6 +77,9 @@ class Case:
     guide_overrollings_per_hour: float | None = None
     roller_material: Any = "1.7225-normalised"
     guide_material: Any = "1.7225-normalised"
+    friction_law: Any = None
+    guide_profile: Any = None
+    roller_profile: Any = None
 
     def __post_init__(self) -> None:
         columns: dict[str, np.ndarray] = {}
@@ -72,6 +97,9 @@ class Case:
             columns[name] = np.array([number])
         for name in MATERIAL_FIELDS:
             _check_material_kind(name, getattr(self, name))
+        for name in MAPPING_FIELDS:
+            text = mapping_text(name, getattr(self, name))
+            object.__setattr__(self, name, json.loads(text) if text else None)
         problem = geometry_problem(columns)
         if problem is not None:
             raise problem
@@ -158,7 +186,10 @@ class MaterialArrays:
 
 @dataclass(frozen=True)
 class CaseTable:
-    """Cases as arrays of shape (n,), units as in `PARAMETERS`; the friction coefficient is resolved."""
+    """Cases as arrays of shape (n,), units as in `PARAMETERS`; the friction coefficient is resolved.
+
+    Mappings (friction law, drawn profiles) stand as canonical JSON in arrays of str objects, '' for none.
+    """
 
     axis_distance: np.ndarray
     guide_profile_radius: np.ndarray
@@ -173,13 +204,16 @@ class CaseTable:
     guide_overrollings_per_hour: np.ndarray
     roller: MaterialArrays
     guide: MaterialArrays
+    friction_law: np.ndarray
+    guide_profile: np.ndarray
+    roller_profile: np.ndarray
 
     def __len__(self) -> int:
         return len(self.axis_distance)
 
     def take(self, index: np.ndarray) -> CaseTable:
         """The rows `index`."""
-        numbers = {name: getattr(self, name)[index] for name in PARAMETERS}
+        numbers = {name: getattr(self, name)[index] for name in (*PARAMETERS, *MAPPING_FIELDS)}
         return CaseTable(**numbers, roller=self.roller.take(index), guide=self.guide.take(index))
 
 
@@ -286,4 +320,17 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
         level = level if isinstance(level, str) else "typical"
         friction[i] = database.friction(roller_materials[i], guide_materials[i], level=level).value
     numbers["friction_coefficient"] = friction
-    return CaseTable(**numbers, roller=roller, guide=guide)
+    texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
+    return CaseTable(**numbers, **texts, roller=roller, guide=guide)
+
+
+def _texts(name: str, column: np.ndarray) -> np.ndarray:
+    """Canonical texts of a column of mappings, each distinct one checked once."""
+    known: dict[str, str] = {}
+    out = np.empty(column.size, dtype=object)
+    for i, value in enumerate(column):
+        key = value if isinstance(value, str) else "" if value is None else repr(value)
+        if key not in known:
+            known[key] = mapping_text(name, value)
+        out[i] = known[key]
+    return out

@@ -93,7 +93,8 @@ _ALL = (
 
 PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL}
 
-CONTACT_MODELS = ("sliding", "fastsim", "kalker")
+CONTACT_MODELS = ("sliding", "fastsim", "kalker", "auto")
+NORMAL = ("hertz", "halfspace")
 SPIN_MODELS = ("concentric", "edge", "skewed")
 ACCURACIES = ("preview", "standard", "reference")
 HERTZ = ("exact", "published")
@@ -103,4 +104,10 @@ OUTPUT_GROUPS = ("forces", "contact", "friction_work", "peak_stress", "life", "t
 DEFAULT_OUTPUTS = ("forces", "contact", "peak_stress", "life")
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
+MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
+    "friction_law": "friction as a function of the slip speed: {kind: constant | linear | exponential | table, ...}; "
+    "not given: constant",
+    "guide_profile": "drawn or measured cross-section of the guide, for normal: halfspace; not given: the circle",
+    "roller_profile": "drawn or measured cross-section of the roller, for normal: halfspace; not given: the circle",
+}
 FRICTION_LEVELS = ("typical", "upper", "lower")

@@ -5,11 +5,13 @@ A law is kept as a table that is linear between its knots, so that every contact
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, unknown_name
 
 KNOTS = 160  # of an exponential law; the table is off by less than 1e-4 of its drop
 
@@ -85,3 +87,56 @@ def table(speed, friction) -> FrictionLaw:
     if not (friction[0] > 0 and np.all(friction >= 0) and np.all(np.isfinite(friction))):
         raise InputError("friction", friction.tolist(), "friction coefficients >= 0, the first > 0")
     return FrictionLaw(speed, friction / friction[0])
+
+
+_KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {  # needed and further entries
+    "constant": ((), ()),
+    "linear": (("speed",), ("lowest",)),
+    "exponential": (("speed",), ("lowest",)),
+    "table": (("speed", "friction"), ()),
+}
+
+
+def canonical(value: Mapping[str, Any], field: str = "friction_law") -> dict[str, Any]:
+    """The mapping of a law, checked, with numbers as floats; {} for the constant law.
+
+    Parameters
+    ----------
+    value : {kind: constant}, {kind: linear, speed [mm/s], lowest}, {kind: exponential, speed [mm/s], lowest} or
+        {kind: table, speed: [mm/s ...], friction: [...]}; see the functions of the same names
+
+    Raises `InputError` that names the entry of `field`.
+    """
+    if not isinstance(value, Mapping) or "kind" not in value:
+        raise InputError(field, value, "a mapping with the entry kind: " + ", ".join(_KINDS))
+    kind = value["kind"]
+    if kind not in _KINDS:
+        raise unknown_name(f"{field}.kind", str(kind), tuple(_KINDS))
+    needed, further = _KINDS[kind]
+    for key in value:
+        if key not in ("kind", *needed, *further):
+            raise unknown_name(f"{field}: entry of {kind}", str(key), ("kind", *needed, *further))
+    for key in needed:
+        if key not in value:
+            raise InputError(f"{field}.{key}", None, f"kind {kind} needs the entries " + ", ".join(needed))
+    try:
+        numbers = {k: [float(x) for x in v] if isinstance(v, (list, tuple)) else float(v)
+                   for k, v in value.items() if k != "kind"}  # fmt: skip
+    except (TypeError, ValueError):
+        raise InputError(field, dict(value), "numbers for " + ", ".join((*needed, *further))) from None
+    told = {"kind": kind, **dict(sorted(numbers.items()))}
+    try:
+        law = _law(told)
+    except InputError as exc:
+        raise InputError(f"{field}.{exc.field}", exc.value, exc.allowed, exc.remedy) from None
+    return {} if np.all(law.factor == 1.0) else told
+
+
+def _law(told: Mapping[str, Any]) -> FrictionLaw:
+    makers = {"constant": constant, "linear": linear_falling, "exponential": exponential_falling, "table": table}
+    return makers[told["kind"]](**{k: v for k, v in told.items() if k != "kind"})  # type: ignore[operator]
+
+
+def law_of(value: Mapping[str, Any] | None) -> FrictionLaw:
+    """The law of a mapping (see `canonical`); the constant law for None or an empty mapping."""
+    return _law(canonical(value)) if value and canonical(value) else constant()
