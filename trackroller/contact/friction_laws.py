@@ -1,27 +1,39 @@
 """Friction coefficient as a function of the local slip speed, for contact models that solve for the slip.
 
-A law is kept as a table that is linear between its knots, so that every contact model reads one form.
+A law is kept as a table that is linear between its knots, so that every contact model reads one form. It scales the
+friction coefficient of the case, which holds at rest.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, nearest
 
 KNOTS = 160  # of an exponential law; the table is off by less than 1e-4 of its drop
+DEFAULTS: dict[str, dict[str, Any]] = {
+    "constant": {},
+    "linear": {"speed": None, "lowest": 0.0},
+    "exponential": {"speed": None, "lowest": 0.4},
+    "table": {"speed": None, "friction": None},
+}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FrictionLaw:
-    """Friction over its value at rest: `factor` (m,) at slip speeds `speed` (m,) [mm/s], linear in between."""
+    """Friction over its value at rest: `factor` (m,) at slip speeds `speed` (m,) [mm/s], linear in between.
+
+    `form` is the mapping the law was made from, see `law_of`; two laws are equal if their tables are.
+    """
 
     speed: np.ndarray
     factor: np.ndarray
+    form: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     def __call__(self, speed) -> np.ndarray:
         """Factor on the friction coefficient at slip speeds [mm/s], any shape; constant beyond the last knot."""
@@ -29,22 +41,68 @@ class FrictionLaw:
 
     @property
     def is_constant(self) -> bool:
-        return self.speed.size == 1
+        return bool(np.all(self.factor == 1.0))
+
+    @property
+    def at_high_speed(self) -> float:
+        """Factor beyond the last knot [-]."""
+        return float(self.factor[-1])
+
+    def _content(self) -> tuple[bytes, bytes]:
+        if self.is_constant:
+            return b"", b""
+        return self.speed.tobytes(), self.factor.tobytes()
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, FrictionLaw) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def as_dict(self) -> dict[str, Any]:
+        """The mapping that `law_of` makes this law from, all its fields written out."""
+        if self.is_constant:
+            return {"kind": "constant"}
+        return dict(self.form) or {"kind": "table", "speed": self.speed.tolist(), "friction": self.factor.tolist()}
+
+    @property
+    def json(self) -> str:
+        """Canonical text of `as_dict`: equal laws of one kind give equal text."""
+        return json.dumps(self.as_dict(), sort_keys=True, separators=(",", ":"))
 
 
 def constant() -> FrictionLaw:
     """Coulomb's law, factor 1 at every speed."""
-    return FrictionLaw(np.zeros(1), np.ones(1))
+    return FrictionLaw(np.zeros(1), np.ones(1), {"kind": "constant"})
 
 
-def _checked_share(lowest: float) -> None:
-    if not 0.0 <= lowest <= 1.0:
-        raise InputError("lowest", lowest, "the share of friction left at high speed lies in [0, 1]")
+def _refuse(part: str, value: object, allowed: str, remedy: str = "") -> None:
+    raise InputError(f"friction_law.{part}" if part else "friction_law", value, allowed, remedy)
 
 
-def _checked_speed(speed: float) -> None:
-    if not (speed > 0.0 and np.isfinite(speed)):
-        raise InputError("speed", speed, "a slip speed > 0 in mm/s")
+def _number(part: str, value: object, allowed: str) -> float:
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        _refuse(part, value, allowed)
+        raise AssertionError from None
+
+
+def _checked_share(lowest: object) -> float:
+    allowed = "the share of friction left at high speed, in [0, 1]"
+    number = _number("lowest", lowest, allowed)
+    if not 0.0 <= number <= 1.0:
+        _refuse("lowest", lowest, allowed)
+    return number
+
+
+def _checked_speed(speed: object) -> float:
+    number = _number("speed", speed, "a slip speed > 0 in mm/s")
+    if not (number > 0.0 and np.isfinite(number)):
+        _refuse("speed", speed, "a slip speed > 0 in mm/s")
+    return number
 
 
 def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
@@ -55,9 +113,9 @@ def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
     speed : slip speed at which the lowest friction is reached [mm/s]
     lowest : friction left there over that at rest [-]
     """
-    _checked_speed(speed)
-    _checked_share(lowest)
-    return FrictionLaw(np.array([0.0, speed]), np.array([1.0, lowest]))
+    speed, lowest = _checked_speed(speed), _checked_share(lowest)
+    form = {"kind": "linear", "speed": speed, "lowest": lowest}
+    return FrictionLaw(np.array([0.0, speed]), np.array([1.0, lowest]), form)
 
 
 def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
@@ -68,10 +126,10 @@ def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
     speed : slip speed at which the falling part has dropped to 1/e [mm/s]
     lowest : friction at high speed over that at rest [-]
     """
-    _checked_speed(speed)
-    _checked_share(lowest)
+    speed, lowest = _checked_speed(speed), _checked_share(lowest)
     part = np.linspace(0.0, 1.0, KNOTS) ** 1.5 * 12.0
-    return FrictionLaw(part * speed, lowest + (1.0 - lowest) * np.exp(-part))
+    form = {"kind": "exponential", "speed": speed, "lowest": lowest}
+    return FrictionLaw(part * speed, lowest + (1.0 - lowest) * np.exp(-part), form)
 
 
 def table(speed, friction) -> FrictionLaw:
@@ -79,64 +137,74 @@ def table(speed, friction) -> FrictionLaw:
 
     Raises `InputError` unless the speeds rise from 0 and the friction is >= 0, with the first > 0.
     """
-    speed, friction = np.asarray(speed, float), np.asarray(friction, float)
-    if speed.ndim != 1 or speed.shape != friction.shape or speed.size == 0:
-        raise InputError("speed", speed.shape, "as many slip speeds as friction coefficients, at least one")
-    if speed[0] != 0.0 or np.any(np.diff(speed) <= 0) or not np.all(np.isfinite(speed)):
-        raise InputError("speed", speed.tolist(), "slip speeds rise from 0")
-    if not (friction[0] > 0 and np.all(friction >= 0) and np.all(np.isfinite(friction))):
-        raise InputError("friction", friction.tolist(), "friction coefficients >= 0, the first > 0")
-    return FrictionLaw(speed, friction / friction[0])
+    speeds = values = np.empty(0)
+    try:
+        speeds, values = np.asarray(speed, float), np.asarray(friction, float)
+    except (TypeError, ValueError):
+        _refuse("speed", speed, "lists of numbers: slip speeds and friction coefficients")
+    if speeds.ndim != 1 or speeds.shape != values.shape or speeds.size == 0:
+        _refuse("speed", speeds.shape, "as many slip speeds as friction coefficients, at least one")
+    if speeds[0] != 0.0 or np.any(np.diff(speeds) <= 0) or not np.all(np.isfinite(speeds)):
+        _refuse("speed", speeds.tolist(), "slip speeds in mm/s that rise from 0")
+    if not (values[0] > 0 and np.all(values >= 0) and np.all(np.isfinite(values))):
+        _refuse("friction", values.tolist(), "friction coefficients >= 0, the first > 0")
+    form = {"kind": "table", "speed": speeds.tolist(), "friction": values.tolist()}
+    return FrictionLaw(speeds, values / values[0], form)
 
 
-_KINDS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {  # needed and further entries
-    "constant": ((), ()),
-    "linear": (("speed",), ("lowest",)),
-    "exponential": (("speed",), ("lowest",)),
-    "table": (("speed", "friction"), ()),
-}
+def _fields(mapping: Mapping[str, Any]) -> dict[str, Any]:
+    """The mapping with its defaults; unknown kinds, unknown and missing fields are refused."""
+    kind = mapping.get("kind")
+    if kind not in DEFAULTS:
+        close = nearest(str(kind), tuple(DEFAULTS))
+        _refuse("kind", kind, f"one of {', '.join(DEFAULTS)}", f"Did you mean {close!r}?" if close else "")
+    known = DEFAULTS[str(kind)]
+    for name in mapping:
+        if name != "kind" and name not in known:
+            _refuse(str(name), mapping[name], f"a {kind} law has the fields {', '.join(('kind', *known))}")
+    values = {**known, **{k: v for k, v in mapping.items() if k != "kind"}}
+    for name, value in values.items():
+        if value is None:
+            _refuse(name, value, f"a {kind} law needs {name}")
+    return values
 
 
-def canonical(value: Mapping[str, Any], field: str = "friction_law") -> dict[str, Any]:
-    """The mapping of a law, checked, with numbers as floats; {} for the constant law.
+def law_of(mapping: Mapping[str, Any] | FrictionLaw | str | None) -> FrictionLaw:
+    """The law of a mapping as it stands in a case or study file.
 
     Parameters
     ----------
-    value : {kind: constant}, {kind: linear, speed [mm/s], lowest}, {kind: exponential, speed [mm/s], lowest} or
-        {kind: table, speed: [mm/s ...], friction: [...]}; see the functions of the same names
+    mapping : `{kind: constant}`; `{kind: linear, speed: v, lowest: f}`; `{kind: exponential, speed: v, lowest: f}`;
+        `{kind: table, speed: [0, ...], friction: [...]}` with slip speeds in mm/s; the JSON text of such a mapping;
+        or None or an empty mapping for constant
+
+    Raises `InputError` that names `friction_law` and the part that is wrong.
+    """
+    if mapping is None or (isinstance(mapping, (str, Mapping)) and not mapping):
+        return constant()
+    if isinstance(mapping, FrictionLaw):
+        return mapping
+    if isinstance(mapping, str):
+        try:
+            mapping = json.loads(mapping) if mapping.lstrip().startswith("{") else {"kind": mapping}
+        except json.JSONDecodeError:
+            _refuse("", mapping, "a mapping with `kind`, or its JSON text")
+    if not isinstance(mapping, Mapping):
+        _refuse("", mapping, "a mapping such as {kind: exponential, speed: 100, lowest: 0.4}")
+        raise AssertionError
+    values = _fields(mapping)
+    makers = {"constant": constant, "linear": linear_falling, "exponential": exponential_falling, "table": table}
+    return makers[str(mapping["kind"])](**values)  # type: ignore[operator]
+
+
+def canonical(value: Mapping[str, Any], field: str = "friction_law") -> dict[str, Any]:
+    """The mapping of a law as in `law_of`, checked, with defaults and numbers as floats; {} for the constant law.
 
     Raises `InputError` that names the entry of `field`.
     """
-    if not isinstance(value, Mapping) or "kind" not in value:
-        raise InputError(field, value, "a mapping with the entry kind: " + ", ".join(_KINDS))
-    kind = value["kind"]
-    if kind not in _KINDS:
-        raise unknown_name(f"{field}.kind", str(kind), tuple(_KINDS))
-    needed, further = _KINDS[kind]
-    for key in value:
-        if key not in ("kind", *needed, *further):
-            raise unknown_name(f"{field}: entry of {kind}", str(key), ("kind", *needed, *further))
-    for key in needed:
-        if key not in value:
-            raise InputError(f"{field}.{key}", None, f"kind {kind} needs the entries " + ", ".join(needed))
     try:
-        numbers = {k: [float(x) for x in v] if isinstance(v, (list, tuple)) else float(v)
-                   for k, v in value.items() if k != "kind"}  # fmt: skip
-    except (TypeError, ValueError):
-        raise InputError(field, dict(value), "numbers for " + ", ".join((*needed, *further))) from None
-    told = {"kind": kind, **dict(sorted(numbers.items()))}
-    try:
-        law = _law(told)
-    except InputError as exc:
-        raise InputError(f"{field}.{exc.field}", exc.value, exc.allowed, exc.remedy) from None
-    return {} if np.all(law.factor == 1.0) else told
-
-
-def _law(told: Mapping[str, Any]) -> FrictionLaw:
-    makers = {"constant": constant, "linear": linear_falling, "exponential": exponential_falling, "table": table}
-    return makers[told["kind"]](**{k: v for k, v in told.items() if k != "kind"})  # type: ignore[operator]
-
-
-def law_of(value: Mapping[str, Any] | None) -> FrictionLaw:
-    """The law of a mapping (see `canonical`); the constant law for None or an empty mapping."""
-    return _law(canonical(value)) if value and canonical(value) else constant()
+        law = law_of(value)
+    except InputError as error:
+        name = field + error.field.removeprefix("friction_law")
+        raise InputError(name, error.value, error.allowed, error.remedy) from None
+    return {} if law.is_constant else law.as_dict()
