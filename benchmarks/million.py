@@ -1,70 +1,122 @@
-"""A large study: time and memory of planning and gathering, and the workflow's share of the solving time.
+"""A large study through the real workflow, each step in a process of its own: CPU time and peak of memory.
 
-    python benchmarks/million.py [CASES] [solve]
+    python benchmarks/million.py [BASE_SAMPLES] [real] [keep=FOLDER]
 
-Without `solve` a stand-in takes the solver's place (forces only, same width), so that the machinery is measured
-alone. Prints seconds and the peak of resident memory after each step.
+A Saltelli sample of six factors without second order: 8 BASE_SAMPLES cases of forces, contact and life (131072: just
+over a million). Without `real`, results of a few thousand solved cases are handed out again and again in place of
+solving, so that everything else is measured alone: planning, Snakemake's graph of jobs, gathering, analysis,
+figures, report. With `real`, every case is solved (3-4 ms of CPU each) by `snakemake --cores all`, which goes on
+where it stopped when the same command is given again with the same `keep` folder.
 """
 
 from __future__ import annotations
 
-import resource
-import shutil
+import os
+import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
+import yaml
+
+ROOT = Path(__file__).resolve().parent.parent
+STUDY = {
+    "name": "million",
+    "base": {"axis_distance": 21.75, "guide_curve_radius": 220, "velocity": 60},
+    "factors": {
+        "friction_coefficient": {"uniform": [0.1, 0.3]},
+        "profile_ratio": {"uniform": [1.1, 1.4]},
+        "roller_profile_radius": {"expression": "-profile_ratio * 6"},
+        "contact_angle": {"uniform": [28, 40]},
+        "radial_force": {"uniform": [-250, -150]},
+        "axial_load_ratio": {"uniform": [0, 0.25]},
+        "axial_force": {"expression": "axial_load_ratio * abs(radial_force)"},
+        "drive_share": {"uniform": [0, 0.5]},
+        "motor_force": {"expression": "-drive_share * friction_coefficient * abs(radial_force)"},
+    },
+    "design": "saltelli",
+    "second_order": False,
+    "seed": 1,
+    "outputs": ["forces", "contact", "life"],
+    "accuracy": "preview",
+}
 
 
-def memory() -> str:
-    """Peak of resident memory of this process."""
-    return f"{resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6:.2f} GB"
+def plan() -> None:
+    """Write the case lists."""
+    from trackroller.study.config import load_study
+    from trackroller.study.plan import make_plan
+
+    make_plan(load_study("study.yaml"), "results")
 
 
-def stand_in(design, database=None, **options):
-    """60 columns a case, as forces, contact and life have."""
-    import xarray as xr
+def hand_out() -> None:
+    """Fill every chunk with the results of the first one, over and over."""
+    import numpy as np
 
-    n = design.sizes["case"]
-    wide = np.repeat(design["axial_force"].values[:, None], 14, axis=1)
-    found = {f"v{i}": (("case", "contact", "body"), wide[:, :4].reshape(n, 2, 2)) for i in range(14)}
-    found["regime"] = ("case", np.zeros(n, "i1"))
-    found["converged"] = ("case", np.ones(n, "i1"))
-    return xr.Dataset(found, {"contact": [1, 2], "body": ["roller", "guide"]})
+    from trackroller.study.config import load_study
+    from trackroller.study.plan import load_list, make_plan
+    from trackroller.study.solve import finish, solve_rows
+
+    made = make_plan(load_study("study.yaml"), "results")
+    solved = None
+    for name in made.chunks:
+        cases = load_list(made.folder, name)
+        if solved is None:
+            solved = solve_rows(cases, np.arange(min(2048, len(cases.cases))), made.study.materials)
+        block = solved.take(np.arange(len(cases.cases)) % len(solved.cases))
+        block.cases = cases.cases
+        finish(made.folder, cases, [block])
+
+
+def measured(words: list[str], place: Path) -> tuple[float, float, float]:
+    """Run a command; returns seconds, CPU seconds (children of it included) and the peak of memory [GB] of one
+    process."""  # fmt: skip
+    begun = time.perf_counter()
+    with open(place / "told.txt", "w+", encoding="utf-8") as told:
+        process = subprocess.Popen(words, cwd=place, stdout=told, stderr=subprocess.STDOUT)
+        _, code, used = os.wait4(process.pid, 0)
+        if code:
+            told.seek(0)
+            raise SystemExit(f"{' '.join(words)} failed:\n{told.read()[-3000:]}")
+    return time.perf_counter() - begun, used.ru_utime + used.ru_stime, used.ru_maxrss / 1e6
+
+
+def prepare(place: Path, base_samples: int) -> None:
+    """The workflow and the study in a folder."""
+    import shutil
+
+    for part in ("workflow", "profiles"):
+        shutil.copytree(ROOT / part, place / part, dirs_exist_ok=True)
+    shutil.copy(ROOT / "Snakefile", place)
+    (place / "config").mkdir(exist_ok=True)
+    (place / "config" / "config.yaml").write_text("study: study.yaml\nresults: results\n")
+    (place / "study.yaml").write_text(yaml.safe_dump({**STUDY, "samples": base_samples}, sort_keys=False))
 
 
 def main() -> None:
-    """Plan, solve, gather."""
-    from trackroller.study.config import parse_study
-    from trackroller.study.gather import gather
-    from trackroller.study.plan import make_plan
-    from trackroller.study.solve import solve_chunk
-
-    cases = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
-    real = "solve" in sys.argv[2:]
-    study = parse_study({
-        "name": "large", "design": "lhs", "samples": cases,
-        "outputs": ["forces", "contact", "life"] if real else ["forces"],
-        "factors": {"axial_force": {"uniform": [0, 60]}, "friction_coefficient": {"uniform": [0.01, 0.4]},
-                    "radial_force": {"uniform": [-400, -100]},
-                    "material_pair": {"values": [["1.7225-normalised"] * 2, ["PA6", "1.7225-normalised"]]}},
-    })  # fmt: skip
-    results = Path(tempfile.mkdtemp(prefix="million-"))
-    begun = time.perf_counter()
-    plan = make_plan(study, results)
-    print(f"plan    {time.perf_counter() - begun:6.1f} s, {len(plan.chunks)} chunks, {memory()}")
-    begun = time.perf_counter()
-    for name in plan.chunks:
-        solve_chunk(plan.folder, name, study.materials, solver=None if real else stand_in)
-    print(f"solve   {time.perf_counter() - begun:6.1f} s, {memory()}")
-    plan = make_plan(study, results)
-    begun = time.perf_counter()
-    gather(plan)
-    print(f"gather  {time.perf_counter() - begun:6.1f} s, {memory()}")
-    print(f"file    {plan.folder.gathered.stat().st_size / 1e6:.0f} MB")
-    shutil.rmtree(results)
+    """All steps, one line each."""
+    words = sys.argv[1:]
+    if words[:1] == ["step"]:
+        return {"plan": plan, "hand_out": hand_out}[words[1]]()
+    number = next((int(w) for w in words if w.isdigit()), 131072)
+    keep = next((w[5:] for w in words if w.startswith("keep=")), "")
+    place = Path(keep or tempfile.mkdtemp(prefix="million-")).resolve()
+    place.mkdir(exist_ok=True, parents=True)
+    prepare(place, number)
+    me, snakemake = [sys.executable, __file__], str(Path(sys.executable).parent / "snakemake")
+    run = [snakemake, "--cores", "all", "--quiet", "all", "--"]
+    steps = [("plan", [*me, "step", "plan"]), ("graph", [snakemake, "-n", "--quiet", "all"])]
+    steps += [("solve", [*run, "results/million/study.nc"])] if "real" in words else [
+        ("hand out", [*me, "step", "hand_out"]), ("gather", [*run, "results/million/study.nc"])]  # fmt: skip
+    steps += [(rule, [*run, f"results/million/{file}"]) for rule, file in
+              (("analysis", "sensitivity.nc"), ("figures", "figures"), ("report", "report.html"))]  # fmt: skip
+    for step, command in steps:
+        wall, cpu, memory = measured(command, place)
+        print(f"{step:10}{wall:8.1f} s {cpu:8.1f} s CPU {memory:6.2f} GB", flush=True)
+    size = (place / "results" / "million" / "study.nc").stat().st_size
+    print(f"study.nc {size / 1e6:.0f} MB in {place}")
 
 
 if __name__ == "__main__":

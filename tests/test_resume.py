@@ -18,7 +18,7 @@ from trackroller.errors import InputError
 from trackroller.study import store
 from trackroller.study.config import parse_study
 from trackroller.study.files import WorkError, write_whole
-from trackroller.study.plan import make_plan
+from trackroller.study.plan import identify, make_plan
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 
@@ -265,3 +265,34 @@ def test_numbers_of_a_case_do_not_depend_on_its_neighbours():
             part = tr.solve(design.isel(case=slice(start, start + size)))
             for name in whole.data_vars:
                 np.testing.assert_array_equal(part[name].values, whole[name].values[start : start + size], err_msg=name)
+
+
+SAMPLED = {"a": {"uniform": [0.01, 0.5]}, "axial_force": {"expression": "20 + 40 * a"},
+           "friction_coefficient": {"uniform": [0.05, 0.3]},
+           "radial_force": {"values": [-200.0, -150.0, -100.0]}, "motor_force": {"values": [0.0, -10.0]}}  # fmt: skip
+
+
+@pytest.mark.parametrize(("design", "small", "large"), [
+    ("lhs", 30, 60), ("lhs", 30, 47), ("sobol", 30, 50), ("saltelli", 8, 16), ("morris", 5, 9), ("nested", 10, 15),
+])  # fmt: skip
+def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, solved, design, small, large):
+    data = {"name": "g", "design": design, "outputs": ["forces"], "factors": SAMPLED, "chunk_size": 20}
+    run(data | {"samples": small}, tmp_path)
+    before = solved()
+    plan, ds, _ = run(data | {"samples": large}, tmp_path)
+    cases = len(np.unique(identify(plan.study, plan.study.design())))
+    assert 0 < sum(before.values()) < sum(solved().values()) == cases, "each case of the larger sample once"
+    run(data | {"samples": large}, tmp_path)
+    assert sum(solved().values()) == cases, "planning again changes nothing"
+    assert status_of(parse_study(data | {"samples": large}), tmp_path).missing == 0
+    assert np.isfinite(ds["normal_force"]).all()
+
+
+def test_doubled_latin_hypercube_is_one_again_and_every_size_keeps_its_rows():
+    from trackroller.study.growth import grown_lhs
+
+    small, large, odd = (grown_lhs(3, sizes, 4) for sizes in ([20], [20, 40], [20, 40, 57]))
+    assert (large[:20] == small).all() and (odd[:40] == large).all()
+    assert (np.sort((large * 40).astype(int), axis=0) == np.arange(40)[:, None]).all()
+    assert all(len(np.unique((column * 57).astype(int))) >= 45 for column in odd.T)
+    assert ((odd >= 0) & (odd < 1)).all()

@@ -59,6 +59,7 @@ class StudyFile(BaseModel):
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
     levels: int | None = Field(None, description="morris: number of levels")
     inner: Literal["lhs", "sobol"] | None = Field(None, description="nested: how the inside is sampled")
+    grown_from: tuple[int, ...] | None = Field(None, description="lhs, nested: earlier samples, whose rows come first")
     outputs: tuple[str, ...] = Field(DEFAULT_OUTPUTS, description="groups of results, computed only if asked")
     contact_model: str | tuple[str, ...] = Field("sliding", description="one, or a list as a factor")
     spin_model: str | tuple[str, ...] = Field("skewed", description="one, or a list; for sliding only")

@@ -13,6 +13,7 @@ from trackroller.case import geometry_problem
 from trackroller.errors import InputError
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.factors import label, parse
+from trackroller.study.goals import check_scatter
 from trackroller.study.sampling import OPTIONS, SampledDesign, sample
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ _DEFAULT_MATERIAL = "1.7225-normalised"
 def draw(study: Study) -> SampledDesign:
     """The factors' columns of a study (see `trackroller.study.sampling.sample`)."""
     config = study.config
-    options = {name: getattr(config, name) for name in ("second_order", "levels", "inner")}
+    options = {name: getattr(config, name) for name in ("second_order", "levels", "inner", "grown_from")}
     options = {k: v for k, v in options.items() if v is not None}
     for name in options:
         if name not in OPTIONS.get(config.design, {}):
@@ -137,7 +138,7 @@ def _friction(study: Study, columns: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def check_materials(study: Study) -> None:
-    """Every material a study names is in the database."""
+    """Every material a study names is in the database, and has the scatter that its analysis counts on."""
     names: dict[str, str] = {}
     for name in MATERIAL_FIELDS:
         if name in study.config.base:
@@ -149,8 +150,13 @@ def check_materials(study: Study) -> None:
         pairs.append(study.config.base["material_pair"])
     for pair in pairs:
         names |= {material: "material_pair" for material in pair}
-    for name in names:
-        study.materials.material(name)
+    if not pairs:
+        for name in MATERIAL_FIELDS:
+            if name not in study.config.base and name not in study.factors:
+                names.setdefault(_DEFAULT_MATERIAL, name)
+    used = [study.materials.material(name) for name in names]
+    if study.config.design != "table":
+        check_scatter(study.config.analysis.material_scatter, study.config.design, used)
 
 
 def check_geometry(study: Study) -> None:

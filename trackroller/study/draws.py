@@ -19,6 +19,7 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import PARAMETERS
 from trackroller.study import designs
 from trackroller.study.factors import TAIL, Factor, column
+from trackroller.study.growth import check_sizes, grown_lhs
 
 MAX_ROWS = 50_000_000  # more rows than this are a typing error, not a study
 Drawn = tuple[dict[str, np.ndarray], np.ndarray, dict[str, Any]]
@@ -50,22 +51,24 @@ def _grid(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, 
     return columns, index.astype(float), {"shape": shape}
 
 
-def _random(free: Mapping[str, Factor], n: int, seed: int, method: str) -> np.ndarray:
+def _random(free: Mapping[str, Factor], n: int, seed: int, method: str, earlier: Any) -> np.ndarray:
+    if method == "lhs":
+        return grown_lhs(len(free), [*check_sizes(earlier, n), n], seed)
     from scipy.stats import qmc
 
-    engine = (qmc.LatinHypercube if method == "lhs" else qmc.Sobol)(d=len(free), rng=np.random.default_rng(seed))
+    engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # balance of a Sobol sequence off a power of two
         return engine.random(n)
 
 
 def _lhs(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
-    unit = _random(free, n, seed, "lhs")
+    unit = _random(free, n, seed, "lhs", settings["grown_from"])
     return _map(free, unit), unit, {}
 
 
 def _sobol(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
-    unit = _random(free, n, seed, "sobol")
+    unit = _random(free, n, seed, "sobol", ())
     return _map(free, unit), unit, {}
 
 
@@ -94,15 +97,17 @@ def _morris(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str
     if not isinstance(levels, int) or levels < 4 or levels % 2:
         raise InputError("design option levels", levels, "an even whole number >= 4")
     count = len(free)
-    unit = morris.sample(_problem(free), n, num_levels=levels, seed=seed)
+    # a seed for each trajectory, so that more of them leave the first ones as they were
+    seeds = [int(np.random.SeedSequence([seed, i]).generate_state(1)[0]) for i in range(n)]
+    unit = np.concatenate([morris.sample(_problem(free), 1, num_levels=levels, seed=s) for s in seeds])
     path = unit.reshape(n, count + 1, count)
-    rng = np.random.default_rng(seed + 1)
+    drawers = [np.random.default_rng([s, 1]) for s in seeds]
     columns = {}
     for j, (name, factor) in enumerate(free.items()):
         if not factor.discrete:
             columns[name] = factor.from_unit(unit[:, j], TAIL)
             continue
-        pair = np.array([rng.choice(len(factor.levels), 2, replace=False) for _ in range(n)])
+        pair = np.array([rng.choice(len(factor.levels), 2, replace=False) for rng in drawers])
         moved = path[:, :, j] != path[:, :1, j]
         path[:, :, j] = np.where(moved, pair[:, 1:], pair[:, :1])
         columns[name] = factor.take(path[:, :, j].ravel())
@@ -146,7 +151,7 @@ def _nested(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str
         raise InputError("factors", list(free), "a nested study needs a factor that scatters (a distribution)")
     if settings["inner"] not in ("lhs", "sobol"):
         raise unknown_name("design option inner", settings["inner"], ("lhs", "sobol"))
-    unit_in = _random(inner, n, seed, settings["inner"])
+    unit_in = _random(inner, n, seed, settings["inner"], settings["grown_from"])
     points, index, meta = _grid(outer, 0, 0, {}) if outer else ({}, np.zeros((1, 0)), {"shape": ()})
     count = len(index)
     drawn = _map(inner, unit_in)

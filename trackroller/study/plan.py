@@ -25,6 +25,7 @@ from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import store
 from trackroller.study.design import build, table_path
 from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
+from trackroller.study.growth import with_history
 from trackroller.study.identity import RESULTS_VERSION, chunk_name, fingerprints
 from trackroller.study.mend import Tell, drop_corrupt, tell_changed_code
 
@@ -135,6 +136,7 @@ def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | Non
     """
     folder = study_folder(study.name, results).create()
     tell = tell or (lambda line: None)
+    study = with_history(study, folder)
     with locked(folder.plan_lock):
         if check:
             drop_corrupt(folder, tell)
@@ -142,6 +144,8 @@ def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | Non
                 _listed(path, tell)
             tell_changed_code(folder, tell)
         ready = _kept_plan(study, folder)
+        if ready is None and study.config.grown_from:
+            tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
         return ready if ready is not None else _new_plan(study, folder, tell)
 
 

@@ -14,6 +14,7 @@ from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import store
 from trackroller.study.design import build
 from trackroller.study.files import WorkError
+from trackroller.study.growth import with_history
 from trackroller.study.plan import case_options, identify, study_folder
 
 if TYPE_CHECKING:
@@ -51,13 +52,15 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     """
     from trackroller.solver import solve
 
+    folder = study_folder(study.name, results)
+    study = with_history(study, folder)
     design = build(study)
     if not 0 <= number < design.sizes["case"]:
         raise InputError("case", number, f"a case number from 0 to {design.sizes['case'] - 1}")
     cases = identify(study, design)
     options, _ = case_options(study, design)
     told = options if isinstance(options, dict) else options[number]
-    before = _stored(study_folder(study.name, results).root, cases[number])
+    before = _stored(folder.root, cases[number])
     row = design.drop_vars(list(design.coords)).isel(case=[number])
     again = store.from_dataset(solve(row, database=study.materials, **told), cases[[number]])
     differences = {}

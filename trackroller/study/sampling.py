@@ -36,7 +36,8 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "saltelli": {"second_order": True},
     "morris": {"levels": 4},
     "table": {"table": None},
-    "nested": {"inner": "lhs"},
+    "nested": {"inner": "lhs", "grown_from": ()},
+    "lhs": {"grown_from": ()},
 }
 
 
@@ -99,7 +100,7 @@ def sample(
     seed : the same seed gives the same design
     base : values that expressions may use besides the factors
     options : second_order (saltelli, default true), levels (morris, default 4), table (path of the CSV),
-        inner (nested: lhs or sobol)
+        inner (nested: lhs or sobol), grown_from (lhs, nested: earlier numbers of samples whose rows come first)
 
     Returns
     -------

@@ -16,6 +16,7 @@ from trackroller.study.config import load_study, parse_study
 from trackroller.study.cost import measured_rate, rate
 from trackroller.study.design import build, draw
 from trackroller.study.factors import label
+from trackroller.study.growth import with_history
 from trackroller.study.plan import identify, study_folder
 from trackroller.study.yamlfile import read_mapping
 
@@ -59,10 +60,11 @@ def find_study(study: str, results: Path | str = "results") -> Study:
 
 def status_of(study: Study, results: Path | str = "results") -> Status:
     """State of a study from the files it has; nothing is written."""
+    folder = study_folder(study.name, results)
+    study = with_history(study, folder)
     sampled = draw(study)
     design = build(study, sampled)
     cases = identify(study, design)
-    folder = study_folder(study.name, results)
     status = Status(len(cases), gathered=folder.gathered.is_file())
     regime: dict[bytes, int] = {}
     reasons: dict[str, str] = {}
