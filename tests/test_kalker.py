@@ -12,6 +12,7 @@ from trackroller.contact.common import Elastic, Ellipse, Slip
 from trackroller.contact.friction_laws import exponential_falling, linear_falling, table
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.kalker import Creepage, KalkerSettings, solve_patch
+from trackroller.contact.kalker_law import KalkerLaw
 from trackroller.geometry import curvatures, rolling_radius
 
 # 58 equilibria by CONTACT (open-source release 2025) on 40x40 and 60x60 elements, first order: extrapolated here
@@ -42,7 +43,7 @@ def equilibrium(case, settings):
     one = np.ones(1)
     hertz = shape(k_x * one, k_y * one, contact_modulus(210e3, 0.33, 210e3, 0.33) * one)
     two = type(hertz)(*(np.repeat(v, 2) for v in (hertz.lateral, hertz.rolling, hertz.pressure)))
-    law = kalker.KalkerLaw(Elastic(*(np.array([float(v)]) for v in (STEEL.shear_modulus, 0.33, 0.0))), settings)
+    law = KalkerLaw(Elastic(*(np.array([float(v)]) for v in (STEEL.shear_modulus, 0.33, 0.0))), settings)
     sine, pair = np.array([np.sin(alpha), -np.sin(alpha)]), np.ones(2)
     load = abs(c["radial_force"]) + abs(c["axial_force"])
 

@@ -13,11 +13,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.linear import creepage_coefficients
+from trackroller.threads import share_rows
 
 SWEEPS = 30  # halvings of the interval in which a step finds the friction of its slip speed
 SUBSTEPS = 4  # between the points of a grid of tractions
@@ -28,7 +29,7 @@ class FastsimSettings:
     """strips across the patch, steps along each (a second pass with twice as many serves extrapolation),
 
     points of a traction grid, `parabolic` for the traction bound of the original algorithm, friction law and the
-    travel speed [mm/s] it is reached at.
+    travel speed [mm/s] where a call does not give its own.
     """
 
     strips: int = 32
@@ -101,17 +102,19 @@ def _patch(a, b, scale, drive, flexibility, steps, nodes, weights, parabolic, sp
     total[5] = out[4]
 
 
-@njit(cache=True, parallel=True)
-def _all_patches(a, b, scale, drive, flexibility, steps, nodes, weights, parabolic, speeds, factors, totals):
-    for i in prange(a.size):
-        _patch(a[i], b[i], scale[i], drive[i], flexibility[i], steps, nodes, weights, parabolic, speeds, factors,
-               totals[i])  # fmt: skip
+@njit(cache=True, nogil=True)
+def _all_patches(rows, a, b, scale, drive, flexibility, travel, steps, nodes, weights, parabolic, speeds, factors,
+                 totals):  # fmt: skip
+    for i in range(rows[0], rows[1]):
+        _patch(a[i], b[i], scale[i], drive[i], flexibility[i], steps, nodes, weights, parabolic, speeds / travel[i],
+               factors, totals[i])  # fmt: skip
 
 
-@njit(cache=True, parallel=True)
-def _all_fields(a, b, scale, drive, flexibility, points, parabolic, speeds, factors, shear, slip):
+@njit(cache=True, nogil=True)
+def _all_fields(rows, a, b, scale, drive, flexibility, travel, points, parabolic, knots, factors, shear, slip):
     """Tractions and slip (n, 2, points, points) at element centres, marched from the leading edge of each strip."""
-    for i in prange(a.size):
+    for i in range(rows[0], rows[1]):
+        speeds = knots / travel[i]
         out = np.zeros(5)
         for k in range(points):
             u = (2.0 * k + 1.0) / points - 1.0
@@ -158,9 +161,15 @@ def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: E
     return a, b, mu * p, np.stack([xi / l_1, eta / l_2, phi / l_3], axis=1), flexibility
 
 
+def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
+    given = settings.travel_speed if travel_speed is None else travel_speed
+    return np.array(np.broadcast_to(np.asarray(given, float), n), order="C")
+
+
 def solve_patch(
-    ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic, settings: FastsimSettings | None = None
-) -> FastsimSolution:
+    ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic,
+    settings: FastsimSettings | None = None, travel_speed=None,
+) -> FastsimSolution:  # fmt: skip
     """Simplified theory for n patches with rigid slip w = (eta - phi y, xi + phi x).
 
     Parameters
@@ -169,6 +178,7 @@ def solve_patch(
     longitudinal, lateral, spin : xi, eta [-], phi [1/mm], (n,) or scalars
     friction : coefficient mu [-], (n,) or scalar
     elastic : combined constants; the coupling constant is not used
+    travel_speed : [mm/s], (n,) or scalar, for friction laws; that of the settings if not given
 
     Errors against the exact theory: within 5 % without spin, 10 to 15 % of the lateral force with large spin.
     """
@@ -177,9 +187,11 @@ def solve_patch(
     a, b, scale, drive, flexibility = _problem(ellipse, longitudinal, lateral, spin, friction, elastic)
     nodes, weights = np.polynomial.legendre.leggauss(settings.strips)
     totals = np.empty((2, a.size, 6))
+    travel = _travel(travel_speed, settings, a.size)
     for k, steps in enumerate((settings.steps, 2 * settings.steps)):
-        _all_patches(a, b, scale, drive, flexibility, steps, nodes, weights, settings.parabolic,
-                     law.speed / settings.travel_speed, law.factor, totals[k])  # fmt: skip
+        rest = (a, b, scale, drive, flexibility, travel, steps, nodes, weights, settings.parabolic, law.speed,
+                law.factor, totals[k])  # fmt: skip
+        share_rows(lambda first, last, rest=rest: _all_patches((first, last), *rest), a.size, 8)
     best = 2.0 * totals[1] - totals[0]  # the steps are of first order
     return FastsimSolution(Resultants(best[:, 0], best[:, 1], best[:, 2]), best[:, 3], totals[1, :, 4], totals[1, :, 5])
 
@@ -192,16 +204,18 @@ def resultants(
 
 
 def tractions(
-    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None
-) -> SurfaceTractions:
+    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None,
+    travel_speed=None,
+) -> SurfaceTractions:  # fmt: skip
     """Pressure (of Hertz), shear and slip at points x points element centres; 0 outside the ellipse."""
     settings = settings or FastsimSettings()
     law = settings.law or constant()
     a, b, scale, drive, flexibility = _problem(ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic)
     points = settings.points
     shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
-    _all_fields(a, b, scale, drive, flexibility, points, settings.parabolic, law.speed / settings.travel_speed,
-                law.factor, shear, moved)  # fmt: skip
+    rest = (a, b, scale, drive, flexibility, _travel(travel_speed, settings, a.size), points, settings.parabolic,
+            law.speed, law.factor, shear, moved)  # fmt: skip
+    share_rows(lambda first, last: _all_fields((first, last), *rest), a.size, 4)
     u = (2.0 * np.arange(points) + 1.0) / points - 1.0
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - u[:, None] ** 2, 0.0))
     pressure = np.broadcast_to(ellipse.max_pressure, a.shape)[:, None, None] * root

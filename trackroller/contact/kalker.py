@@ -7,8 +7,7 @@ element: |tau| <= mu p, and tau = -mu p s/|s| where it slides. Rectangular eleme
 
 from __future__ import annotations
 
-import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -33,7 +32,8 @@ class KalkerSettings:
     steps, krylov : limits of Newton steps and of the Krylov space of one step
     extrapolate : resultants from grids with `elements` and half of them
     profile_slip : rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x
-    law, travel_speed : friction falling with the slip speed, and the travel speed [mm/s] it is reached at
+    law : friction as a function of the slip speed; constant if not given
+    travel_speed : of the roller [mm/s], which turns slips into speeds, where a call does not give its own
     """
 
     elements: int = 40
@@ -108,8 +108,12 @@ class PatchSolution:
     friction_change: np.ndarray
     converged: np.ndarray
 
+    def take(self, index) -> PatchSolution:
+        """The patches `index`."""
+        return PatchSolution(self.resultants.take(index), *(getattr(self, f.name)[index] for f in fields(self)[1:]))
 
-def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settings, elements: int, traction):
+
+def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings, elements: int, traction):
     """Solve on one grid; `traction` is the start. Returns slips and the report (n, REPORT)."""
     n = friction.size
     height, share = unit_cells(elements, elements)
@@ -122,12 +126,12 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settin
     slip, report = np.empty_like(traction), np.empty((n, batch.REPORT))
     control = np.array([settings.tolerance, settings.steps, settings.krylov])
     batch.solve_batch(a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x),
-                      creep.lateral, creep.spin, height, share, law.speed / settings.travel_speed, law.factor, control,
-                      traction, slip, report)  # fmt: skip
+                      creep.lateral, creep.spin, travel, height, share, law.speed, law.factor, control, traction, slip,
+                      report)  # fmt: skip
     return slip, report
 
 
-def _solve_block(ellipse, creep, friction, elastic, settings: KalkerSettings, start) -> PatchSolution:
+def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
     n, elements = friction.size, settings.elements
     traction = np.zeros((n, 2, elements, elements)) if start is None else np.array(start, float)
     coarse = None
@@ -136,10 +140,10 @@ def _solve_block(ellipse, creep, friction, elastic, settings: KalkerSettings, st
         first = np.zeros((n, 2, half, half))
         if start is not None:
             first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
-        _, coarse = _level(ellipse, creep, friction, elastic, settings, half, first)
+        _, coarse = _level(ellipse, creep, friction, elastic, travel, settings, half, first)
         if start is None:
             batch.refine(first, unit_cells(half, half)[0], unit_cells(elements, elements)[0], traction)
-    slip, fine = _level(ellipse, creep, friction, elastic, settings, elements, traction)
+    slip, fine = _level(ellipse, creep, friction, elastic, travel, settings, elements, traction)
     value = fine[:, :3]
     error = np.full((n, 3), np.nan)
     work = fine[:, batch.WORK]
@@ -171,9 +175,16 @@ def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np
     return Ellipse(a, b, p), _full(friction, n), Elastic(g, nu, k)
 
 
+def joined(parts: list[PatchSolution], order) -> PatchSolution:
+    """Solutions one after the other, then taken in an order."""
+    rest = [np.concatenate([getattr(p, f.name) for p in parts])[order] for f in fields(PatchSolution)[1:]]
+    forces = [np.concatenate([getattr(p.resultants, f.name) for p in parts])[order] for f in fields(Resultants)]
+    return PatchSolution(Resultants(*forces), *rest)
+
+
 def solve_patch(
     ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings | None = None,
-    start: np.ndarray | None = None,
+    start: np.ndarray | None = None, travel_speed=None,
 ) -> PatchSolution:  # fmt: skip
     """Tractions, slip and resultants of n patches in steady rolling with friction.
 
@@ -185,6 +196,7 @@ def solve_patch(
     elastic : combined constants, arrays (n,) or scalars
     settings : `KalkerSettings`
     start : tractions (n, 2, elements, elements) over mu p_max of a nearby solution, to start from
+    travel_speed : [mm/s], (n,) or scalar, for friction laws; that of the settings if not given
 
     Validity: Hertzian pressure, half-spaces, steady rolling, dry friction. Observed error of the resultants with 40
     elements and extrapolation: about 0.2 % in sliding, below 1 % in full stick (tests/test_kalker.py).
@@ -194,18 +206,14 @@ def solve_patch(
     n = friction.size
     xi, eta, phi = (_full(v, n) for v in (creep.longitudinal, creep.lateral, creep.spin))
     creep = Creepage(xi, eta, phi, creep.slip)
+    travel = _full(settings.travel_speed if travel_speed is None else travel_speed, n)
     parts = []
     for i in range(0, max(n, 1), BLOCK):
         rows = slice(i, i + BLOCK)
         first = None if start is None else start[rows]
-        parts.append(_solve_block(ellipse.take(rows), creep.take(rows), friction[rows], elastic.take(rows), settings,
-                                  first))  # fmt: skip
-    if len(parts) == 1:
-        return parts[0]
-    joined = [np.concatenate([getattr(p, name) for p in parts]) for name in list(PatchSolution.__annotations__)[1:]]
-    forces = Resultants(*(np.concatenate([getattr(p.resultants, name) for p in parts])
-                          for name in ("lateral_force", "driving_force", "spin_moment")))  # fmt: skip
-    return PatchSolution(forces, *joined)
+        parts.append(_solve_block(ellipse.take(rows), creep.take(rows), friction[rows], elastic.take(rows),
+                                  travel[rows], settings, first))  # fmt: skip
+    return parts[0] if len(parts) == 1 else joined(parts, slice(None))
 
 
 def resultants(
@@ -243,32 +251,3 @@ def tractions(
     settings = settings or KalkerSettings()
     solution = solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings)
     return to_tractions(ellipse, friction, solution)
-
-
-class KalkerLaw:
-    """The contact model as the equilibrium calls it, starting each patch from its last solution.
-
-    Parameters
-    ----------
-    elastic : combined constants of n rollers, arrays (n,)
-    settings : discretisation of the fine law; the coarse one has half the elements and no extrapolation
-
-    The patches of a call are contact 1 of the rows asked for, then contact 2 of the same rows.
-    """
-
-    def __init__(self, elastic: Elastic, settings: KalkerSettings | None = None) -> None:
-        self.elastic, self.settings = elastic, settings or KalkerSettings()
-        self._starts: dict[tuple[int, int, bool], np.ndarray] = {}
-
-    def __call__(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> Resultants:
-        settings = self.settings
-        if not fine:
-            settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
-        keys = [(int(row), int(2 * i >= len(rows)), fine) for i, row in enumerate(rows)]
-        start = None
-        if all(key in self._starts for key in keys):
-            start = np.stack([self._starts[key] for key in keys]).astype(float)
-        creep = Creepage.of_slip(slip, settings.profile_slip)
-        solution = solve_patch(ellipse, creep, friction, self.elastic.take(rows), settings, start)
-        self._starts.update(zip(keys, solution.traction.astype(np.float32), strict=True))
-        return solution.resultants

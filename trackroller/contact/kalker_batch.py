@@ -8,10 +8,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from trackroller.contact.kalker_influence import coupling_slip, prepare
 from trackroller.contact.kalker_newton import newton
+from trackroller.threads import share_rows
 
 # columns of the numbers reported for each patch
 (F_T, F_A, M_R, STICK, POWER, WORK, RESIDUAL, STEPS, PRODUCTS, FRICTION_ERROR) = range(10)
@@ -106,8 +107,8 @@ def _friction_sweeps(multipliers, own, hy, driver, height, speeds, values, speed
 
 
 @njit(cache=True)
-def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, height, share, speeds, values, control,
-               traction, slip, report):  # fmt: skip
+def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel, height, share, speeds, values,
+               control, traction, slip, report):  # fmt: skip
     """Solve one patch; `traction` is the start. ratio = mu p_max / G, coupling = K / mu."""
     ny, nx = height.shape
     report[:] = 0.0
@@ -128,8 +129,8 @@ def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, heig
                 driver[0, i, j] = rigid[0, i, j] + coupling * driver[0, i, j]
                 driver[1, i, j] = rigid[1, i, j] + coupling * driver[1, i, j]
     bound = height.copy()
-    _friction_sweeps(multipliers, own, hy, driver, height, speeds, values, ratio, control, traction, slip, bound,
-                     report)  # fmt: skip
+    _friction_sweeps(multipliers, own, hy, driver, height, speeds, values, ratio * travel, control, traction, slip,
+                     bound, report)  # fmt: skip
     _sums(traction, slip, rigid, bound, 1.0 / own, share, a, b, report)
     for k in range(3):
         report[k] *= scale
@@ -141,25 +142,33 @@ def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, heig
             slip[1, i, j] *= ratio
 
 
-@njit(cache=True, parallel=True)
-def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, height, share, speeds, values, control,
-                traction, slip, report):  # fmt: skip
+@njit(cache=True, nogil=True)
+def _solve_rows(rows, a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel, height, share, speeds,
+                values, control, traction, slip, report):  # fmt: skip
+    for i in range(rows[0], rows[1]):
+        _one_patch(a[i], b[i], scale[i], ratio[i], poisson[i], coupling[i], along[i], lateral[i], spin[i], travel[i],
+                   height, share, speeds, values, control, traction[i], slip[i], report[i])  # fmt: skip
+
+
+def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel, height, share, speeds, values,
+                control, traction, slip, report):  # fmt: skip
     """Patches i = 0..n-1, one per core at a time.
 
     a, b [mm], scale = mu p_max [MPa], ratio = mu p_max / G, nu, K / mu, lateral [-], spin [1/mm]: (n,);
-    along (n, nx): rolling part of the rigid slip; height, share (ny, nx): `unit_cells`; speeds (m,): slip per travel
-    speed, and values (m,): friction over its reference; control: tolerance, Newton steps, Krylov space.
+    along (n, nx): rolling part of the rigid slip; travel (n,): travel speed [mm/s]; height, share (ny, nx):
+    `unit_cells`; speeds (m,): slip speeds [mm/s], and values (m,): friction over its reference there; control:
+    tolerance, Newton steps, Krylov space.
     traction (n, 2, ny, nx): start and result over mu p_max; slip likewise, per travel speed; report (n, REPORT).
     """
-    for i in prange(a.size):
-        _one_patch(a[i], b[i], scale[i], ratio[i], poisson[i], coupling[i], along[i], lateral[i], spin[i], height,
-                   share, speeds, values, control, traction[i], slip[i], report[i])  # fmt: skip
+    given = (a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel, height, share, speeds, values,
+             control, traction, slip, report)  # fmt: skip
+    share_rows(lambda first, last: _solve_rows((first, last), *given), a.size, 1, 1)
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def refine(coarse, coarse_height, height, fine):
     """Start of a grid (n, 2, 2 ny, 2 nx) from the one with half the elements: the same share of the bound."""
-    for k in prange(fine.shape[0]):
+    for k in range(fine.shape[0]):
         for c in range(2):
             for i in range(fine.shape[2]):
                 for j in range(fine.shape[3]):

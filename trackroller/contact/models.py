@@ -5,23 +5,26 @@ A model gives the contact law of the equilibrium, and the tractions of given pat
 
 from __future__ import annotations
 
-import dataclasses
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from trackroller.contact import sliding
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.errors import InputError
 
 if TYPE_CHECKING:
     from trackroller.accuracy import Accuracy
 
 
+FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models
+
+
 class ContactModel(Protocol):
     """What the solver asks of a contact model; `rows` are the rollers that the patches belong to."""
 
-    full_sliding: bool
+    full_sliding: bool  # and with the constant law, so that the traction needs no grid
     difference_step: float  # relative step of derivatives, above the noise of the model
     residual: float  # relative residual of the equilibrium that the model can reach
 
@@ -34,31 +37,52 @@ class ContactModel(Protocol):
     def power(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Dissipation per distance travelled [N], shape (n,)."""
 
+    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Residual of the friction law in the patches of n rollers at the last fine call, and if it is met, (n,)."""
 
-@dataclasses.dataclass
+
 class SlidingModel:
-    """Full sliding with an empirical spin pole (Wenzel et al. 2022)."""
+    """Full sliding with an empirical spin pole (Wenzel et al. 2022), under any friction law."""
 
-    settings: Accuracy
-    spin_model: str
-    full_sliding: bool = True
-    difference_step: float = 1e-5
-    residual: float = 1e-10
+    difference_step = 1e-5
+    residual = 1e-10
+
+    def __init__(self, settings: Accuracy, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray) -> None:
+        self.settings, self.spin_model = settings, spin_model
+        self.friction_law, self.travel = law, travel_speed
+        self.full_sliding = law.is_constant
+
+    def _falling(self, ellipse, slip, friction, rows, nodes):
+        from trackroller.contact import sliding_law
+
+        travel = self.travel[rows]
+        return sliding_law.integrals(
+            ellipse, slip, friction, self.friction_law, travel, spin_model=self.spin_model, nodes=nodes
+        )
 
     def law(self, ellipse, slip, friction, rows, fine):
         nodes = self.settings.force_nodes if fine else self.settings.coarse_nodes
+        if not self.friction_law.is_constant:
+            return self._falling(ellipse, slip, friction, rows, nodes)[0]
         return sliding.resultants(ellipse, slip, friction, spin_model=self.spin_model, nodes=nodes)
 
     def surface(self, ellipse, slip, friction, rows):
-        return sliding.tractions(
-            ellipse, slip, friction, spin_model=self.spin_model, points=self.settings.traction_points
-        )
+        points, falling = self.settings.traction_points, None
+        if not self.friction_law.is_constant:
+            points, falling = FINER * self.settings.elements, self.friction_law
+        return sliding.tractions(ellipse, slip, friction, spin_model=self.spin_model, points=points, law=falling,
+                                 travel_speed=self.travel[rows])  # fmt: skip
 
     def power(self, ellipse, slip, friction, rows):
-        per_omega = sliding.friction_power(
-            ellipse, slip, friction, spin_model=self.spin_model, nodes=self.settings.force_nodes
-        )
+        nodes = self.settings.force_nodes
+        if self.friction_law.is_constant:
+            per_omega = sliding.friction_power(ellipse, slip, friction, spin_model=self.spin_model, nodes=nodes)
+        else:
+            per_omega = self._falling(ellipse, slip, friction, rows, nodes)[1]
         return per_omega / slip.rolling_radius
+
+    def state(self, n):
+        return np.zeros(n), np.ones(n, bool)
 
 
 class KalkerModel:
@@ -68,11 +92,12 @@ class KalkerModel:
     difference_step = 1e-3
     residual = 1e-7
 
-    def __init__(self, settings: Accuracy, elastic: Elastic) -> None:
-        from trackroller.contact.kalker import KalkerLaw, KalkerSettings
+    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray) -> None:
+        from trackroller.contact.kalker import KalkerSettings
+        from trackroller.contact.kalker_law import KalkerLaw
 
-        self.settings, self.elastic = KalkerSettings(elements=settings.elements, tolerance=1e-8), elastic
-        self._law = KalkerLaw(elastic, self.settings)
+        chosen = KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law)
+        self._law = KalkerLaw(elastic, chosen, travel_speed)
 
     def law(self, ellipse, slip, friction, rows, fine):
         return self._law(ellipse, slip, friction, rows, fine)
@@ -80,26 +105,29 @@ class KalkerModel:
     def surface(self, ellipse, slip, friction, rows):
         from trackroller.contact import kalker
 
-        return kalker.tractions(ellipse, slip, friction, self.elastic.take(rows), self.settings)
+        return kalker.to_tractions(ellipse, friction, self._law.kept(ellipse, slip, friction, rows))
 
     def power(self, ellipse, slip, friction, rows):
-        from trackroller.contact import kalker
-
-        solution = kalker.solve_patch(
-            ellipse, kalker.Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings
-        )
+        solution = self._law.kept(ellipse, slip, friction, rows)
         # summed over the elements: the work of the rigid slip and its relative difference from that sum
         return solution.friction_energy_per_distance * (1.0 + solution.energy_residual)
 
+    def state(self, n):
+        return self._law.state(n)
 
-class FastsimModel(KalkerModel):
+
+class FastsimModel:
     """Kalker's simplified theory; NaN where the ellipse is more slender than its coefficients reach."""
 
-    def __init__(self, settings: Accuracy, elastic: Elastic) -> None:
+    full_sliding = False
+    difference_step = 1e-3
+    residual = 1e-7
+
+    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray) -> None:
         from trackroller.contact import fastsim
 
-        self.elastic = elastic
-        self._fastsim = fastsim
+        self.elastic, self.travel = elastic, travel_speed
+        self._fastsim, self.settings = fastsim, fastsim.FastsimSettings(law=law)
 
     def _solution(self, ellipse, slip, friction, rows):
         from trackroller.contact.linear import LARGEST_RATIO
@@ -108,8 +136,9 @@ class FastsimModel(KalkerModel):
         known = np.flatnonzero((ratio > 1 / LARGEST_RATIO) & (ratio < LARGEST_RATIO))
         part = slip.take(known)
         solution = self._fastsim.solve_patch(
-            ellipse.take(known), part.longitudinal, 0.0, part.spin, friction[known], self.elastic.take(rows[known])
-        )
+            ellipse.take(known), part.longitudinal, 0.0, part.spin, friction[known], self.elastic.take(rows[known]),
+            self.settings, self.travel[rows[known]],
+        )  # fmt: skip
 
         def spread(values):
             full = np.full(len(rows), np.nan)
@@ -124,21 +153,39 @@ class FastsimModel(KalkerModel):
         return Resultants(*(spread(v) for v in (r.lateral_force, r.driving_force, r.spin_moment)))
 
     def surface(self, ellipse, slip, friction, rows):
-        return self._fastsim.tractions(ellipse, slip, friction, self.elastic.take(rows), None)
+        travel = self.travel[rows]
+        return self._fastsim.tractions(ellipse, slip, friction, self.elastic.take(rows), self.settings, travel)
 
     def power(self, ellipse, slip, friction, rows):
         solution, spread = self._solution(ellipse, slip, friction, rows)
         return spread(solution.friction_energy_per_distance)
 
+    def state(self, n):
+        return np.zeros(n), np.ones(n, bool)  # steps in closed form, or by halving to the last digit
 
-def contact_model(name: str, settings: Accuracy, elastic: Elastic, spin_model: str) -> ContactModel:
-    """The model `name` for rollers with combined constants `elastic`, arrays (n,)."""
+
+def contact_model(
+    name: str, settings: Accuracy, elastic: Elastic, spin_model: str = "skewed", law: FrictionLaw | None = None,
+    travel_speed: np.ndarray | float = 1000.0,
+) -> ContactModel:  # fmt: skip
+    """The model `name` for n rollers.
+
+    Parameters
+    ----------
+    settings : of the accuracy asked for
+    elastic : combined constants of the rollers, arrays (n,)
+    spin_model : for sliding only
+    law : friction over its value at rest by slip speed; constant if not given
+    travel_speed : of the rollers [mm/s], (n,) or scalar
+    """
+    law = law or constant()
+    travel = np.array(np.broadcast_to(np.asarray(travel_speed, float), np.shape(elastic.shear_modulus)))
     if name == "sliding":
-        return SlidingModel(settings, spin_model)
+        return SlidingModel(settings, spin_model, law, travel)
     if name == "kalker":
-        return KalkerModel(settings, elastic)
+        return KalkerModel(settings, elastic, law, travel)
     if name == "fastsim":
-        return FastsimModel(settings, elastic)
+        return FastsimModel(settings, elastic, law, travel)
     raise InputError("contact_model", name, "sliding, fastsim or kalker")
 
 
@@ -147,8 +194,8 @@ def traction_share(surface: SurfaceTractions, friction: np.ndarray) -> np.ndarra
     from scipy.ndimage import distance_transform_edt
 
     bound = friction[:, None, None] * surface.pressure
-    inside = bound > 0
-    safe = np.where(inside, bound, 1.0)
+    inside = surface.pressure > 0
+    safe = np.where(bound > 0, bound, 1.0)
     share = np.stack([surface.shear_lateral / safe, surface.shear_rolling / safe], axis=1)
     if len(share):
         # the ellipse fills the grid in the same way for every patch

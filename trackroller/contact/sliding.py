@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.errors import unknown_name
 from trackroller.parameters import SPIN_MODELS
 from trackroller.threads import share_rows
@@ -225,10 +226,16 @@ def slip_field(ellipse: Ellipse, slip: Slip, x: np.ndarray, y: np.ndarray, spin_
 
 def tractions(
     ellipse: Ellipse, slip: Slip, friction: np.ndarray, elastic: Elastic | None = None, *,
-    spin_model: str = "skewed", points: int = 41,
+    spin_model: str = "skewed", points: int = 41, law: FrictionLaw | None = None, travel_speed=1.0,
 ) -> SurfaceTractions:  # fmt: skip
-    """Pressure, shear and slip on a grid of `points` x `points` over each patch; 0 outside the ellipse."""
+    """Pressure, shear and slip on a grid of `points` x `points` over each patch; 0 outside the ellipse.
+
+    Under a `law` that depends on the slip speed, at `travel_speed` [mm/s], (n,) or scalar, the points are the centres
+    of as many elements.
+    """
     unit = np.linspace(-1.0, 1.0, points)
+    if law is not None:
+        unit = (2.0 * np.arange(points) + 1.0) / points - 1.0
     x = ellipse.semi_axis_lateral[:, None] * unit
     y = ellipse.semi_axis_rolling[:, None] * unit
     n = len(x)
@@ -239,6 +246,8 @@ def tractions(
     slip_x, slip_y = (v.reshape(pressure.shape) for v in slip_field(ellipse, slip, x_all, y_all, spin_model))
     speed = np.hypot(slip_x, slip_y)
     bound = friction[:, None, None] * pressure / np.where(speed > 0, speed, np.inf)
+    if law is not None:
+        bound = bound * law(speed * np.broadcast_to(travel_speed, (n,))[:, None, None])
     inside = root > 0
     return SurfaceTractions(x, y, pressure, -bound * slip_x, -bound * slip_y, np.where(inside, slip_x, 0.0),
                             np.where(inside, slip_y, 0.0), np.zeros(pressure.shape, bool))  # fmt: skip

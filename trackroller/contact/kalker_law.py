@@ -1,0 +1,80 @@
+"""The exact theory as the equilibrium calls it: many times for the same patches, each near the last."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
+from trackroller.contact.kalker import Creepage, KalkerSettings, PatchSolution, joined, solve_patch
+
+
+class KalkerLaw:
+    """The contact model as the equilibrium calls it, starting each patch from its last solution.
+
+    Parameters
+    ----------
+    elastic : combined constants of n rollers, arrays (n,)
+    settings : discretisation of the fine law; the coarse one has half the elements and no extrapolation
+    travel_speed : of n rollers [mm/s], (n,); that of the settings if not given
+
+    Contact 2 of a roller is told by its negative contact angle. Starts come from a patch's own past only, so that no
+    number depends on what else is solved.
+    """
+
+    def __init__(self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None) -> None:
+        self.elastic, self.settings = elastic, settings or KalkerSettings()
+        self.travel = None if travel_speed is None else np.asarray(travel_speed, float)
+        self._starts: dict[tuple[int, int, bool], np.ndarray] = {}
+        self._states: dict[tuple[int, int], tuple[float, bool]] = {}
+        self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
+
+    def __call__(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> Resultants:
+        return self.solve(ellipse, slip, friction, rows, fine).resultants
+
+    def solve(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> PatchSolution:
+        """Solution of the patches of the rollers `rows`."""
+        settings = self.settings
+        if not fine:
+            settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
+        keys = [(int(row), int(sine < 0), fine) for row, sine in zip(rows, slip.sine, strict=True)]
+        known = np.array([key in self._starts for key in keys], bool)
+        creep = Creepage.of_slip(slip, settings.profile_slip)
+        friction = np.broadcast_to(np.asarray(friction, float), len(rows))
+
+        def part(pick, start):
+            where = rows[pick]
+            travel = None if self.travel is None else self.travel[where]
+            return solve_patch(ellipse.take(pick), creep.take(pick), friction[pick], self.elastic.take(where), settings,
+                               start, travel)  # fmt: skip
+
+        old, new = np.flatnonzero(known), np.flatnonzero(~known)
+        parts = []
+        if old.size:
+            parts.append(part(old, np.stack([self._starts[keys[i]] for i in old]).astype(float)))
+        if new.size or not old.size:
+            parts.append(part(new, None))
+        solution = parts[0] if len(parts) == 1 else joined(parts, np.argsort(np.concatenate([old, new])))
+        self._starts.update(zip(keys, solution.traction.astype(np.float32), strict=True))
+        if fine:
+            worst = np.maximum(solution.residual, solution.friction_change)
+            for key, value, good in zip(keys, worst, solution.converged, strict=True):
+                self._states[key[:2]] = (float(value), bool(good))
+        return solution
+
+    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Of the last fine solution of n rollers: the larger residual of both patches, and if both converged, (n,)."""
+        both = [[self._states.get((i, k), (0.0, True)) for k in (0, 1)] for i in range(n)]
+        values = np.array(both, float).reshape(n, 2, 2)
+        return values[:, :, 0].max(axis=1), values[:, :, 1].min(axis=1) > 0
+
+    def kept(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray) -> PatchSolution:
+        """As `solve`, but a solution that the last such call found for the same patches is not found again."""
+        content = np.stack([rows, slip.sine, slip.shift, ellipse.semi_axis_lateral, ellipse.max_pressure,
+                            np.broadcast_to(friction, len(rows))], axis=1)  # fmt: skip
+        keys = [row.tobytes() for row in content]
+        if self._kept is None or not all(key in self._kept[0] for key in keys):
+            self._kept = {key: i for i, key in enumerate(keys)}, self.solve(ellipse, slip, friction, rows)
+        places, solution = self._kept
+        return solution.take(np.array([places[key] for key in keys], int))
