@@ -81,8 +81,12 @@ def test_a_single_best_design_is_called_so():
         ({"friction_power": "min"}, [], "at least two"),
         ({"friction_power": "min", "roller_life_hours": "up"}, [], "min or max"),
         ({"friction_powr": "min", "roller_life_hours": "max"}, [], "Did you mean 'friction_power'"),
-        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power 15"], "such as"),
-        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power < 1e"], "such as"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power 15"], "syntax error"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power < 1e"], "syntax error"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power + 15"], "comparison is wanted"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != 2"], "with a number"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != full_slp"], "full_slip"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power.real < 1"], "not allowed"),
     ],
 )
 def test_wrong_goals_are_refused(objectives, constraints, says):

@@ -23,12 +23,7 @@ CONVENTIONS = {
 }
 AMPLITUDE = "peak von Mises stress taken as amplitude, one cycle an overrolling, 50 % failure probability"
 PROBABILITIES = (0.1, 0.5, 0.9)
-_DECADES = 2.5631031310892007  # standard normal deviates between 10 % and 90 %
-
-
-def _check_rule(rule: str) -> None:
-    if rule not in LIFE_RULES:
-        raise unknown_name("life_rule", rule, LIFE_RULES)
+DECADES = 2.5631031310892007  # standard normal deviates between 10 % and 90 %
 
 
 def woehler_exponent(
@@ -113,11 +108,25 @@ def line_at_probability(
         raise InputError("failure_probability", np.ravel(p)[0] if p.size == 1 else p.tolist(),
                          "it must lie between 0 and 1", "Give 0.1 for 10 %.")  # fmt: skip
     t_n, t_s = scatter_ranges(exponent, scatter_cycles, scatter_stress)
-    deviate = ndtri(p) / _DECADES
+    deviate = ndtri(p) / DECADES
     fall = t_s**deviate
     # the line moves along with the strength; what T_N demands beyond that is a shift in cycles
     beyond = t_n**deviate * fall ** -np.asarray(exponent, dtype=float)
     return np.asarray(fatigue_limit) * fall, np.asarray(n_k) * beyond
+
+
+def _line(
+    line: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike], rule: str, probability: ArrayLike,
+    scatter_cycles: float | None, scatter_stress: float | None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    """Knee (sigma_D, N_k) at the failure probability and exponent k of a line (R_m, sigma_D, N_Rm, N_k)."""
+    if rule not in LIFE_RULES:
+        raise unknown_name("life_rule", rule, LIFE_RULES)
+    k = woehler_exponent(*line)
+    limit, knee = np.asarray(line[1], dtype=float), np.asarray(line[3], dtype=float)
+    if np.any(np.asarray(probability) != 0.5):
+        limit, knee = line_at_probability(limit, knee, k, probability, scatter_cycles, scatter_stress)
+    return limit, knee, k
 
 
 def life_cycles(
@@ -150,11 +159,8 @@ def life_cycles(
 
     Raises `InputError` for an unknown rule or a line that does not fall.
     """
-    _check_rule(rule)
-    k = woehler_exponent(tensile_strength, fatigue_limit, n_rm, n_k)
-    limit, knee = np.asarray(fatigue_limit, dtype=float), np.asarray(n_k, dtype=float)
-    if np.any(np.asarray(failure_probability) != 0.5):
-        limit, knee = line_at_probability(limit, knee, k, failure_probability, scatter_cycles, scatter_stress)
+    line = (tensile_strength, fatigue_limit, n_rm, n_k)
+    limit, knee, k = _line(line, rule, failure_probability, scatter_cycles, scatter_stress)
     sigma = np.asarray(stress, dtype=float)
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         ratio = np.where(sigma >= 0, sigma, np.nan) / limit
@@ -179,11 +185,8 @@ def allowable_stress(
 
     Parameters as there. With the rule 'unlimited' it stays at sigma_D beyond the knee. NaN for cycles <= 0.
     """
-    _check_rule(rule)
-    k = woehler_exponent(tensile_strength, fatigue_limit, n_rm, n_k)
-    limit, knee = np.asarray(fatigue_limit, dtype=float), np.asarray(n_k, dtype=float)
-    if np.any(np.asarray(failure_probability) != 0.5):
-        limit, knee = line_at_probability(limit, knee, k, failure_probability, scatter_cycles, scatter_stress)
+    line = (tensile_strength, fatigue_limit, n_rm, n_k)
+    limit, knee, k = _line(line, rule, failure_probability, scatter_cycles, scatter_stress)
     n = np.asarray(cycles, dtype=float)
     ratio = np.where(n > 0, n, np.nan) / knee
     exponent = np.where(ratio > 1, 2 * k - 1, k) if rule == "haibach" else k

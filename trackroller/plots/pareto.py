@@ -18,33 +18,6 @@ CONDITIONS = ("radial_force", "axial_force", "motor_force", "friction_coefficien
 Drawn = tuple["Figure", style.FigureInfo] | None
 
 
-def default_objectives(ds: xr.Dataset) -> dict[str, str]:
-    """Life up, and friction power (else the contact pressure) down, where a study has them."""
-    found: dict[str, str] = {}
-    if "roller_life_hours" in ds and np.isfinite(ds["roller_life_hours"]).any():
-        found["roller_life_hours"] = "max"
-    elif "life_cycles" in ds:
-        found["roller_life_cycles"] = "max"
-    for name, variable in (("friction_power", "friction_power"), ("friction_energy", "friction_energy_per_distance"),
-                           ("max_pressure", "max_pressure")):  # fmt: skip
-        if variable in ds and len(found) == 1:
-            found[name] = "min"
-    return found if len(found) == 2 else {}
-
-
-def study_trade(ds: xr.Dataset, kind: str) -> Drawn:
-    """Front or parallel coordinates of a study for the default objectives, rolling cases only."""
-    from trackroller.study.pareto import pareto
-    from trackroller.study.restore import design_of
-
-    objectives = default_objectives(ds)
-    # a scattered quantity is no one's to choose: the best of chance is no design
-    if not objectives or design_of(ds).method == "nested":
-        return None
-    front = pareto(ds, objectives)
-    return pareto_front(front) if kind == "front" else parallel(front)
-
-
 def _objectives(front: xr.Dataset) -> list[tuple[str, str]]:
     return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]  # type: ignore[misc]
 

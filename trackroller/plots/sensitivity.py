@@ -237,7 +237,8 @@ def draw_all(study_nc: Path, sensitivity_nc: Path, out_dir: Path) -> list[style.
     import xarray as xr
 
     from trackroller.plots.bands import bands
-    from trackroller.plots.pareto import robust_points, study_trade
+    from trackroller.plots.pareto import parallel, pareto_front, robust_points
+    from trackroller.study.pareto import study_pareto
 
     with xr.open_dataset(study_nc) as a, xr.open_dataset(sensitivity_nc) as b:
         ds, sens = a.load(), b.load()
@@ -248,7 +249,9 @@ def draw_all(study_nc: Path, sensitivity_nc: Path, out_dir: Path) -> list[style.
         jobs.append(partial(overview, sens))
         for draw, count in ((tornado, 4), (convergence, 1), (morris_plane, 2), (interactions, 2)):
             jobs += [partial(draw, sens, name) for name in main_outputs(sens, count)]
-    jobs += [partial(bands, ds), partial(study_trade, ds, "front"), partial(study_trade, ds, "parallel")]
+    jobs.append(partial(bands, ds))
+    if (front := study_pareto(ds)) is not None:
+        jobs += [partial(pareto_front, front), partial(parallel, front)]
     infos = []
     with style.look():
         for job in jobs:

@@ -24,6 +24,7 @@ from trackroller.parameters import (
 )
 from trackroller.study.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.factors import LISTS
+from trackroller.study.goals import Analysis, check, comparisons, directions
 from trackroller.study.sampling import METHODS
 from trackroller.study.yamlfile import parse_mapping, read_text
 
@@ -67,6 +68,9 @@ class StudyFile(BaseModel):
     hertz: str = Field("exact", description="exact elliptic integrals or the published table")
     stress_bodies: str = Field("both", description="each body with its own nu, or as published")
     life_rule: str = Field("elementary", description="below the fatigue limit: line goes on, Haibach, or no failure")
+    analysis: Analysis = Field(default_factory=Analysis, description="what is analysed, and how; see docs/analyses.md")
+    pareto: dict[str, str] = Field({}, description="outputs or factors with max or min: the designs no other beats")
+    constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
     chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases a job; chosen if not given")
 
     @field_validator("name", mode="before")
@@ -115,6 +119,16 @@ class StudyFile(BaseModel):
             raise InputError("accuracy", value, f"{', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
         return float(value)
 
+    @field_validator("pareto", mode="before")
+    @classmethod
+    def _pareto(cls, value: Any) -> Any:
+        return directions(value)
+
+    @field_validator("constraints", mode="before")
+    @classmethod
+    def _constraints(cls, value: Any) -> Any:
+        return comparisons(value)
+
     @field_validator("base", mode="before")
     @classmethod
     def _base(cls, value: Any) -> Any:
@@ -139,7 +153,8 @@ def _translate(error: ValidationError) -> InputError:
         return context
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
-        return unknown_name("study key", where, StudyFile.model_fields)
+        options = Analysis.model_fields if detail["loc"][0] == "analysis" and len(detail["loc"]) > 1 else None
+        return unknown_name("study key", where.removeprefix("analysis."), options or StudyFile.model_fields)
     if detail["type"] == "missing":
         return InputError(where, None, "every study needs this key", f"Add a line '{where}: ...'.")
     return InputError(where, detail.get("input"), detail["msg"])
@@ -243,6 +258,7 @@ def _cross_check(study: Study) -> None:
             if not set(spec) & {*LISTS, "expression"}:
                 raise InputError(f"factors.{name}", spec, "a grid needs values, linspace or logspace",
                                  "Or choose a sampled design: lhs, sobol, saltelli, morris.")  # fmt: skip
+    check(config, study.factors)
     from trackroller.study.design import check_geometry, check_materials
 
     check_materials(study)

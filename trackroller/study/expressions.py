@@ -8,6 +8,7 @@ computed, on whole columns at once; everything else is refused with its position
 from __future__ import annotations
 
 import ast
+import functools
 from collections.abc import Mapping
 from typing import Any
 
@@ -32,7 +33,7 @@ _COMPARE: dict[type, Any] = {
     ast.Lt: np.less, ast.LtE: np.less_equal, ast.Gt: np.greater, ast.GtE: np.greater_equal,
     ast.Eq: lambda a, b: np.asarray(a == b), ast.NotEq: lambda a, b: np.asarray(a != b),
 }  # fmt: skip
-_ALLOWED = "numbers, factor names, + - * / % **, comparisons and the functions " + ", ".join(FUNCTIONS)
+_ALLOWED = "numbers, factor names, + - * / % **, comparisons, and, or, not and the functions " + ", ".join(FUNCTIONS)
 
 
 def _parse(text: str, field: str) -> ast.expr:
@@ -95,6 +96,36 @@ def evaluate(text: str, values: Mapping[str, Any], field: str = "expression") ->
         raise InputError(field, text, "the result is a text, not a number") from None
 
 
+def condition(text: str, values: Mapping[str, Any], field: str = "constraints") -> np.ndarray:
+    """Truth of a comparison such as "max_pressure < 1500" or "regime != full_slip and slip < 0.1".
+
+    Parameters as for `evaluate`; a value that is not a number compares as false, `!=` included.
+
+    Returns
+    -------
+    numpy.ndarray of bool, shape (n,) (or () for plain numbers)
+
+    Raises
+    ------
+    InputError : as `evaluate`, and for a text that is no comparison
+    """
+    tree = _parse(text, field)
+
+    def refuse(node: ast.AST, what: str) -> InputError:
+        at = getattr(node, "col_offset", 0) + 1
+        return InputError(field, text, f"{what} at character {at} is not allowed", f"Use {_ALLOWED}.")
+
+    with np.errstate(all="ignore"):
+        result = np.asarray(_value(tree, values, field, refuse))
+    if result.dtype != bool:
+        raise InputError(field, text, "a comparison is wanted, such as 'max_pressure < 1500'")
+    for name in names(text, field):
+        column = np.asarray(values[name])
+        if column.dtype.kind == "f":
+            result = result & ~np.isnan(column)
+    return result
+
+
 def _value(node: ast.AST, values: Mapping[str, Any], field: str, refuse: Any) -> Any:
     def sub(child: ast.AST) -> Any:
         return _value(child, values, field, refuse)
@@ -118,14 +149,37 @@ def _value(node: ast.AST, values: Mapping[str, Any], field: str, refuse: Any) ->
             return _apply(np.negative, [sub(operand)], node, refuse)
         case ast.UnaryOp(op=ast.UAdd(), operand=operand):
             return sub(operand)
-        case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARE:
-            return _COMPARE[type(op)](sub(left), sub(right))
+        case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
+            sides = [sub(part) for part in (left, *rest)]
+            pairs = zip(ops, sides, sides[1:], strict=False)
+            return np.logical_and.reduce([_compare(op, one, other, node, refuse) for op, one, other in pairs])
+        case ast.BoolOp(op=op, values=parts):
+            join = np.logical_and if isinstance(op, ast.And) else np.logical_or
+            return functools.reduce(join, [_truth(sub(part), part, refuse) for part in parts])
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            return np.logical_not(_truth(sub(operand), operand, refuse))
         case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
             function, arity = FUNCTIONS[name]
             if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
                 raise refuse(node, f"{name} with {len(args)} arguments (it takes {arity})")
             return _apply(function, [sub(arg) for arg in args], node, refuse)
     raise refuse(node, type(node).__name__.lower())
+
+
+def _compare(op: ast.cmpop, one: Any, other: Any, node: ast.AST, refuse: Any) -> np.ndarray:
+    one, other = np.asarray(one), np.asarray(other)
+    if (one.dtype.kind in "OSU") != (other.dtype.kind in "OSU") or (
+        one.dtype.kind in "OSU" and not isinstance(op, (ast.Eq, ast.NotEq))
+    ):
+        raise refuse(node, "ordering a text, or comparing it with a number,")
+    return np.asarray(_COMPARE[type(op)](one, other), dtype=bool)
+
+
+def _truth(value: Any, node: ast.AST, refuse: Any) -> np.ndarray:
+    found = np.asarray(value)
+    if found.dtype != bool:
+        raise refuse(node, "something other than a comparison beside and, or, not")
+    return found
 
 
 def _apply(function: Any, args: list[Any], node: ast.AST, refuse: Any) -> Any:

@@ -1,17 +1,24 @@
 """Sensitivity from whatever rows there are: valid where cases failed, for any sample of independent factors.
 
-First-order shares by binning, PAWN with the level that chance alone reaches, partial rank correlations.
+First-order shares by binning, delta and PAWN with the level that chance alone reaches, partial rank correlations.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
+from trackroller.study.delta import classes, delta
 from trackroller.study.indices import Estimates, Z, constant
 
 MIN_ROWS = 30
 PAWN_BINS = 10
 GROUPS = 20  # of the grouped jackknife
+MEASURES = {
+    "first": ("first", "first_low", "first_high"), "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
+    "pawn": ("pawn", "pawn_low", "pawn_high", "pawn_noise"), "prcc": ("prcc", "prcc_low", "prcc_high"),
+}  # fmt: skip
 
 
 def bins(values: np.ndarray, count: int, ordered: bool = True) -> np.ndarray:
@@ -25,19 +32,25 @@ def bins(values: np.ndarray, count: int, ordered: bool = True) -> np.ndarray:
     return out
 
 
-def given_data(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -> Estimates:
-    """All given-data measures of one output.
+def given_data(
+    y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0,
+    measures: Iterable[str] = tuple(MEASURES), resamples: int = 300,
+) -> Estimates:  # fmt: skip
+    """Given-data measures of one output.
 
     Parameters
     ----------
     y : output, shape (n,), NaN where unusable: such rows are left out
     unit : quantiles or list indices of the factors, shape (n, k)
     ordered : for which factors more and less mean something, shape (k,); others have no rank correlation
+    measures : of `MEASURES`
+    resamples : bootstrap resamples of delta and PAWN
 
     Returns
     -------
-    first (share of variance Var(E[y|x]) / V), first_low, first_high; pawn, pawn_noise; prcc, prcc_low,
-    prcc_high; each shape (k,); rows_used. All NaN with fewer than 30 usable rows.
+    first (share of variance Var(E[y|x]) / V), first_low, first_high; delta and pawn with _low, _high and _noise,
+    which an inert factor stays below in 95 % of cases; prcc, prcc_low, prcc_high; each shape (k,); rows_used.
+    All NaN with fewer than 30 usable rows.
 
     Notes
     -----
@@ -46,17 +59,26 @@ def given_data(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int =
     """
     good = np.isfinite(y)
     y, unit = y[good], unit[good]
-    count = unit.shape[1]
-    names = ("first", "first_low", "first_high", "pawn", "pawn_noise", "prcc", "prcc_low", "prcc_high")
-    out: Estimates = {name: np.full(count, np.nan) for name in names}
+    count, measures = unit.shape[1], tuple(measures)
+    out: Estimates = {name: np.full(count, np.nan) for measure in measures for name in MEASURES[measure]}
     out["rows_used"] = np.array(len(y))
     if len(y) < MIN_ROWS or constant(y):
         return out
-    out |= firsts(y, unit, ordered, seed)
+    if "first" in measures:
+        out |= firsts(y, unit, ordered, seed)
     for j in range(count):
-        if np.ptp(unit[:, j]) > 0:
-            out["pawn"][j], out["pawn_noise"][j] = pawn(y, bins(unit[:, j], PAWN_BINS, bool(ordered[j])), seed)
-    out["prcc"], out["prcc_low"], out["prcc_high"] = prcc(y, unit, ordered)
+        if np.ptp(unit[:, j]) == 0:
+            continue
+        if "delta" in measures:
+            found = delta(y, bins(unit[:, j], classes(len(y)), bool(ordered[j])), seed, resamples)
+            for name, value in zip(MEASURES["delta"], found, strict=True):
+                out[name][j] = value
+        if "pawn" in measures:
+            group = bins(unit[:, j], PAWN_BINS, bool(ordered[j]))
+            out["pawn"][j], out["pawn_noise"][j] = pawn(y, group, seed)
+            out["pawn_low"][j], out["pawn_high"][j] = pawn_interval(y, group, out["pawn"][j], seed, resamples)
+    if "prcc" in measures:
+        out["prcc"], out["prcc_low"], out["prcc_high"] = prcc(y, unit, ordered)
     return out
 
 
@@ -123,6 +145,32 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
         last = np.ones(len(group), dtype=bool)
     drawn = [_distance(rng.permutation(group), last) for _ in range(60)]
     return value, float(np.percentile(drawn, 95) * shrink)
+
+
+def pawn_interval(y: np.ndarray, group: np.ndarray, value: float, seed: int = 0, resamples: int = 300,
+                  rows: int = 2048) -> tuple[float, float]:  # fmt: skip
+    """95 % interval of a PAWN index: the bootstrap's own spread about it.
+
+    Long samples are thinned to `rows` and the spread, which falls as one over the root of the rows, is scaled.
+    """
+    shrink = max(1.0, len(y) / rows) ** 0.5
+    every = np.linspace(0, len(y) - 1, min(len(y), rows)).astype(int)
+    y, group = y[every], group[every]
+    order = np.argsort(y, kind="stable")
+    last, group = np.append(np.diff(y[order]) != 0, True), group[order]
+    number = np.arange(group.max() + 1)
+    rng = np.random.default_rng(seed)
+    member = (group == number[:, None]).astype(float)
+    drawn = np.empty(resamples)
+    for i in range(resamples):
+        weight = np.bincount(rng.integers(0, len(group), len(group)), minlength=len(group)).astype(float)
+        inside = np.cumsum(member * weight, axis=1)
+        whole = np.cumsum(weight) / len(group)
+        filled = inside[:, -1] > 0
+        apart = np.abs(inside[filled] / inside[filled, -1:] - whole)[:, last].max(axis=1)
+        drawn[i] = np.median(apart)
+    half = Z * float(drawn.std(ddof=1)) / shrink
+    return max(0.0, value - half), min(1.0, value + half)
 
 
 def _distance(group: np.ndarray, last: np.ndarray) -> float:

@@ -48,6 +48,12 @@ class Output:
     excluded: dict[str, int] = field(default_factory=dict)
 
 
+def settings(study: Mapping[str, Any]) -> dict[str, Any]:
+    """The keys under `analysis` of a study file, {} if there are none."""
+    found = study.get("analysis")
+    return dict(found) if isinstance(found, Mapping) else {}
+
+
 def read_study(ds: xr.Dataset) -> dict[str, Any]:
     """The study file as stored in the result (YAML or JSON under the attribute `study`), {} if none is."""
     text = ds.attrs.get("study", "")
@@ -153,6 +159,7 @@ def outputs(
     keep: Iterable[str] = ("rolling",),
     natural: Iterable[str] = (),
     unlimited: bool = False,
+    scale: str | Mapping[str, str] = "",
 ) -> list[Output]:  # fmt: skip
     """Columns to analyse.
 
@@ -163,12 +170,14 @@ def outputs(
     names : names of `DEFAULTS`, scalar variables, or `variable[contact,body]`; None: `default_names`
     keep : regimes whose rows are used; the others become NaN and are counted
     natural : outputs to take on the natural scale although lives are taken as log10
+    scale : natural or log10, for all outputs or by output
     unlimited : let infinite lives stand (for ranking) instead of counting them as unusable
 
     Returns
     -------
     list of Output. For each regime but rolling that occurs an indicator `full_slip`, `lift_off`, `failed`
-    (1 where it occurs, no row left out) is added, so that what drives it is analysed and not hidden.
+    (1 where it occurs, no row left out) is added, so that what drives it is analysed and not hidden; not so
+    with `unlimited`, which is for ranking.
     """
     factors = list(factors)
     dims = case_dims(ds, factors)
@@ -189,21 +198,22 @@ def outputs(
     options, natural = _available(ds, factors, dims), set(natural)
     found = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
-        values, units, words, scale = _raw(ds, name, dims, options)
-        excluded, scale = dict(lost), "natural" if name in natural else scale
+        values, units, words, usual = _raw(ds, name, dims, options)
+        told = scale if isinstance(scale, str) else scale.get(name, "")
+        excluded, on = dict(lost), "natural" if name in natural else told or usual
         values = np.where(usable, values, np.nan)
         if not unlimited and (count := int((usable & np.isinf(values)).sum())):
             excluded["unlimited"] = count
         if count := int((usable & np.isnan(values)).sum()):
             excluded["undefined"] = count
         values = np.where(np.isfinite(values) | (unlimited & np.isposinf(values)), values, np.nan)
-        if scale == "log10":
+        if on == "log10":
             if count := int((values <= 0).sum()):
                 excluded["not positive"] = count
             values = np.log10(np.where(values > 0, values, np.nan))
-        found.append(Output(name, values, units, words, scale, excluded))
+        found.append(Output(name, values, units, words, on, excluded))
     for i, name in enumerate(REGIMES):
-        if i and (regime == i).any() and names is None:
+        if i and (regime == i).any() and not unlimited:
             words = f"occurrence of {name.replace('_', ' ')}"
             found.append(Output(name, (regime == i).astype(float), "1", words, "natural"))
     return found

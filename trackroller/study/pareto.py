@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, nearest
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.study.expressions import condition
 from trackroller.study.factors import label
-from trackroller.study.outputs import outputs, regimes
+from trackroller.study.goals import aliased, names_in
+from trackroller.study.outputs import case_dims, flat, outputs, read_study, regimes
 from trackroller.study.restore import design_of
 
-_LIMIT = re.compile(r"\s*([\w\[\],]+)\s*(<=|>=|<|>)\s*([-+.\deE]+)\s*")
-_TESTS = {"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal}
+if TYPE_CHECKING:
+    from trackroller.study.sampling import SampledDesign
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.ndarray | None = None) -> np.ndarray:
@@ -56,15 +58,17 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.n
 
 
 def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[str] = (),
-           keep: Iterable[str] = ("rolling",)) -> xr.Dataset:  # fmt: skip
+           keep: Iterable[str] | None = None) -> xr.Dataset:  # fmt: skip
     """Pareto set of a solved study.
 
     Parameters
     ----------
     ds : gathered study with its study file as attribute
-    objectives : output or numeric factor -> `min` or `max`, e.g. {"roller_life_hours": "max", "friction_power": "min"}
-    constraints : texts such as "max_pressure < 1200"; outputs or numeric factors
-    keep : regimes that are allowed (default: no full slip, no lift-off)
+    objectives : output, numeric factor or parameter -> `min` or `max`, e.g. {"roller_life_hours": "max",
+        "friction_power": "min"}
+    constraints : comparisons such as "max_pressure < 1200", "regime != full_slip", "slip < 0.1 or slip > 0.2" over
+        outputs, factors, parameters and `regime`; a row in which one of its values is not defined does not pass
+    keep : regimes that are allowed; rolling alone if not given, or any solved one if a constraint speaks of `regime`
 
     Returns
     -------
@@ -76,47 +80,104 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     InputError : unknown names, a constraint that cannot be read, fewer than two objectives
     """
     if len(objectives) < 2:
-        raise InputError("objectives", dict(objectives), "at least two outputs, each with min or max")
+        raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
+    constraints = list(constraints)
+    wanted = {name for text in constraints for name in names_in(text)}
+    if keep is None:
+        keep = REGIMES[:3] if "regime" in wanted else ("rolling",)
     design = design_of(ds)
-    limits = [_limit(text) for text in constraints]
-    columns: dict[str, tuple[np.ndarray, str, str]] = {}
-    for name in [*objectives, *(n for n, *_ in limits)]:
-        if name in design.columns and design.columns[name].dtype != object:
-            columns[name] = (design.columns[name], "", name.replace("_", " "))
-        elif name not in columns:
-            found = outputs(ds, design.factors, [name], keep, natural=[name], unlimited=True)[0]
-            columns[name] = (found.values, found.units, found.long_name)
-    allowed = ~np.isnan(np.stack([columns[n][0] for n in objectives])).any(axis=0)
-    excluded = {"regime or undefined": int((~allowed).sum())}
-    for name, test, bound in limits:
-        good = _TESTS[test](columns[name][0], bound)
-        excluded[f"{name} {test} {bound:g}"] = int((allowed & ~good).sum())
+    dims = case_dims(ds, design.factors)
+    regime = regimes(ds, dims)
+    columns = {name: _column(ds, design, name, dims) for name in dict.fromkeys([*objectives, *sorted(wanted)])}
+    allowed = np.isin(regime, [REGIMES.index(name) for name in keep])
+    excluded = {"regime": int((~allowed).sum())}
+    table = np.stack([np.asarray(columns[n][0], dtype=float) for n in objectives], axis=1)
+    defined = ~np.isnan(table).any(axis=1)
+    excluded["undefined objectives"] = int((allowed & ~defined).sum())
+    allowed &= defined
+    for text in constraints:
+        good = np.broadcast_to(_meets(text, columns), allowed.shape)
+        excluded[text] = int((allowed & ~good).sum())
         allowed &= good
-    table = np.stack([columns[n][0] for n in objectives], axis=1)
     optimal = pareto_mask(table, objectives.values(), allowed)
     data: dict[str, Any] = {name: ("row", values[0][allowed], {"units": values[1], "long_name": values[2]})
                             for name, values in columns.items()}  # fmt: skip
     for name, value in design.columns.items():
         if name not in data:
-            text = np.array([label(v) for v in value], dtype=object) if value.dtype == object else value
-            data[name] = ("row", text[allowed])
+            shown = np.array([label(v) for v in value], dtype=object) if value.dtype == object else value
+            data[name] = ("row", shown[allowed])
     data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
-    dims = tuple(d for d in ds.dims if d == "case" or d in design.factors)
     out = xr.Dataset(data, coords={"row": np.flatnonzero(allowed)})
     out.attrs = {
         "objectives": ", ".join(f"{n} {d}" for n, d in objectives.items()),
-        "factors": ", ".join(design.factors), "rows": design.size,
+        "constraints": "; ".join(constraints), "factors": ", ".join(design.factors), "rows": design.size,
         "excluded": "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing",
-        "not_rolling": int((regimes(ds, dims) != 0).sum()), "study": ds.attrs.get("study", ""),
+        "not_rolling": int((regime != 0).sum()), "study": ds.attrs.get("study", ""),
     }  # fmt: skip
     return out
 
 
-def _limit(text: str) -> tuple[str, str, float]:
-    match = _LIMIT.fullmatch(text) if isinstance(text, str) else None
-    try:
-        if match:
-            return match[1], match[2], float(match[3])
-    except ValueError:
-        pass
-    raise InputError("constraints", text, "a name, one of < <= > >=, and a number, such as 'max_pressure < 1200'")
+def study_pareto(ds: xr.Dataset) -> xr.Dataset | None:
+    """Pareto set for the keys `pareto` and `constraints` of the study; for two usual goals where it names none.
+
+    None where there is nothing to choose: a nested study, or results without life and friction power or pressure.
+    """
+    study = read_study(ds)
+    if str(study.get("design", ds.attrs.get("design", ""))) == "nested":
+        return None  # a scattered quantity is no one's to choose: the best of chance is no design
+    goals = study.get("pareto") or default_objectives(ds)
+    if not goals:
+        return None
+    return pareto(ds, goals, study.get("constraints") or ())
+
+
+def default_objectives(ds: xr.Dataset) -> dict[str, str]:
+    """Life up, and friction power (else the contact pressure) down, where a study has them."""
+    found: dict[str, str] = {}
+    if "roller_life_hours" in ds and np.isfinite(ds["roller_life_hours"]).any():
+        found["roller_life_hours"] = "max"
+    elif "life_cycles" in ds:
+        found["roller_life_cycles"] = "max"
+    for name, variable in (("friction_power", "friction_power"), ("friction_energy", "friction_energy_per_distance"),
+                           ("max_pressure", "max_pressure")):  # fmt: skip
+        if variable in ds and len(found) == 1:
+            found[name] = "min"
+    return found if len(found) == 2 else {}
+
+
+def _column(ds: xr.Dataset, design: SampledDesign, name: str, dims: tuple[str, ...]) -> tuple[np.ndarray, str, str]:
+    """Values (n,), units and words of a factor, a parameter, the regime or an output (whatever its regime)."""
+    if name == "regime":
+        return np.array(REGIMES, dtype=object)[regimes(ds, dims)], "", "regime"
+    if name in design.columns:
+        values = design.columns[name]
+        if values.dtype == object:
+            values = np.array([label(v) for v in values], dtype=object)
+    elif name in PARAMETERS or name in MATERIAL_FIELDS:
+        values = flat(ds, name, dims) if name in ds.variables and ds[name].ndim else _constant(ds, name, design.size)
+    else:
+        try:
+            found = outputs(ds, design.factors, [name], REGIMES[:3], natural=[name], unlimited=True)[0]
+        except InputError as error:
+            close = nearest(name, REGIMES)
+            remedy = f"Did you mean '{close}'?" if close else error.remedy
+            raise InputError("pareto or constraints", name, error.allowed, remedy) from None
+        return found.values, found.units, found.long_name
+    known = PARAMETERS.get(name)
+    return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
+
+
+def _constant(ds: xr.Dataset, name: str, rows: int) -> np.ndarray:
+    """A parameter that is the same in all cases: from the result itself, else from its study file."""
+    if name in ds.variables:
+        return np.full(rows, ds[name].item())
+    base = read_study(ds).get("base", {})
+    value = base.get(name, PARAMETERS[name].default if name in PARAMETERS else "")
+    return np.full(rows, np.nan if value is None else value)
+
+
+def _meets(text: str, columns: Mapping[str, tuple[np.ndarray, str, str]]) -> np.ndarray:
+    plain, parts = aliased(text)
+    known: dict[str, Any] = {name: column[0] for name, column in columns.items()}
+    known |= {alias: columns[name][0] for alias, name in parts.items()} | {name: name for name in REGIMES}
+    return condition(plain, known)

@@ -6,22 +6,25 @@ differences between design points are not differences of luck (common random num
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import json
+import math
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.parameters import REGIMES
+from trackroller.fatigue import DECADES, scatter_ranges, woehler_exponent
+from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.factors import label
-from trackroller.study.outputs import case_dims, default_names, outputs, regimes
+from trackroller.study.outputs import case_dims, default_names, flat, outputs, read_study, regimes
 from trackroller.study.sampling import SampledDesign
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
 
 def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | None = None,
-               log_life_scatter: float = 0.0) -> xr.Dataset:  # fmt: skip
+               log_life_scatter: float | Mapping[str, np.ndarray] = 0.0) -> xr.Dataset:  # fmt: skip
     """Distribution of every output and probability of each regime at every design point.
 
     Parameters
@@ -30,7 +33,8 @@ def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | Non
     design : its design (`trackroller.study.restore.design_of`)
     names : outputs, see `trackroller.study.outputs.outputs`
     log_life_scatter : standard deviation of log10 life of the material itself [1], on top of the scatter of
-        the study; lg(T_N) / 2.563 for the scatter range T_N between 10 and 90 % failure
+        the study; lg(T_N) / 2.563 for the scatter range T_N between 10 and 90 % failure. One number, or for
+        each body an array of shape (n,), see `material_deviations`
 
     Returns
     -------
@@ -54,7 +58,10 @@ def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | Non
     lists: dict[str, list[np.ndarray]] = {}
     for column in columns:
         values = column.values.reshape(shape)
-        for key, value in _statistics(values, regime, "life" in column.name, log_life_scatter).items():
+        body = "guide" if "guide" in column.name else "roller"
+        own = log_life_scatter.get(body, 0.0) if isinstance(log_life_scatter, Mapping) else log_life_scatter
+        scatter = np.broadcast_to(np.asarray(own, dtype=float), (design.size,)).reshape(shape)
+        for key, value in _statistics(values, regime, "life" in column.name, scatter).items():
             lists.setdefault(key, []).append(value)
     for key, found in lists.items():
         axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
@@ -66,11 +73,56 @@ def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | Non
     out.attrs = {
         "method": "nested", "rows": int(np.prod(shape)), "inner_samples": shape[1], "interval": "95 %",
         "outer_factors": ", ".join(design.meta["outer"]), "inner_factors": ", ".join(design.meta["inner"]),
-        "log_life_scatter": log_life_scatter, "study": ds.attrs.get("study", ""),
+        "log_life_scatter": _largest(log_life_scatter), "study": ds.attrs.get("study", ""),
         "treatment": "percentiles and b10 over the rows that roll; b10_safe counts every other row as life 0; "
-                     "the same inner sample at every design point",
+                     "the same inner sample at every design point"
+                     + (", the material's own scatter of life in b10" if _largest(log_life_scatter) else ""),
     }  # fmt: skip
     return out
+
+
+def _largest(scatter: float | Mapping[str, np.ndarray]) -> float:
+    parts = list(scatter.values()) if isinstance(scatter, Mapping) else [np.asarray(scatter)]
+    return max((float(np.max(part)) for part in parts), default=0.0)
+
+
+def material_deviations(ds: xr.Dataset, wanted: bool | float) -> dict[str, np.ndarray]:
+    """Standard deviation of log10 life of each body's material in each case, lg(T_N) / 2.563.
+
+    Parameters
+    ----------
+    ds : gathered study with the values of its materials as attribute `materials`
+    wanted : true: T_N (or T_S to the power of k) of the materials; a number: T_N itself; false: none
+
+    Returns
+    -------
+    body -> array [1] of shape (n,); empty if not wanted. 0 for a material without scatter.
+    """
+    if wanted is False or wanted is None:
+        return {}
+    study = read_study(ds)
+    dims = case_dims(ds, study.get("factors", {}))
+    known = json.loads(ds.attrs.get("materials", "{}"))
+    out = {}
+    for field, body in zip(MATERIAL_FIELDS, ("roller", "guide"), strict=True):
+        if wanted is not True:
+            out[body] = np.full(int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DECADES)
+        elif field in ds.variables:
+            names = flat(ds, field, dims) if ds[field].ndim else np.full(regimes(ds, dims).size, ds[field].item())
+            of = {str(n): deviation(known.get(str(n), {})) for n in np.unique(names.astype(str))}
+            out[body] = np.array([of[str(n)] for n in names])
+    return out
+
+
+def deviation(material: Mapping[str, float]) -> float:
+    """Standard deviation of log10 life of a material (a mapping with its values), 0 without scatter."""
+    t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
+    if t_n is None and t_s is None:
+        return 0.0
+    strength = material["tensile_strength"]
+    limit = material["fatigue_strength_ratio"] * strength
+    k = woehler_exponent(strength, limit, material["cycles_at_tensile_strength"], material["cycles_at_fatigue_limit"])
+    return float(np.log10(scatter_ranges(k, t_n, t_s)[0]) / DECADES)
 
 
 def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list) -> dict:
@@ -91,8 +143,8 @@ def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list) -
     }  # fmt: skip
 
 
-def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: float) -> dict[str, np.ndarray]:
-    """Statistics of one output, shape (points, samples), NaN where not usable."""
+def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.ndarray) -> dict[str, np.ndarray]:
+    """Statistics of one output, shapes (points, samples), NaN where not usable."""
     points = len(values)
     out = {k: np.full(points, np.nan) for k in ("mean", "standard_deviation", "used_share",
                                                  "b10", "b10_low", "b10_high", "b10_safe")}  # fmt: skip
@@ -106,9 +158,11 @@ def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: flo
         if np.isfinite(good).all():
             out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
         if life:
-            out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, scatter)
+            known = ~np.isnan(values[p])
+            out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, scatter[p][known])
             # a row that rolls but has no life (not converged) is no evidence of a long one either
-            out["b10_safe"][p] = b10(np.where(np.isnan(values[p]) | (regime[p] != 0), 0.0, values[p]), scatter)[0]
+            safe = np.where(np.isnan(values[p]) | (regime[p] != 0), 0.0, values[p])
+            out["b10_safe"][p] = b10(safe, scatter[p])[0]
     return out
 
 
@@ -119,13 +173,13 @@ def _quantile(values: np.ndarray, share: np.ndarray | float) -> np.ndarray:
     return ranked[np.clip(at, 0, len(ranked) - 1)]
 
 
-def b10(lives: np.ndarray, log_life_scatter: float = 0.0) -> tuple[float, float, float]:
+def b10(lives: np.ndarray, log_life_scatter: float | np.ndarray = 0.0) -> tuple[float, float, float]:
     """Life that 90 % reach, with its 95 % interval.
 
     Parameters
     ----------
     lives : median lives at the sampled conditions [any unit], shape (n,); 0 and inf are allowed
-    log_life_scatter : standard deviation of log10 life of the material itself [1]
+    log_life_scatter : standard deviation of log10 life of the material itself [1], one or of shape (n,)
 
     Returns
     -------
@@ -141,16 +195,17 @@ def b10(lives: np.ndarray, log_life_scatter: float = 0.0) -> tuple[float, float,
     value = float(_quantile(ranked, 0.1))
     low = ranked[max(0, int(stats.binom.ppf(0.025, count, 0.1)) - 1)]
     high = ranked[min(count - 1, int(stats.binom.ppf(0.975, count, 0.1)))]
-    if log_life_scatter <= 0 or not np.isfinite(ranked).any() or value in (0.0, np.inf):
+    deviations = np.broadcast_to(np.asarray(log_life_scatter, dtype=float), lives.shape)[np.argsort(lives)]
+    if not (deviations > 0).any() or not np.isfinite(ranked).any() or value in (0.0, np.inf):
         return value, float(low), float(high)
     with np.errstate(divide="ignore"):
         logs = np.log10(ranked)
 
     def miss(t: float) -> float:
-        return float(stats.norm.cdf((t - logs) / log_life_scatter).mean()) - 0.1
+        return float(stats.norm.cdf((t - logs) / np.maximum(deviations, 1e-9)).mean()) - 0.1
 
     finite = logs[np.isfinite(logs)]
-    wide = 6 * log_life_scatter
+    wide = 6 * float(deviations.max())
     scattered = 10 ** brentq(miss, finite.min() - wide, finite.max() + wide)
     return float(scattered), float(low * scattered / value), float(high * scattered / value)
 

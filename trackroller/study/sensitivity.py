@@ -7,7 +7,8 @@ independent sample, distributions of life for nested studies (`robustness`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,8 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.parameters import PARAMETERS, REGIMES
 from trackroller.study import convergence, indices
-from trackroller.study.givendata import firsts, given_data
-from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes
+from trackroller.study.givendata import MEASURES, firsts, given_data
+from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes, settings
 from trackroller.study.restore import design_of
 from trackroller.study.sampling import SampledDesign
 from trackroller.study.sobol import sobol
@@ -37,6 +38,15 @@ RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index 
 Fields = dict[str, np.ndarray]
 
 
+@dataclass(frozen=True)
+class Settings:
+    """How an analysis is done: `seed` and number of bootstrap resamples, given-data measures wanted."""
+
+    seed: int = 0
+    resamples: int = 300
+    measures: tuple[str, ...] = tuple(MEASURES)
+
+
 def _ordered(design: SampledDesign) -> np.ndarray:
     return np.array([f.ordered for f in design.factors.values()], dtype=bool)
 
@@ -47,57 +57,61 @@ def _listed(design: SampledDesign) -> np.ndarray:
     return np.array(values, dtype=bool) & (design.method != "plackett_burman")
 
 
-def _saltelli(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> tuple[Fields, int, int, np.ndarray]:
     count, second = len(design.factors), bool(design.meta["second_order"])
     step = 2 * count + 2 if second else count + 2
-    out = sobol(y, count, second, seed)
+    seed = how.seed
+    out = sobol(y, count, second, seed, how.resamples)
     at = convergence.sizes(int(design.meta["base_samples"]))
     mixed = np.r_[0 : count + 1, step - 1]  # the course needs no second order
     lean = y.reshape(-1, step)[:, mixed]
-    out |= convergence.course(lambda n: sobol(lean[:n].ravel(), count, False, seed), at, ("S1", "ST"))
+    out |= convergence.course(lambda n: sobol(lean[:n].ravel(), count, False, seed, how.resamples), at, ("S1", "ST"))
     # rows of A and B only: their mixtures repeat coordinates and would feign more rows than there are
     row = np.arange(len(y)) % step
-    out |= given_data(np.where((row == 0) | (row == step - 1), y, np.nan), design.places, _ordered(design), seed)
+    own = np.where((row == 0) | (row == step - 1), y, np.nan)
+    out |= given_data(own, design.places, _ordered(design), seed, how.measures, how.resamples)
     used, total = int(out.pop("blocks_used")), int(out.pop("blocks"))
     return out, used, total, at
 
 
-def _morris(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> tuple[Fields, int, int, np.ndarray]:
     step, listed = len(design.factors) + 1, _listed(design)
-    out = indices.morris(y, design.unit, listed, seed)
+    seed = how.seed
+    out = indices.morris(y, design.unit, listed, seed, how.resamples)
     at = convergence.sizes(int(design.meta["trajectories"]), smallest=4)
     out |= convergence.course(
-        lambda n: indices.morris(y[: n * step], design.unit[: n * step], listed, seed), at, ("mu_star",)
+        lambda n: indices.morris(y[: n * step], design.unit[: n * step], listed, seed, how.resamples), at, ("mu_star",)
     )
     return out, int(out["effects_used"].sum()), int(design.meta["trajectories"]) * (step - 1), at
 
 
-def _grid(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+def _grid(y: np.ndarray, design: SampledDesign, how: Settings) -> tuple[Fields, int, int, np.ndarray]:
     out = indices.grid_shares(y.reshape(design.meta["shape"]))
-    out |= given_data(y, design.unit, _ordered(design), seed)
+    out |= given_data(y, design.unit, _ordered(design), how.seed, how.measures, how.resamples)
     return out, int(out.pop("cells_used")), int(out.pop("cells")), np.zeros(0, dtype=int)
 
 
-def _coded(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+def _coded(y: np.ndarray, design: SampledDesign, how: Settings) -> tuple[Fields, int, int, np.ndarray]:
     out = indices.effects(y, design.unit, _listed(design), design.method != "plackett_burman")
     return out, int(out.pop("rows_used")), len(y), np.zeros(0, dtype=int)
 
 
-def _given(y: np.ndarray, design: SampledDesign, seed: int) -> tuple[Fields, int, int, np.ndarray]:
+def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> tuple[Fields, int, int, np.ndarray]:
     ordered = _ordered(design)
     places = design.places
-    out = given_data(y, places, ordered, seed)
+    measures = tuple(dict.fromkeys(("first", *how.measures)))  # the one that ranks the factors
+    out = given_data(y, places, ordered, how.seed, measures, how.resamples)
     at = convergence.sizes(len(y), smallest=64)
 
     def part(n: int) -> Fields:  # every so many rows: the first rows of a table may be sorted
         every = max(1, len(y) // n)
-        return firsts(y[::every], places[::every], ordered, seed)
+        return firsts(y[::every], places[::every], ordered, how.seed)
 
     out |= convergence.course(part, at, ("first",))
     return out, int(out.pop("rows_used")), len(y), at
 
 
-_METHODS: dict[str, Callable[[np.ndarray, SampledDesign, int], tuple[Fields, int, int, np.ndarray]]] = {
+_METHODS: dict[str, Callable[[np.ndarray, SampledDesign, Settings], tuple[Fields, int, int, np.ndarray]]] = {
     "saltelli": _saltelli,
     "morris": _morris,
     "grid": _grid,
@@ -110,39 +124,45 @@ _UNIT = {"saltelli": "blocks", "morris": "elementary effects", "grid": "cells"}
 def analyse_dataset(
     ds: xr.Dataset,
     names: Iterable[str] | None = None,
-    keep: Iterable[str] = ("rolling",),
+    keep: Iterable[str] | None = None,
     natural: Iterable[str] = (),
     seed: int = 0,
+    scale: str | Mapping[str, str] = "",
 ) -> xr.Dataset:
     """Sensitivities of every output of a study.
 
     Parameters
     ----------
     ds : gathered study: dimension `case` or one dimension a factor; attribute `study` with the study file
-    names, keep, natural : see `trackroller.study.outputs.outputs`
+    names, keep, natural, scale : see `trackroller.study.outputs.outputs`; the key `analysis` of the study file fills
+        in what is not given
     seed : of the bootstrap
 
     Returns
     -------
     Dataset with dimensions output, factor, factor_2, sample_size. By method: S1, ST, S2 (saltelli), mu,
     mu_star, sigma (morris), main_share, interaction_share, higher_share (grid), effect, curvature,
-    interaction (response surfaces), first, pawn, prcc (given data), with _low and _high and the course with
+    interaction (response surfaces), first, delta, pawn, prcc (given data), with _low and _high and the course with
     sample size. For each output: used_share, reliable, take_times, and `note`, which says what was left out
     and why.
     A nested study gives what `trackroller.study.robustness.robustness` returns.
     """
     study = read_study(ds)
     design = design_of(ds, study)
+    told = settings(study)
+    names = told.get("outputs") if names is None else names
+    keep = tuple(told.get("keep", ("rolling",)) if keep is None else keep)
+    how = Settings(seed, int(told.get("resamples", 300)), tuple(told.get("measures", MEASURES)))
     if design.method == "nested":
-        from trackroller.study.robustness import robustness
+        from trackroller.study.robustness import material_deviations, robustness
 
-        return robustness(ds, design, names)
-    columns = outputs(ds, design.factors, names, keep, natural)
+        return robustness(ds, design, names, material_deviations(ds, told.get("material_scatter", False)))
+    columns = outputs(ds, design.factors, names, keep, natural, scale=scale or told.get("scale", ""))
     if not columns or not design.factors:
         raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
     results, notes, used_share, at = [], [], [], np.zeros(0, dtype=int)
     for column in columns:
-        out, used, total, at = _METHODS[design.method](column.values, design, seed)
+        out, used, total, at = _METHODS[design.method](column.values, design, how)
         out.pop("rows_used", None)
         results.append(out)
         used_share.append(used / max(1, total))
@@ -155,7 +175,7 @@ def analyse_dataset(
     dims = case_dims(ds, design.factors)
     result.attrs = {
         "method": design.method, "needs": NEEDS[design.method], "rows": design.size,
-        "kept_regimes": ", ".join(keep), "bootstrap_seed": seed, "interval": "95 %",
+        "kept_regimes": ", ".join(keep), "bootstrap_seed": seed, "resamples": how.resamples, "interval": "95 %",
         "treatment": treatment(regimes(ds, dims), keep), "study": ds.attrs.get("study", ""),
     }  # fmt: skip
     return result
@@ -205,8 +225,9 @@ _WORDS = {
     "higher_share": "share of variance of interactions of three and more factors",
     "effect": "change over the factor's range", "curvature": "quadratic coefficient, coded",
     "interaction": "two-factor interaction effect", "r_squared": "share of variance fitted",
-    "first": "share of variance explained alone, from given data", "pawn": "PAWN index",
-    "pawn_noise": "PAWN index an inert factor stays below", "prcc": "partial rank correlation coefficient",
+    "first": "share of variance explained alone, from given data", "pawn": "PAWN index", "delta": "delta index",
+    "pawn_noise": "PAWN index an inert factor stays below", "delta_noise": "delta index an inert factor stays below",
+    "prcc": "partial rank correlation coefficient",
 }  # fmt: skip
 
 
@@ -240,14 +261,14 @@ def factor_name(name: str) -> str:
 
 
 def analyse(study_nc: str | Path, out_nc: str | Path, names: Iterable[str] | None = None,
-            keep: Iterable[str] = ("rolling",), natural: Iterable[str] = ()) -> xr.Dataset:  # fmt: skip
+            keep: Iterable[str] | None = None, natural: Iterable[str] = ()) -> xr.Dataset:  # fmt: skip
     """Analyse a gathered study file and write the labelled result beside it.
 
     Parameters
     ----------
     study_nc : gathered study
     out_nc : netCDF file to write, whole or not at all
-    names, keep, natural : see `trackroller.study.outputs.outputs`
+    names, keep, natural : see `analyse_dataset`
 
     Returns
     -------

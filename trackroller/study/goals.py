@@ -1,0 +1,193 @@
+"""What a study file wants to know: how the results are analysed, and which designs are best.
+
+    analysis:
+      outputs: [roller_life_hours, friction_power, peak_stress[1,guide]]
+      scale: {friction_power: log10}
+      measures: [first, delta]
+      resamples: 1000
+    pareto: {roller_life_hours: max, friction_power: min, axis_distance: min}
+    constraints:
+      - regime != full_slip
+      - max_pressure < 1500
+
+None of these keys takes part in the identity of a case: changing them solves nothing anew.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from trackroller.dataset import VARIABLES
+from trackroller.errors import InputError, unknown_name
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.study import expressions
+from trackroller.study.entries import choice
+from trackroller.study.outputs import DEFAULTS, FIELDS
+
+MEASURES = ("first", "delta", "pawn", "prcc")
+SCALES = ("natural", "log10")
+DIRECTIONS = ("max", "min")
+_PART = re.compile(r"(\w+)\s*\[\s*([\w\s,]+?)\s*\]")
+
+
+class Analysis(BaseModel):
+    """The key `analysis` of a study file; see the fields' descriptions."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    outputs: tuple[str, ...] | None = Field(None, description="results to analyse; chosen by the study's groups if not")
+    scale: str | dict[str, str] = Field({}, description="natural or log10, for all or by output; lives are log10 else")
+    keep: tuple[str, ...] = Field(("rolling",), description="regimes whose cases are used; others: left out, told")
+    measures: tuple[str, ...] = Field(MEASURES, description="given-data measures to take besides the design's own")
+    resamples: int = Field(300, ge=50, le=10_000, description="bootstrap resamples behind the 95 % intervals")
+    material_scatter: bool | float = Field(
+        False, description="nested: the material's own scatter in B10; true: that of the database; or T_N")  # fmt: skip
+
+    @field_validator("scale")
+    @classmethod
+    def _scale(cls, value: str | dict[str, str]) -> str | dict[str, str]:
+        for name, scale in {"": value}.items() if isinstance(value, str) else value.items():
+            choice(scale, f"analysis.scale.{name}".rstrip("."), SCALES)
+        return value
+
+    @field_validator("keep", "measures")
+    @classmethod
+    def _lists(cls, value: tuple[str, ...], info: Any) -> tuple[str, ...]:
+        options = REGIMES[:3] if info.field_name == "keep" else MEASURES
+        for name in value:
+            choice(name, f"analysis.{info.field_name}", options)
+        if info.field_name == "keep" and "rolling" not in value:
+            raise InputError("analysis.keep", list(value), "rolling and, if wanted, full_slip and lift_off")
+        return tuple(dict.fromkeys(value))
+
+    @field_validator("outputs")
+    @classmethod
+    def _outputs(cls, value: tuple[str, ...] | None) -> tuple[str, ...] | None:
+        if value is not None and not value:
+            raise InputError("analysis.outputs", [], "at least one output", "Leave the key out for the usual ones.")
+        return None if value is None else tuple(dict.fromkeys(value))
+
+    @field_validator("material_scatter", mode="before")
+    @classmethod
+    def _material_scatter(cls, value: Any) -> Any:
+        good = isinstance(value, bool) or (isinstance(value, (int, float)) and 1 <= value < float("inf"))
+        if not good:
+            allowed = "true, false, or the scatter range T_N = N_90/N_10 >= 1"
+            raise InputError("analysis.material_scatter", value, allowed)
+        return value
+
+
+def directions(value: Any) -> dict[str, str]:
+    """The key `pareto`: two or more outputs or factors, each with `max` or `min`."""
+    if not isinstance(value, Mapping) or len(value) == 1:
+        raise InputError("pareto", value, "two or more outputs or factors, each with max or min",
+                         "For example {roller_life_hours: max, friction_power: min}.")  # fmt: skip
+    return {str(name): choice(way, f"pareto.{name}", DIRECTIONS) for name, way in value.items()}
+
+
+def comparisons(value: Any) -> list[str]:
+    """The key `constraints`: a list of comparisons."""
+    if not isinstance(value, (list, tuple)) or not all(isinstance(text, str) for text in value):
+        raise InputError("constraints", value, "a list of comparisons", "For example ['max_pressure < 1500'].")
+    for text in value:
+        names_in(text)
+    return list(value)
+
+
+def aliased(text: str) -> tuple[str, dict[str, str]]:
+    """A constraint with `variable[1,roller]` written as a plain name, and what each such name stands for."""
+    found: dict[str, str] = {}
+
+    def plain(hit: re.Match[str]) -> str:
+        keys = [key.strip() for key in hit[2].split(",")]
+        name = "__".join([hit[1], *keys])
+        found[name] = f"{hit[1]}[{','.join(keys)}]"
+        return name
+
+    return _PART.sub(plain, text), found
+
+
+def names_in(constraint: str) -> set[str]:
+    """Names of outputs and factors in a constraint; regimes are words, not names."""
+    text, parts = aliased(constraint)
+    return {parts.get(name, name) for name in expressions.names(text, "constraints")} - set(REGIMES)
+
+
+def output_names(groups: Iterable[str]) -> list[str]:
+    """One number a case: names that `analysis.outputs`, `pareto` and `constraints` may use."""
+    groups = set(groups)
+    there = {name for name, v in VARIABLES.items() if v.group in groups and not set(v.dims) & FIELDS}
+    names = [name for name, (variable, *_) in DEFAULTS.items() if variable in there]
+    for name in VARIABLES:
+        dims = VARIABLES[name].dims
+        if name in there and set(dims) <= {"contact", "body"}:
+            contacts = [[c] for c in ("1", "2")] if "contact" in dims else [[]]
+            keys = [c + b for c in contacts for b in ([["roller"], ["guide"]] if "body" in dims else [[]])]
+            names += [f"{name}[{','.join(key)}]" if key else name for key in keys]
+    return list(dict.fromkeys(names))
+
+
+def check_scatter(wanted: bool | float, design: str, materials: Iterable[Any]) -> None:
+    """A nested study that counts the scatter of its materials needs materials that have some."""
+    if wanted is False:
+        return
+    if design != "nested":
+        raise InputError("analysis.material_scatter", wanted, "design: nested", "Leave it out: there is no B10 here.")
+    bare = [m.name for m in materials if m.scatter_in_cycles is None and m.scatter_in_stress is None]
+    if wanted is True and bare:
+        raise InputError("analysis.material_scatter", True, f"no scatter is known of {', '.join(bare)}",
+                         "Give scatter_in_cycles with the materials, or T_N itself: material_scatter: 4.")  # fmt: skip
+
+
+def check(config: Any, factors: Mapping[str, Any]) -> None:
+    """Names in `analysis`, `pareto` and `constraints` exist in this study; raises `InputError` with the nearest."""
+    known = output_names(config.outputs)
+    scale = config.analysis.scale
+    for name in (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())):
+        if name.replace(" ", "") not in known:
+            raise _unknown("analysis.outputs", name, known, config.outputs)
+    free = [*known, *factors, *PARAMETERS]
+    for name in config.pareto:
+        if name not in free:
+            raise _unknown("pareto", name, free, config.outputs)
+        if "expression" not in factors.get(name, {}) and not _numeric(factors.get(name, {})):
+            raise InputError("pareto", name, "a number a case", "Names have no more and less.")
+    if config.design == "nested" and config.pareto:
+        raise InputError("pareto", dict(config.pareto), "a study that is not nested: what scatters is nobody's to "
+                         "choose", "Compare its design points by B10, or take a grid or a sample.")  # fmt: skip
+    words = [*free, *MATERIAL_FIELDS, "material_pair", "regime"]
+    for text in config.constraints:
+        for name in names_in(text):
+            if name not in words:
+                raise _unknown("constraints", name, [*words, *REGIMES], config.outputs)
+        plain, found = aliased(text)
+        dummy: dict[str, Any] = dict.fromkeys((*free, *found), 1.0) | {name: "" for name in words[len(free) :]}
+        dummy |= {name: "" for name, spec in factors.items() if not _numeric(spec)} | {name: name for name in REGIMES}
+        expressions.condition(plain, dummy)
+    if config.constraints and not config.pareto:
+        raise InputError("constraints", list(config.constraints), "they limit a Pareto set", "Add the key pareto.")
+
+
+def _numeric(spec: Mapping[str, Any]) -> bool:
+    return all(isinstance(v, (int, float)) for v in spec.get("values", []))
+
+
+def _unknown(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:
+    variable = name.split("[")[0].strip()
+    name_of = DEFAULTS[variable][0] if variable in DEFAULTS else variable
+    if name_of in VARIABLES and (group := VARIABLES[name_of].group) not in set(groups):
+        if group == "status":
+            return InputError(where, name, "a result or a factor")
+        return InputError(where, name, f"its group {group} is not among the study's outputs",
+                          f"Add {group} to outputs.")  # fmt: skip
+    if name_of in VARIABLES and variable not in DEFAULTS and "[" not in name:
+        dims = VARIABLES[name_of].dims
+        example = ",".join(word for d, word in (("contact", "1"), ("body", "roller")) if d in dims)
+        if example:
+            return InputError(where, name, "one number a case", f"Choose one, such as {name}[{example}].")
+    short = [n for n in dict.fromkeys(known) if "[" not in n]  # the parts of a variable would hide the names
+    return unknown_name(where, name, short)
