@@ -1,0 +1,238 @@
+"""Patches of one gap under any load, from solutions of the normal problem on a fixed lattice of loads.
+
+The equilibrium asks for a patch at tens of slightly different loads. Solved from scratch are those of a geometric
+lattice, F/E* = LATTICE^k, the same whatever is asked, so that no result depends on what was solved before. Between them
+the box around the patch and the pressures over their load are interpolated: a start close to the solution, and exact
+for Hertz's gap.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trackroller.contact.cross_sections import Gap
+from trackroller.contact.hertz import exact_shape
+from trackroller.contact.normal import NormalSolution, displacement, solve_normal
+
+LATTICE = 1.6  # ratio of neighbouring loads
+KEPT = 8  # solutions at asked loads that are remembered
+OVERLAP = 1e-3  # of the approach, that counts as contact outside the box
+COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
+BOX_TOLERANCE = 3e-3  # of the sides of the box around the patch
+SAMPLES = 401  # points across, for the start and to look for contact outside the box
+
+
+@dataclass(frozen=True)
+class Box:
+    """Rectangle around a patch: from `low` to `high` across, from -`half` to `half` along the rolling direction [mm]."""
+
+    low: float
+    high: float
+    half: float
+
+    def grid(self, n: int) -> tuple[np.ndarray, np.ndarray, float, float]:
+        """Element centres x, y and element sides for n x n elements."""
+        unit = (np.arange(n) + 0.5) / n
+        hx, hy = (self.high - self.low) / n, 2 * self.half / n
+        return self.low + (self.high - self.low) * unit, self.half * (2 * unit - 1), hx, hy
+
+
+@dataclass(frozen=True)
+class Node:
+    """A solved load: box, share of the load that each element carries (sum 1), and what else grows with the load.
+
+    scalars : approach [mm], largest pressure per E* [-], area of the patch [mm^2]; reaches : does it end at an edge
+    residual : of `solve_normal`
+    """
+
+    box: Box
+    shares: np.ndarray
+    scalars: np.ndarray
+    reaches: bool
+    residual: float
+
+
+def _vanishing(sums: np.ndarray) -> float:
+    """Where sums over lines of elements vanish, in elements from the centre of the first; searched at the far end.
+
+    For a Hertzian patch they are a parabola; the outermost, partly covered line is left out.
+    """
+    last = int(np.flatnonzero(sums > 0)[-1])
+    if last < 4:
+        return last + 0.5
+    a, b, c = sums[last - 3], sums[last - 2], sums[last - 1]
+    curve, slope = 0.5 * (a - 2 * b + c), 0.5 * (3 * c - 4 * b + a)  # at the last of the three
+    root = slope * slope - 4 * curve * c
+    if slope >= 0 or root < 0:
+        return last + 0.5
+    step = 2 * c / (-slope + math.sqrt(root))
+    return last - 1 + min(max(step, 0.5), 2.5)
+
+
+def patch_box(pressure: np.ndarray, box: Box) -> Box:
+    """The box that the patch fills, to a part of an element."""
+    n = pressure.shape[1]
+    across, along = pressure.sum(axis=0), pressure.sum(axis=1)
+    hx, hy = (box.high - box.low) / n, 2 * box.half / n
+    right, left = _vanishing(across) + 0.5, _vanishing(across[::-1]) + 0.5
+    half = (_vanishing(along) + 0.5) * hy - box.half
+    return Box(box.high - left * hx, box.low + right * hx, half)
+
+
+def patch_area(pressure: np.ndarray, hx: float, hy: float) -> float:
+    """Area of a patch [mm^2]: along each column p^2 is followed to zero by the parabola it is in Hertz's theory."""
+    total = 0.0
+    for column in (pressure**2).T:
+        if column.any():
+            first, last = np.flatnonzero(column > 0)[[0, -1]]
+            if last - first < 7:
+                total += last - first + 1
+                continue
+            total += _vanishing(column) + _vanishing(column[::-1]) + 1 - column.size
+    return total * hx * hy
+
+
+def largest_pressure(pressure: np.ndarray) -> float:
+    """Top of the parabolas that p^2 describes around its largest element, or that element at an edge."""
+    i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
+    top = pressure[i, j] ** 2
+    gain = 0.0
+    for line, k in ((pressure[:, j] ** 2, i), (pressure[i, :] ** 2, j)):
+        if 0 < k < line.size - 1 and line[k - 1] > 0 and line[k + 1] > 0:
+            slope, curve = 0.5 * (line[k + 1] - line[k - 1]), line[k + 1] - 2 * line[k] + line[k - 1]
+            gain += -0.5 * slope * slope / curve if curve < 0 else 0.0
+    return math.sqrt(top + gain)
+
+
+class Family:
+    """All patches of one gap; `elements` along each axis of the box."""
+
+    def __init__(self, gap: Gap, elements: int) -> None:
+        self.gap, self.elements = gap, elements
+        self.limits = gap.limits
+        self._nodes: dict[int, Node] = {}
+        self._asked: dict[float, Node] = {}
+        x = np.linspace(*self.limits, SAMPLES)
+        x = x[1:-1]
+        self._samples, self._lateral = x, gap.lateral(x)
+
+    def between(self, load: float) -> tuple[Box, np.ndarray]:
+        """Box and shares of the load under load/E* [mm^2], between two solved loads; exact for Hertz's gap."""
+        k = math.floor(math.log(load) / math.log(LATTICE))
+        low, high = self.node(k), self.node(k + 1)
+        # sizes grow with the cube root in Hertz's theory
+        t = (np.cbrt(load) - np.cbrt(LATTICE**k)) / (np.cbrt(LATTICE ** (k + 1)) - np.cbrt(LATTICE**k))
+        sides = [(1 - t) * getattr(low.box, name) + t * getattr(high.box, name) for name in ("low", "high", "half")]
+        return self._clipped(*sides), (1 - t) * low.shares + t * high.shares
+
+    def at(self, load: float) -> Node:
+        """The solution under load/E* [mm^2], on a box that changes continuously with the load."""
+        if load not in self._asked:
+            box, shares = self.between(load)
+            solution = self._pressure(box, load, self.elements, shares)
+            self._asked = dict(list(self._asked.items())[-KEPT:])
+            self._asked[load] = self._told(solution, box, load)
+        return self._asked[load]
+
+    def node(self, k: int) -> Node:
+        """The solution under F/E* = LATTICE^k, solved at the first call."""
+        if k not in self._nodes:
+            self._nodes[k] = self._solve(LATTICE**k)
+        return self._nodes[k]
+
+    def _start(self, load: float) -> Box:
+        """Box by Hertz's theory with the curvature that the gap has over the width of the patch."""
+        centre = float(self._samples[np.argmin(self._lateral)])
+        lowest = float(self._lateral.min())
+        k_y = float(self.gap.curvature(np.array(centre)))
+        wide = 0.1 * (self.limits[1] - self.limits[0])
+        half = wide
+        for _ in range(12):
+            ends = np.interp([centre - wide, centre + wide], self._samples, self._lateral)
+            k_x = max((ends.sum() - 2 * lowest) / wide**2, 1e-4 * k_y)
+            hertz = exact_shape(np.array([k_x]), np.array([k_y]), np.array([1.0])).at(np.array([load]))
+            wide = float(np.sqrt(wide * hertz.semi_axis_lateral[0]))
+            half = float(hertz.semi_axis_rolling[0])
+        return self._clipped(centre - 1.25 * wide, centre + 1.25 * wide, 1.4 * half)
+
+    def _clipped(self, low: float, high: float, half: float) -> Box:
+        return Box(max(low, self.limits[0]), min(high, self.limits[1]), half)
+
+    def _pressure(self, box: Box, load: float, n: int, start: np.ndarray | None = None) -> NormalSolution:
+        x, y, hx, hy = box.grid(n)
+        return solve_normal(self.gap.field(x, y), hx, hy, load, start=start)
+
+    def _solve(self, load: float) -> Node:
+        box, solution = self._around(load), None
+        for attempt in range(6):
+            solution = self._pressure(box, load, self.elements, None if solution is None else solution.pressure)
+            filled = patch_box(solution.pressure, box)
+            wider = self._beyond(solution, box)
+            if wider != box:
+                box = wider
+                continue
+            change = max(abs(filled.low - box.low), abs(filled.high - box.high)) / (box.high - box.low)
+            if max(change, abs(filled.half / box.half - 1)) < BOX_TOLERANCE or attempt > 2:
+                break
+            box = self._clipped(filled.low, filled.high, filled.half)
+        return self._told(solution, box, load)
+
+    def _told(self, solution, box: Box, load: float) -> Node:
+        _, _, hx, hy = box.grid(self.elements)
+        p = solution.pressure
+        at_low, at_high = box.low <= self.limits[0], box.high >= self.limits[1]
+        reaches = bool((at_low and p[:, 0].any()) or (at_high and p[:, -1].any()))
+        scalars = np.array([solution.approach, largest_pressure(p), patch_area(p, hx, hy)])
+        return Node(box, p * (hx * hy / load), scalars, reaches, solution.residual)
+
+    def _beyond(self, solution, box: Box) -> Box:
+        """The box, a good element wider on each side where the bodies would overlap just outside it."""
+        n = self.elements
+        x, y, hx, hy = box.grid(n)
+        around = np.zeros((n + 2, n + 2))
+        around[1:-1, 1:-1] = solution.pressure
+        x, y = np.concatenate([[x[0] - hx], x, [x[-1] + hx]]), np.concatenate([[y[0] - hy], y, [y[-1] + hy]])
+        total = displacement(around, hx, hy) + self.gap.field(x, y)
+        overlap = total < solution.approach - OVERLAP * abs(solution.approach)
+        low = box.low - 1.2 * hx * overlap[:, 0].any()
+        high = box.high + 1.2 * hx * overlap[:, -1].any()
+        return self._clipped(low, high, box.half + 1.2 * hy * overlap[[0, -1]].any())
+
+    def _around(self, load: float) -> Box:
+        """A box that the patch fills, by coarse solutions."""
+        box = self._start(load)
+        for _ in range(20):
+            solution = self._pressure(box, load, COARSE)
+            filled = patch_box(solution.pressure, box)
+            low, high, half = filled.low, filled.high, filled.half
+            width = high - low
+            grows = self._outside(solution, box)
+            if solution.pressure[:, 0].any() and low <= box.low > self.limits[0]:
+                grows = (min(grows[0], low - 0.3 * width), grows[1])
+            if solution.pressure[:, -1].any() and high >= box.high < self.limits[1]:
+                grows = (grows[0], max(grows[1], high + 0.3 * width))
+            taller = solution.pressure[0].any() and half >= box.half
+            if grows == (np.inf, -np.inf) and not taller:
+                tight = self._clipped(low, high, half)
+                if (box.high - box.low) < 1.2 * (tight.high - tight.low) and box.half < 1.2 * half:
+                    return tight
+                box = self._clipped(low - 0.04 * width, high + 0.04 * width, 1.06 * half)
+                continue
+            box = self._clipped(min(low, grows[0]), max(high, grows[1]), 1.4 * half if taller else 1.06 * half)
+        return box
+
+    def _outside(self, solution, box: Box) -> tuple[float, float]:
+        """Furthest places left and right of the box where the bodies would overlap; (inf, -inf) for none."""
+        x, y, hx, hy = box.grid(COARSE)
+        beyond = (self._samples < box.low - 0.5 * hx) | (self._samples > box.high + 0.5 * hx)
+        places = self._samples[beyond]
+        if places.size == 0:
+            return np.inf, -np.inf
+        distance = np.hypot(places[:, None, None] - x, y[:, None])
+        sink = (hx * hy / np.pi) * (solution.pressure / distance).sum(axis=(1, 2))
+        overlap = places[self._lateral[beyond] + sink < solution.approach - OVERLAP * abs(solution.approach)]
+        left, right = overlap[overlap < box.low], overlap[overlap > box.high]
+        return (float(left.min()) if left.size else np.inf), (float(right.max()) if right.size else -np.inf)
