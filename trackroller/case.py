@@ -60,7 +60,9 @@ class Case:
     or a mapping with its values. `friction_coefficient=None` takes the typical value of the material
     pair ('upper' or 'lower' take the bounds). `friction_law` lets friction depend on the slip speed (see
     `trackroller.contact.friction_laws.canonical`), `guide_profile` and `roller_profile` are drawn or measured
-    cross-sections for `normal="halfspace"` (see `trackroller.profiles.canonical`). Raises `InputError` for a value outside its range and for
+    cross-sections for `normal="halfspace"` (see `trackroller.profiles.canonical`).
+
+    Raises `InputError` for a value outside its range and for
     surfaces that conform or interlock.
     """
 

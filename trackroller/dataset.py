@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import REGIMES
+from trackroller.parameters import CONTACT_MODELS, REGIMES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -96,9 +96,33 @@ VALIDITY_BITS = {
 }
 
 
-def build(values: Mapping[str, np.ndarray], regime: np.ndarray, converged: np.ndarray, validity: np.ndarray,
-          attrs: Mapping[str, Any], single: bool) -> xr.Dataset:  # fmt: skip
-    """Data set with dimension `case` (dropped for a `single` case) from arrays whose first axis is the case."""
+FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "regime": ("regime of the case", REGIMES),
+    "converged": ("equilibrium found to the residual its contact model can reach", ("no", "yes")),
+    "contact_model_used": ("contact model chosen for the case", CONTACT_MODELS[:3]),
+    "stopped": ("the condition of stop_if holds: peak stress not searched for", ("no", "yes")),
+}
+
+
+def _flag(name: str, values: np.ndarray) -> tuple[str, np.ndarray, dict[str, Any]]:
+    if name == "validity":
+        return "case", values.astype(np.int32), {
+            "long_name": "where the model leaves its ground", "units": "1",
+            "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
+            "flag_meanings": " ".join(VALIDITY_BITS),
+            "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items())}  # fmt: skip
+    told, words = FLAGS[name]
+    return "case", values.astype(np.int8), {
+        "long_name": told, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8),
+        "flag_meanings": " ".join(words)}  # fmt: skip
+
+
+def build(values: Mapping[str, np.ndarray], flags: Mapping[str, np.ndarray], attrs: Mapping[str, Any],
+          single: bool) -> xr.Dataset:  # fmt: skip
+    """Data set with dimension `case` (dropped for a `single` case) from arrays whose first axis is the case.
+
+    `flags` are arrays (n,) of those in `FLAGS`, and `validity` with the bits of `VALIDITY_BITS`.
+    """
     import xarray as xr
 
     variables: dict[str, Any] = {}
@@ -108,17 +132,7 @@ def build(values: Mapping[str, np.ndarray], regime: np.ndarray, converged: np.nd
         if v.symbol:
             meta["symbol"] = v.symbol
         variables[name] = (("case", *v.dims), array, meta)
-    variables["regime"] = ("case", regime.astype(np.int8), {
-        "long_name": "regime of the case", "flag_values": np.arange(len(REGIMES), dtype=np.int8),
-        "flag_meanings": " ".join(REGIMES), "units": "1"})  # fmt: skip
-    variables["converged"] = ("case", converged.astype(np.int8), {
-        "long_name": "equilibrium found to a relative residual of 1e-10", "units": "1",
-        "flag_values": np.array([0, 1], dtype=np.int8), "flag_meanings": "no yes"})  # fmt: skip
-    variables["validity"] = ("case", validity.astype(np.int32), {
-        "long_name": "where the model leaves its ground", "units": "1",
-        "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
-        "flag_meanings": " ".join(VALIDITY_BITS),
-        "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items())})  # fmt: skip
+    variables |= {name: _flag(name, array) for name, array in flags.items()}
     coords: dict[str, Any] = {
         "contact": ("contact", np.array([1, 2], dtype=np.int32),
                     {"long_name": "contact, 1 at +x_R, 2 at -x_R", "units": "1"}),

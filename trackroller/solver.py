@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numba.core.registry import cpu_target
 
 from trackroller import equilibrium as eq
-from trackroller import stages
+from trackroller import requirements, stages
 from trackroller.accuracy import Accuracy, accuracy_settings
+from trackroller.blocks import Block, join
 from trackroller.case import Case, CaseTable, to_table
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import (
@@ -20,10 +21,13 @@ from trackroller.parameters import (
     DEFAULT_OUTPUTS,
     HERTZ,
     LIFE_RULES,
+    MAPPING_FIELDS,
+    NORMAL,
     OUTPUT_GROUPS,
     SPIN_MODELS,
     STRESS_BODIES,
 )
+from trackroller.stop import parse_condition
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,6 +41,7 @@ cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()
 
 BLOCK = 2048  # cases worked on at once: bounds the memory whatever the size of the batch
+WINDOW = 16 * BLOCK  # cases among which equal mechanics are looked for
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,10 @@ class Options:
     hertz: str = "exact"
     stress_bodies: str = "both"
     life_rule: str = "elementary"
+    normal: str = "hertz"
+    contact_tolerance: float = 0.05
+    stop_if: str | None = None
+    shortcuts: bool = True
 
     def __post_init__(self) -> None:
         outputs = (self.outputs,) if isinstance(self.outputs, str) else tuple(self.outputs)
@@ -60,10 +69,18 @@ class Options:
         if not self.outputs:
             raise InputError("outputs", outputs, "at least one of " + ", ".join(OUTPUT_GROUPS))
         for field, options in (("contact_model", CONTACT_MODELS), ("spin_model", SPIN_MODELS), ("hertz", HERTZ),
-                               ("stress_bodies", STRESS_BODIES), ("life_rule", LIFE_RULES)):  # fmt: skip
+                               ("stress_bodies", STRESS_BODIES), ("life_rule", LIFE_RULES),
+                               ("normal", NORMAL)):  # fmt: skip
             if getattr(self, field) not in options:
                 raise unknown_name(field, str(getattr(self, field)), options)
         accuracy_settings(self.accuracy)
+        tolerance = self.contact_tolerance
+        if isinstance(tolerance, bool) or not isinstance(tolerance, (int, float)) or not 0 < tolerance < 1:
+            raise InputError("contact_tolerance", tolerance, "a relative tolerance in (0, 1), for contact_model auto")
+        if not isinstance(self.shortcuts, bool):
+            raise InputError("shortcuts", self.shortcuts, "true or false")
+        if self.stop_if is not None:
+            parse_condition(self.stop_if)
 
     @property
     def settings(self) -> Accuracy:
@@ -74,7 +91,9 @@ class Options:
 def solve(
     cases: Any, outputs: Iterable[str] | str = DEFAULT_OUTPUTS, *, contact_model: str = "sliding",
     spin_model: str = "skewed", accuracy: str | float = "standard", hertz: str = "exact",
-    stress_bodies: str = "both", life_rule: str = "elementary", database: MaterialDatabase | None = None,
+    stress_bodies: str = "both", life_rule: str = "elementary", normal: str = "hertz",
+    contact_tolerance: float = 0.05, stop_if: str | None = None, shortcuts: bool = True,
+    database: MaterialDatabase | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Contact forces, tractions, stresses and life of track rollers.
 
@@ -82,12 +101,17 @@ def solve(
     ----------
     cases : `Case` or mapping (result without case dimension), list of them or design data set (dimension `case`)
     outputs : groups among forces, contact, friction_work, peak_stress, life, tractions, subsurface
-    contact_model : 'sliding' | 'fastsim' | 'kalker'
+    contact_model : 'sliding' | 'fastsim' | 'kalker' | 'auto', the cheapest of them that meets `contact_tolerance`
     spin_model : 'concentric' | 'edge' | 'skewed', for sliding only
     accuracy : 'preview' | 'standard' | 'reference' or a relative tolerance of the peak stress
     hertz : 'exact' or 'published' (the table of the published program)
     stress_bodies : 'both', or 'published' (one body with the mean Poisson's ratio)
     life_rule : 'elementary' | 'haibach' | 'unlimited' below the fatigue limit
+    normal : 'hertz' pressures, or 'halfspace': patch and pressure solved on a grid, for drawn profiles too
+    contact_tolerance : relative tolerance of the contact forces for 'auto'
+    stop_if : a condition such as 'peak_stress > R_m' on which the search for peak stresses is not worth while; such
+        cases are marked `stopped` and have no peak stress and life (see `trackroller.stop`)
+    shortcuts : spare what symmetry and repetition make superfluous; numbers are the same to rounding
     database : materials; the built-in and the user's own if not given
 
     Returns
@@ -97,56 +121,109 @@ def solve(
     Raises `InputError` for bad input only: a case that cannot be solved is a row with `regime` failed.
     """
     options = Options(tuple([outputs] if isinstance(outputs, str) else outputs), contact_model, spin_model, accuracy,
-                      hertz, stress_bodies, life_rule)  # fmt: skip
+                      hertz, stress_bodies, life_rule, normal, contact_tolerance, stop_if, shortcuts)  # fmt: skip
     single = isinstance(cases, Case) or (hasattr(cases, "keys") and not hasattr(cases, "data_vars"))
     if hasattr(cases, "data_vars"):
         single = "case" not in cases.dims
     table = to_table(cases, database)
-    blocks = [_solve_block(table.take(np.arange(i, min(i + BLOCK, len(table)))), options)
-              for i in range(0, max(len(table), 1), BLOCK)]  # fmt: skip
-    return _assemble(blocks, options, single)
+    _check_profiles(table, options)
+    windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
+    return _assemble(join(windows), options, single)
 
 
-def _solve_block(table: CaseTable, options: Options) -> stages.Results:
+def _check_profiles(table: CaseTable, options: Options) -> None:
+    for name in ("guide_profile", "roller_profile"):
+        if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
+            raise InputError("normal", options.normal, f"a case with a {name} needs normal: halfspace",
+                             f"Set normal to halfspace, or remove {name}.")  # fmt: skip
+
+
+def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
+    for i in range(0, max(len(table), 1), size):
+        yield table.take(np.arange(i, min(i + size, len(table))))
+
+
+def _solve_window(table: CaseTable, options: Options) -> Block:
+    """Mechanics of the cases that differ in them; then what each case makes of them."""
+    rows = number = np.arange(len(table))
+    if options.shortcuts and len(table) > 1:
+        rows, number = requirements.distinct_mechanics(table)
+    found = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
+    block = found.take(number)
+    stages.finish(table, block, options)
+    return block
+
+
+def _solve_block(table: CaseTable, options: Options) -> Block:
+    """Cases that share a contact model, a friction law and profiles are solved together."""
+    groups = list(_groups(table, options))
+    if len(groups) == 1:
+        return _solve_group(table, replace(options, contact_model=groups[0][0]))
+    found = join([_solve_group(table.take(rows), replace(options, contact_model=model)) for model, rows in groups])
+    return found.take(np.argsort(np.concatenate([rows for _, rows in groups])))
+
+
+def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:
+    """Contact model and rows of cases that can be solved in one batch."""
+    model = np.full(len(table), options.contact_model, dtype=object)
+    if options.contact_model == "auto":
+        from trackroller.contact.choice import choose
+
+        model = choose(table, options)
+    if options.shortcuts and "tractions" not in options.outputs:  # no friction, no tractions: any model will do
+        model = np.where(requirements.is_frictionless(table), "sliding", model)
+    keys = list(zip(model, *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
+    for key in dict.fromkeys(keys):
+        yield str(key[0]), np.array([i for i, own in enumerate(keys) if own == key])
+    if not keys:
+        yield "sliding" if options.contact_model == "auto" else options.contact_model, np.arange(0)
+
+
+def _solve_group(table: CaseTable, options: Options) -> Block:
     scene = stages.prepare(table, options)
-    balance = eq.solve_equilibrium(scene.loads, scene.model.law)
+    balance = eq.solve_equilibrium(scene.loads, scene.mirror.law(scene.model.law))
     results = stages.Results.start(scene, balance)
     wanted = set(options.outputs)
     stages.forces(results)
     stages.contact(results, options)
     if "friction_work" in wanted:
         stages.friction_work(results, options)
+    stages.stop(results, options)
     if wanted & {"peak_stress", "life", "subsurface"}:
         stages.peak_stress(results, options)
-    if "life" in wanted:
-        stages.life(results, options)
     if "tractions" in wanted:
         stages.tractions(results, options)
     if "subsurface" in wanted:
         stages.subsurface(results, options)
-    stages.validity(results)
-    return results
+    model = np.full(len(table), CONTACT_MODELS.index(options.contact_model), dtype=np.int8)
+    return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
 
 
-def _assemble(blocks: list[stages.Results], options: Options, single: bool) -> xr.Dataset:
+def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     from trackroller import __version__
     from trackroller.dataset import VARIABLES, build
 
-    keep = [name for name in blocks[0].values
+    keep = [name for name in block.values
             if VARIABLES[name].group in options.outputs or name == "residual"
             or (name == "error_estimate" and "peak_stress" in options.outputs)]  # fmt: skip
-    values = {name: np.concatenate([b.values[name] for b in blocks]) for name in keep}
-    attrs = {
+    attrs: dict[str, Any] = {
         "Conventions": "CF-1.11",
         "source": f"trackroller {__version__}",
         "contact_model": options.contact_model,
-        "spin_model": options.spin_model if options.contact_model == "sliding" else "",
+        "spin_model": options.spin_model if options.contact_model in ("sliding", "auto") else "",
         "accuracy": str(options.accuracy),
         "hertz": options.hertz,
         "stress_bodies": options.stress_bodies,
         "life_rule": options.life_rule,
+        "normal": options.normal,
         "life_conventions": stages.LIFE_CONVENTIONS,
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }
-    regime, converged, bits = (np.concatenate([getattr(b, n) for b in blocks]) for n in ("regime", "converged", "bits"))
-    return build(values, regime, converged, bits, attrs, single)
+    flags = {"regime": block.regime, "converged": block.converged, "validity": block.bits}
+    if options.contact_model == "auto":
+        attrs["contact_tolerance"] = options.contact_tolerance
+        flags["contact_model_used"] = block.model
+    if options.stop_if is not None:
+        attrs["stop_if"] = options.stop_if
+        flags["stopped"] = block.stopped
+    return build({name: block.values[name] for name in keep}, flags, attrs, single)

@@ -19,11 +19,15 @@ from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.models import ContactModel, contact_model, traction_share
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
+from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.stress import von_mises
+from trackroller.requirements import Mirror, is_mirror_symmetric
+from trackroller.stop import holds, parse_condition
 
 if TYPE_CHECKING:
+    from trackroller.blocks import Block
     from trackroller.solver import Options
 
 LIFE_CONVENTIONS = (
@@ -44,6 +48,7 @@ class Scene:
     table: CaseTable
     loads: eq.Loads
     model: ContactModel
+    mirror: Mirror
     n: int
 
 
@@ -60,6 +65,7 @@ class Results:
     friction: np.ndarray
     good: np.ndarray  # (2 n,) patches that exist
     bits: np.ndarray
+    stopped: np.ndarray  # (n,) the condition of stop_if holds
     values: dict[str, np.ndarray] = field(default_factory=dict)
     surface: SurfaceTractions | None = None  # of the existing patches, once asked for
 
@@ -74,7 +80,7 @@ class Results:
                     two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius),
                     two(balance.shift))  # fmt: skip
         out = cls(scene, balance, balance.regime, balance.converged, ellipse, slip, two(scene.loads.friction),
-                  np.isfinite(normal), np.zeros(scene.n, np.int32))  # fmt: skip
+                  np.isfinite(normal), np.zeros(scene.n, np.int32), np.zeros(scene.n, bool))  # fmt: skip
         out.values["residual"] = balance.residual
         return out
 
@@ -111,7 +117,8 @@ def prepare(table: CaseTable, options: Options) -> Scene:
     model = contact_model(options.contact_model, options.settings, Elastic.of_pair(*bodies), options.spin_model)
     loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
                      table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual)  # fmt: skip
-    return Scene(table, loads, model, len(table))
+    twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
+    return Scene(table, loads, model, Mirror(twins), len(table))
 
 
 def forces(results: Results) -> None:
@@ -153,17 +160,17 @@ def contact(results: Results, options: Options) -> None:
 
 
 def friction_work(results: Results, options: Options) -> None:
-    """Friction power int |tau| |v| at the travel speed and per distance."""
-    table = results.scene.table
+    """Friction energy int |tau| |v| per distance travelled, and the balance of energy."""
     per_distance = np.full(2 * results.scene.n, np.nan)
     rolls = results.good & (results.slides_along == 0)
     if rolls.any():
-        per_distance[rolls] = results.scene.model.power(
-            results.ellipse.take(rolls), results.slip.take(rolls), results.friction[rolls], results.rows[rolls]
-        )
+        mirror = results.scene.mirror
+        asked = mirror.asked(rolls)
+        per_distance[rolls] = mirror.spread(rolls, results.scene.model.power(
+            results.ellipse.take(asked), results.slip.take(asked), results.friction[asked], results.rows[asked]
+        ))  # fmt: skip
     w = results.by_contact(per_distance)
     results.values["friction_energy_per_distance"] = w
-    results.values["friction_power"] = w * (table.velocity / 60.0)[:, None]
     _energy_balance(results, w)
 
 
@@ -183,9 +190,10 @@ def _energy_balance(results: Results, local: np.ndarray) -> None:
     v["energy_residual"] = np.where(loads.friction > 0, residual, np.nan)
 
 
-def _patches(results: Results, options: Options) -> np.ndarray:
+def _patches(results: Results, options: Options, slip: Slip | None = None) -> np.ndarray:
     good = results.good
-    return patch_rows(results.ellipse.take(good), results.slip.take(good), results.friction[good],
+    slip = results.slip if slip is None else slip
+    return patch_rows(results.ellipse.take(good), slip.take(good), results.friction[good],
                       sliding.spin_model_index(options.spin_model), results.slides_along[good])  # fmt: skip
 
 
@@ -204,25 +212,78 @@ def _traction_fields(results: Results) -> np.ndarray | None:
     return traction_share(surface_tractions(results), results.friction[results.good])
 
 
+def stop(results: Results, options: Options) -> None:
+    """Marks the cases for which the condition of `stop_if` holds already: what follows leaves them out."""
+    if options.stop_if is None:
+        return
+    table, v = results.scene.table, results.values
+    bounded = []
+    for comparison in parse_condition(options.stop_if):
+        if comparison.by_bound:
+            bounded.append(comparison)
+            continue
+        value = results.regime.astype(float) if comparison.name == "regime" else v[comparison.name]
+        results.stopped |= holds(comparison, value, table)
+    if bounded:
+        lower = _peak_bound(results, options)
+        for comparison in bounded:
+            results.stopped |= holds(comparison, lower, table)
+
+
+def _peak_bound(results: Results, options: Options) -> np.ndarray:
+    """Lower bound of the peak stress, shape (n, 2, 2): the largest of a few points of each patch."""
+    wanted = results.good & ~np.tile(results.stopped, 2)
+    out = np.full((2 * results.scene.n, 2), np.nan)
+    if wanted.any():
+        among, fields = wanted[results.good], _traction_fields(results)
+        patches, ratios = _patches(results, options)[among], _poisson(results, options)[wanted]
+        bound = lower_bounds(patches, ratios, None if fields is None else fields[among])
+        out[wanted] = bound * results.ellipse.max_pressure[wanted][:, None]
+    if options.stress_bodies == "published":
+        out[:, 1] = out[:, 0]
+    return results.by_contact(out)
+
+
 def peak_stress(results: Results, options: Options) -> None:
     """Peak von Mises stress of each contact and body, its place and error estimate."""
-    good = results.good
-    peak = find_peaks(
-        _patches(results, options), _poisson(results, options)[good], options.settings.peak, _traction_fields(results)
-    )
-    scale = results.ellipse.max_pressure[good][:, None]
-    fields = {"peak_stress": peak.stress * scale, "peak_x": peak.x, "peak_y": peak.y, "peak_z": peak.z,
-              "error_estimate": peak.error}  # fmt: skip
-    for name, value in fields.items():
-        full = results.full(value)
+    good = results.good & ~np.tile(results.stopped, 2)
+    mirror = results.scene.mirror
+    asked = mirror.asked(good)
+    among = asked[results.good]  # of the existing patches
+    # contact 2 is searched as its mirror image, so that mirrored scenes have the same numbers
+    second = np.repeat([False, True], results.scene.n)
+    seen = replace(results.slip, sine=np.abs(results.slip.sine))
+    fields = _traction_fields(results)
+    if fields is not None:
+        fields = fields[among]
+        fields[second[asked]] = fields[second[asked]][..., ::-1] * np.array([-1.0, 1.0])[:, None, None]
+    peak = find_peaks(_patches(results, options, seen)[among], _poisson(results, options)[asked],
+                      options.settings.peak, fields)  # fmt: skip
+    scale = results.ellipse.max_pressure[asked][:, None]
+    side = np.where(second[asked], -1.0, 1.0)[:, None]
+    found = {"peak_stress": (peak.stress * scale, 1.0), "peak_x": (side * peak.x, -1.0), "peak_y": (peak.y, 1.0),
+             "peak_z": (peak.z, 1.0), "error_estimate": (peak.error, 1.0)}  # fmt: skip
+    for name, (value, sign) in found.items():
+        full = np.full((2 * results.scene.n, 2), np.nan)
+        full[good] = mirror.spread(good, value, sign)
+        full = results.by_contact(full)
         if options.stress_bodies == "published":
             full = np.repeat(full[:, :, :1], 2, axis=2)
         results.values[name] = full
 
 
-def life(results: Results, options: Options) -> None:
+def finish(table: CaseTable, block: Block, options: Options) -> None:
+    """What follows from forces and stresses case by case: power, life and warnings."""
+    v = block.values
+    if "friction_work" in options.outputs:
+        v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
+    if "life" in options.outputs:
+        life(table, v, options)
+    validity(table, block)
+
+
+def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
     """Overrollings and hours to failure from the peak stress."""
-    table, v = results.scene.table, results.values
     per_body = []
     for j, m in enumerate((table.roller, table.guide)):
         column = lambda a: a[:, None]  # noqa: E731
@@ -231,7 +292,8 @@ def life(results: Results, options: Options) -> None:
             column(m.cycles_at_tensile_strength), column(m.cycles_at_fatigue_limit),
             rule=options.life_rule))  # fmt: skip
     v["life_cycles"] = np.stack(per_body, axis=2)
-    roller = fatigue.roller_hours(per_body[0], table.velocity[:, None], results.scene.loads.rolling_radius[:, None])
+    r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle))
+    roller = fatigue.roller_hours(per_body[0], table.velocity[:, None], r_a[:, None])
     guide = fatigue.guide_hours(per_body[1], table.guide_overrollings_per_hour[:, None])
     v["life_hours"] = np.stack([roller, guide], axis=2)
     v["roller_life_hours"], v["guide_life_hours"] = roller.min(axis=1), guide.min(axis=1)
@@ -240,11 +302,13 @@ def life(results: Results, options: Options) -> None:
 def surface_tractions(results: Results) -> SurfaceTractions:
     """Tractions of the existing patches on a grid, found once."""
     if results.surface is None:
-        good = results.good
-        ellipse, slip, mu = results.ellipse.take(good), results.slip.take(good), results.friction[good]
-        along = results.slides_along[good]
-        rolling = replace(slip, shift=np.where(along == 0, slip.shift, 0.0))
-        t = results.scene.model.surface(ellipse, rolling, mu, results.rows[good])
+        good, mirror = results.good, results.scene.mirror
+        asked = mirror.asked(good)
+        slip = results.slip.take(asked)
+        rolling = replace(slip, shift=np.where(results.slides_along[asked] == 0, slip.shift, 0.0))
+        t = mirror.spread_surface(good, results.scene.model.surface(
+            results.ellipse.take(asked), rolling, results.friction[asked], results.rows[asked]))  # fmt: skip
+        mu, along = results.friction[good], results.slides_along[good]
         full = (along != 0)[:, None, None]
         results.surface = replace(
             t,
@@ -281,7 +345,7 @@ def subsurface(results: Results, options: Options) -> None:
         v[name] = np.full((n, 2, 2, count), np.nan)
     rows, fields = _patches(results, options), _traction_fields(results)
     nu = _poisson(results, options)
-    order = options.settings.peak.polish
+    order = max(options.settings.peak.polish, 24)  # the rim is met exactly, where quadrature is hardest
     for row, flat in enumerate(np.flatnonzero(results.good)):
         j, i = divmod(flat, n)
         e = results.ellipse
@@ -295,7 +359,7 @@ def subsurface(results: Results, options: Options) -> None:
             for plane, xs, ys in planes:
                 points = np.stack([np.tile(xs, depth_points), np.tile(ys, depth_points), np.repeat(depth, m)], axis=1)
                 one = NO_FIELD if fields is None else fields[row]
-                parts = stress_parts(rows[row], points, max(order, 12), order, one)
+                parts = stress_parts(rows[row], points, order, order, one)
                 s = p * (parts[:, 0] + nu[flat, body] * parts[:, 1]
                          + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3]))  # fmt: skip
                 v[f"stress_{plane}"][i, :, j, body] = s.T.reshape(6, depth_points, m)
@@ -304,19 +368,20 @@ def subsurface(results: Results, options: Options) -> None:
             v["xz_z"][i, j, body] = v["yz_z"][i, j, body] = depth
 
 
-def validity(results: Results) -> None:
+def validity(table: CaseTable, block: Block) -> None:
     """Bits that warn where the model leaves its ground, see `dataset.VALIDITY_BITS`."""
-    table, loads, v = results.scene.table, results.scene.loads, results.values
+    v = block.values
     bit = {name: 1 << i for i, name in enumerate(VALIDITY_BITS)}
-    r_g, alpha = table.guide_profile_radius, loads.contact_angle
-    smallest = np.min(np.abs([table.roller_profile_radius, r_g, loads.rolling_radius / np.cos(alpha),
+    r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)
+    r_a = rolling_radius(table.axis_distance, r_g, alpha)
+    smallest = np.min(np.abs([table.roller_profile_radius, r_g, r_a / np.cos(alpha),
                               table.guide_curve_radius / np.cos(alpha)]), axis=0)  # fmt: skip
     a = np.max(v["semi_axis_lateral"], axis=1)
     size = np.maximum(a, np.max(v["semi_axis_rolling"], axis=1))
     strength = np.minimum(table.roller.tensile_strength, table.guide.tensile_strength)
 
     def warn(name: str, condition: np.ndarray) -> None:
-        results.bits |= np.where(condition, bit[name], 0).astype(np.int32)
+        block.bits |= np.where(condition, bit[name], 0).astype(np.int32)
 
     with np.errstate(invalid="ignore"):
         warn("half_space", size > 0.3 * smallest)

@@ -1,0 +1,49 @@
+"""Plain results of a run of cases: taken, joined and finished without knowing where they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass
+class Block:
+    """Values by name, first axis the case (n,); `model` is the number of the contact model in `CONTACT_MODELS`."""
+
+    values: dict[str, np.ndarray]
+    regime: np.ndarray
+    converged: np.ndarray
+    bits: np.ndarray
+    model: np.ndarray
+    stopped: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.regime)
+
+    def take(self, rows: np.ndarray) -> Block:
+        """The cases `rows`; a row may be taken more than once."""
+        values = {name: array[rows] for name, array in self.values.items()}
+        return Block(values, self.regime[rows], self.converged[rows], self.bits[rows], self.model[rows],
+                     self.stopped[rows])  # fmt: skip
+
+
+def join(parts: Sequence[Block]) -> Block:
+    """Blocks one after another; fields of different grids are filled up with NaN."""
+    if len(parts) == 1:
+        return parts[0]
+    names = dict.fromkeys(name for part in parts for name in part.values)
+    values = {name: _joined([part.values[name] for part in parts]) for name in names}
+    plain = (np.concatenate([getattr(part, name) for part in parts])
+             for name in ("regime", "converged", "bits", "model", "stopped"))  # fmt: skip
+    return Block(values, *plain)
+
+
+def _joined(arrays: list[np.ndarray]) -> np.ndarray:
+    shapes = {array.shape[1:] for array in arrays}
+    if len(shapes) > 1:
+        shape = tuple(np.max([array.shape[1:] for array in arrays], axis=0))
+        arrays = [np.pad(array, [(0, 0), *((0, full - own) for full, own in zip(shape, array.shape[1:], strict=True))],
+                         constant_values=np.nan) for array in arrays]  # fmt: skip
+    return np.concatenate(arrays)
