@@ -105,7 +105,7 @@ def _shape(form: str, value: Mapping[str, Any], field: str) -> dict[str, Any]:
     x = [p[0] for p in out["points"]]
     if frame == "contact" and not x[0] < 0 < x[-1]:
         raise InputError(f"{field}.{form}", [x[0], x[-1]], "points on both sides of the nominal contact x = 0",
-                         "In `frame: contact` x counts from there; `frame: section` has x = 0 in the middle.")  # fmt: skip
+                         "In frame: contact x counts from there; frame: section has x = 0 in the middle.")  # fmt: skip
     smooth = value.get("smooth", 0.0)
     if smooth != "auto" and not (_is_number(smooth) and 0.0 <= float(smooth) < math.inf):
         raise InputError(f"{field}.smooth", smooth, "the standard deviation of the noise >= 0 [mm], or 'auto'")
@@ -211,7 +211,7 @@ def cross_section(text: str, body: str, radius: float, alpha: float, guide_radiu
     Without edges of its own, a circle ends at the middle of the guide, where the other flank begins, and at the
     guide's equator. Raises `InputError` if a drawn curve has nowhere the inclination of the contact.
     """
-    told = _parsed(text) if text else {"arc": radius}
+    told: dict[str, Any] = _parsed(text) if text else {"arc": radius}
     middle, equator = -guide_radius * math.sin(alpha), guide_radius * math.cos(alpha)
     if "arc" in told:
         shape = with_edges(arcs([told["arc"]], []), middle, equator)
@@ -222,12 +222,12 @@ def cross_section(text: str, body: str, radius: float, alpha: float, guide_radiu
         shape = with_edges(arcs([r["radius"] for r in rows], [r["to"] for r in rows[:-1]]), middle, equator)
     else:
         shape = _from_points(told, body, alpha, side)
-    edge = told.get("edge", {})
+    edge: dict[str, float] = told.get("edge", {})
     if "width" in told:
         reach = (0.5 * told["width"] - guide_radius * math.sin(alpha)) / math.cos(alpha)
         if reach <= 0.0:
-            raise InputError(f"{body}.width", told["width"],
-                             f"more than {2 * guide_radius * math.sin(alpha):.6g} mm, the distance of the contacts")  # fmt: skip
+            apart = 2 * guide_radius * math.sin(alpha)
+            raise InputError(f"{body}.width", told["width"], f"more than {apart:.6g} mm, the distance of the contacts")
         edge = {"outer": reach}
     return with_edges(shape, -edge.get("inner", math.inf), edge.get("outer", math.inf), edge.get("chamfer", 0.0))
 
@@ -244,7 +244,7 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, side: int) -> Cr
     x, z = x[x >= 0], z[x >= 0]
     if x.size < FEWEST:
         raise InputError(body, f"{x.size} points with x >= 0", f"at least {FEWEST} on the side of a contact",
-                         "`frame: section` has x = 0 in the middle of the guide; see also `frame: contact`.")  # fmt: skip
+                         "In frame: section x = 0 is the middle of the guide; see also frame: contact.")  # fmt: skip
     u, w = x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
     u, w = _single_valued(u, w)
     apex = _touching_point(u, w, noise, body, alpha)

@@ -14,7 +14,8 @@ import numpy as np
 from trackroller.contact import kalker_batch as batch
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.kalker_grid import unit_cells
+from trackroller.contact.kalker_grid import cells, unit_cells
+from trackroller.contact.normal_patch import GridPatch
 from trackroller.contact.sliding import rolling_slip
 
 BLOCK = 256  # patches whose tractions are held at once
@@ -116,19 +117,30 @@ class PatchSolution:
 def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings, elements: int, traction):
     """Solve on one grid; `traction` is the start. Returns slips and the report (n, REPORT)."""
     n = friction.size
-    height, share = unit_cells(elements, elements)
+    height, share = cells(ellipse, elements)
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+    centre = ellipse.centre if isinstance(ellipse, GridPatch) else np.zeros(n)
     scale = friction * ellipse.max_pressure
-    x = a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
+    x = centre[:, None] + a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
     law = settings.law or constant()
     with np.errstate(divide="ignore", invalid="ignore"):
         coupling = elastic.coupling / friction
     slip, report = np.empty_like(traction), np.empty((n, batch.REPORT))
     control = np.array([settings.tolerance, settings.steps, settings.krylov])
-    batch.solve_batch(a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x),
-                      creep.lateral, creep.spin, travel, height, share, law.speed, law.factor, control, traction, slip,
-                      report)  # fmt: skip
+    given = (a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x), creep.lateral,
+             creep.spin, travel)  # fmt: skip
+    for rows, own, share_own in _by_cells(height, share, n):
+        batch.solve_batch(*(v[rows] for v in given), own, share_own, law.speed, law.factor, control, traction[rows],
+                          slip[rows], report[rows])  # fmt: skip
+    report[:, batch.M_R] += centre * report[:, batch.F_A]
     return slip, report
+
+
+def _by_cells(height: np.ndarray, share: np.ndarray, n: int):
+    """Rows that share their elements, with these: all of them, or each its own."""
+    if height.ndim == 2:
+        return [(slice(0, n), height, share)]
+    return [(slice(i, i + 1), height[i], share[i]) for i in range(n)]
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -142,7 +154,9 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
             first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
         _, coarse = _level(ellipse, creep, friction, elastic, travel, settings, half, first)
         if start is None:
-            batch.refine(first, unit_cells(half, half)[0], unit_cells(elements, elements)[0], traction)
+            (low, _), (high, _) = cells(ellipse, half), cells(ellipse, elements)
+            for rows, own, above in _by_cells(low, high, n):
+                batch.refine(first[rows], own, above, traction[rows])
     slip, fine = _level(ellipse, creep, friction, elastic, travel, settings, elements, traction)
     value = fine[:, :3]
     error = np.full((n, 3), np.nan)
@@ -170,9 +184,11 @@ def _full(value, n: int) -> np.ndarray:
 
 def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np.ndarray, Elastic]:
     n = np.size(ellipse.semi_axis_lateral)
-    a, b, p = (_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure))
+    if not isinstance(ellipse, GridPatch):
+        ellipse = Ellipse(*(_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling,
+                                                  ellipse.max_pressure)))  # fmt: skip
     g, nu, k = (_full(v, n) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling))
-    return Ellipse(a, b, p), _full(friction, n), Elastic(g, nu, k)
+    return ellipse, _full(friction, n), Elastic(g, nu, k)
 
 
 def joined(parts: list[PatchSolution], order) -> PatchSolution:
@@ -190,7 +206,7 @@ def solve_patch(
 
     Parameters
     ----------
-    ellipse : Hertzian patches, arrays (n,)
+    ellipse : Hertzian patches, arrays (n,), or a `GridPatch` with `elements` that divide its own
     creep : rigid slip, arrays (n,)
     friction : friction coefficient mu [1], (n,) or scalar; 0 gives no traction
     elastic : combined constants, arrays (n,) or scalars
@@ -228,6 +244,8 @@ def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> Surface
     """Fields at the element centres of a solution; the pressure is that of Hertz there, 0 outside the ellipse."""
     n, _, ny, nx = solution.traction.shape
     ellipse, friction, _ = _prepared(ellipse, friction, Elastic(np.ones(n), np.ones(n), np.ones(n)))
+    if isinstance(ellipse, GridPatch):
+        return _grid_tractions(ellipse, friction, solution)
     u, v = ((2.0 * np.arange(m) + 1.0) / m - 1.0 for m in (nx, ny))
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - v[:, None] ** 2, 0.0))
     inside = root > 0
@@ -242,6 +260,16 @@ def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> Surface
         ellipse.semi_axis_lateral[:, None] * u, ellipse.semi_axis_rolling[:, None] * v,
         ellipse.max_pressure[:, None, None] * root, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], stick,
     )  # fmt: skip
+
+
+def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> SurfaceTractions:
+    """As `to_tractions`: means over the elements of a patch whose pressure was solved."""
+    scale = (friction * patch.max_pressure)[:, None, None]
+    shear, loaded = solution.traction * scale[:, None], patch.pressure > 0
+    slip = np.where(loaded[:, None], solution.slip, 0.0)
+    bound = friction[:, None, None] * patch.pressure
+    stick = loaded & (np.hypot(shear[:, 0], shear[:, 1]) < bound * (1.0 - 1e-9)) & (scale > 0)
+    return SurfaceTractions(patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], stick)
 
 
 def tractions(

@@ -1,10 +1,13 @@
-"""Elements over the unit circle, the ellipse of every patch after scaling: mean pressure and covered area."""
+"""Elements of a patch: mean pressure and covered area. Every ellipse is the unit circle after scaling."""
 
 from __future__ import annotations
 
 from functools import lru_cache
 
 import numpy as np
+
+from trackroller.contact.common import Ellipse
+from trackroller.contact.normal_patch import GridPatch
 
 
 def _column_integrals(x: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -29,6 +32,17 @@ def unit_cells(ny: int, nx: int) -> tuple[np.ndarray, np.ndarray]:
     height, share = ((np.diff(v, axis=0) * weights).sum(-1) * ny / 4.0 for v in integrals)
     height *= (2.0 * np.pi / 3.0) / (height.sum() * 4.0 / (nx * ny))
     share *= np.pi / (share.sum() * 4.0 / (nx * ny))
+    height.setflags(write=False)
+    share.setflags(write=False)
+    return height, share
+
+
+def cells(patch: Ellipse, elements: int) -> tuple[np.ndarray, np.ndarray]:
+    """`unit_cells` of ellipses, shared by all, or the mean pressures and loaded elements (n, ., .) of solved patches."""
+    if not isinstance(patch, GridPatch):
+        return unit_cells(elements, elements)
+    height = patch.heights(elements)
+    share = (height > 0).astype(float)
     height.setflags(write=False)
     share.setflags(write=False)
     return height, share

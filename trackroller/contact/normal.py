@@ -100,7 +100,8 @@ def solve_normal(
     p *= load / (p.sum() * area)
     residual, approach, step = np.inf, 0.0, 0
     direction, size_old, conjugate = np.zeros_like(p), 1.0, False
-    for step in range(1, ITERATIONS + 1):
+    while True:
+        step += 1
         total = surface.displacement(p) + gap
         inside = p > 0.0
         approach = float(total[inside].mean())
@@ -109,7 +110,7 @@ def solve_normal(
         outside = allowed & ~inside
         deepest = -float(deviation[outside].min()) if outside.any() else 0.0
         residual = max(float(np.abs(deviation[inside]).max()), deepest) / depth_scale
-        if residual <= tolerance:
+        if residual <= tolerance or step > ITERATIONS:
             break
         size = float(np.sum(deviation[inside] ** 2))
         if conjugate:

@@ -27,7 +27,7 @@ SAMPLES = 401  # points across, for the start and to look for contact outside th
 
 @dataclass(frozen=True)
 class Box:
-    """Rectangle around a patch: from `low` to `high` across, from -`half` to `half` along the rolling direction [mm]."""
+    """Rectangle around a patch: `low` to `high` across, -`half` to `half` along the rolling direction [mm]."""
 
     low: float
     high: float

@@ -1,0 +1,170 @@
+"""Contact models on patches and pressures solved on a grid: sliding and Kalker's, for any cross-sections.
+
+The equilibrium hands over Hertz's ellipse, which stands here for its normal force only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from trackroller.contact import normal_sliding
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.cross_sections import Gap
+from trackroller.contact.friction_laws import FrictionLaw
+from trackroller.contact.normal import TOLERANCE
+from trackroller.contact.normal_family import Family
+from trackroller.contact.normal_patch import GridPatch
+from trackroller.errors import InputError
+
+
+class Patches:
+    """Patches of n rollers under any load.
+
+    Parameters
+    ----------
+    gaps : the gap of roller `row` beside contact `side` (1 or 2), and a key that equal gaps share
+    modulus : contact modulus E* of the rollers [MPa], (n,)
+    elements : along each axis of the box around a patch
+    """
+
+    def __init__(self, gaps: Callable[[int, int], tuple[tuple, Gap]], modulus: np.ndarray, elements: int) -> None:
+        self.modulus, self.elements = modulus, elements
+        self._families: dict[tuple, Family] = {}
+        self._places: dict[tuple[int, int], Family] = {}
+        for row in range(len(modulus)):
+            for side in (1, 2):
+                key, gap = gaps(row, side)
+                if key not in self._families:
+                    self._families[key] = Family(gap, elements)
+                self._places[row, side] = self._families[key]
+
+    def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True) -> GridPatch:
+        """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`."""
+        n, m = len(load), self.elements
+        numbers, pressure = np.full((n, 9), np.nan), np.full((n, m, m), np.nan)
+        for i in np.flatnonzero(np.isfinite(load) & (load > 0)):
+            side, modulus = (1 if sine[i] > 0 else 2), self.modulus[rows[i]]
+            family = self._places[int(rows[i]), side]
+            if fine:
+                node = family.at(load[i] / modulus)
+                box, shares, rest = node.box, node.shares, (*node.scalars, node.reaches, node.residual)
+            else:
+                box, shares = family.between(load[i] / modulus)
+                rest = (math.nan, shares.max() / _cell(box, m) * load[i] / modulus, math.nan, False, math.nan)
+            outward = 1.0 if side == 1 else -1.0  # x counts outward in the family, along x_R here
+            wide, middle = 0.5 * (box.high - box.low), 0.5 * (box.high + box.low)
+            numbers[i] = (wide, box.half, rest[1] * modulus, load[i], outward * middle, rest[0], rest[2], *rest[3:])
+            pressure[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / _cell(box, m))
+        a, b, p, force, centre, approach, area, reaches, residual = np.ascontiguousarray(numbers.T)
+        return GridPatch(a, b, p, force, centre, pressure, approach, area, reaches == 1.0, residual)
+
+
+def _cell(box, m: int) -> float:
+    return 2.0 * box.half * (box.high - box.low) / (m * m)
+
+
+class _OnGrid:
+    """What both models share."""
+
+    full_sliding = False  # in the sense that an ellipse and a slip field tell the tractions
+    difference_step = 1e-3
+    residual = 1e-7
+
+    def __init__(self, patches: Patches) -> None:
+        self.patches = patches
+        self._found: dict[int, tuple[float, bool]] = {}
+
+    def patch(self, ellipse: Ellipse, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
+        """The patches that carry the normal forces of the ellipses."""
+        if isinstance(ellipse, GridPatch):
+            return ellipse
+        return self.patches.at(ellipse.normal_force, slip.sine, rows, fine)
+
+    def _remember(self, patch: GridPatch, slip: Slip, rows: np.ndarray) -> None:
+        for row, sine, residual in zip(rows, slip.sine, patch.residual, strict=True):
+            self._found[2 * int(row) + (sine < 0)] = (float(residual), bool(residual <= TOLERANCE))
+
+    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Residual of the patches of n rollers at the last fine call, and if it is met, (n,)."""
+        both = [[self._found.get(2 * i + k, (0.0, True)) for k in (0, 1)] for i in range(n)]
+        values = np.array(both, float).reshape(n, 2, 2)
+        return values[:, :, 0].max(axis=1), values[:, :, 1].min(axis=1) > 0
+
+
+class GridSlidingModel(_OnGrid):
+    """Full sliding on solved patches."""
+
+    def __init__(self, patches: Patches, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray) -> None:
+        super().__init__(patches)
+        self.spin_model, self.friction_law, self.travel = spin_model, law, travel_speed
+
+    def _solved(self, patch, slip, friction, rows) -> normal_sliding.SlidingPatches:
+        return normal_sliding.solve_sliding(patch, slip, friction, self.spin_model, self.friction_law,
+                                            self.travel[rows])  # fmt: skip
+
+    def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
+        """Resultants on the roller, shape (n,)."""
+        patch = self.patch(ellipse, slip, rows, fine)
+        if fine:
+            self._remember(patch, slip, rows)
+        return self._solved(patch, slip, friction, rows).resultants
+
+    def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
+        """Tractions on the grid of elements."""
+        patch = self.patch(ellipse, slip, rows)
+        return normal_sliding.tractions(patch, slip, friction, self.spin_model, self.friction_law, self.travel[rows])
+
+    def power(self, ellipse, slip, friction, rows) -> np.ndarray:
+        """Dissipation per distance travelled [N], shape (n,)."""
+        patch = self.patch(ellipse, slip, rows)
+        return self._solved(patch, slip, friction, rows).power / slip.rolling_radius
+
+
+class GridKalkerModel(_OnGrid):
+    """Kalker's theory of rolling with the traction bound of solved pressures."""
+
+    def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray) -> None:
+        from trackroller.contact.kalker import KalkerSettings
+        from trackroller.contact.kalker_law import KalkerLaw
+
+        super().__init__(patches)
+        settings = KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law)
+        self._law = KalkerLaw(elastic, settings, travel_speed)
+
+    def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
+        """Resultants on the roller, shape (n,)."""
+        patch = self.patch(ellipse, slip, rows, fine)
+        if fine:
+            self._remember(patch, slip, rows)
+        return self._law(patch, slip, friction, rows, fine)
+
+    def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
+        """Tractions on the grid of elements."""
+        from trackroller.contact import kalker
+
+        patch = self.patch(ellipse, slip, rows)
+        return kalker.to_tractions(patch, friction, self._law.kept(patch, slip, friction, rows))
+
+    def power(self, ellipse, slip, friction, rows) -> np.ndarray:
+        """Dissipation per distance travelled [N], shape (n,)."""
+        solution = self._law.kept(self.patch(ellipse, slip, rows), slip, friction, rows)
+        return solution.friction_energy_per_distance * (1.0 + solution.energy_residual)
+
+    def state(self, n):
+        normal, tangential = super().state(n), self._law.state(n)
+        return np.maximum(normal[0], tangential[0]), normal[1] & tangential[1]
+
+
+def grid_model(
+    name: str, patches: Patches, elastic: Elastic, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray
+) -> GridSlidingModel | GridKalkerModel:
+    """The contact model `name` on solved patches; `InputError` for one that knows ellipses only."""
+    if name == "sliding":
+        return GridSlidingModel(patches, spin_model, law, travel_speed)
+    if name == "kalker":
+        return GridKalkerModel(patches, elastic, law, travel_speed)
+    raise InputError("contact_model", name, "sliding or kalker with normal: halfspace",
+                     "The flexibilities of fastsim are those of ellipses.")  # fmt: skip

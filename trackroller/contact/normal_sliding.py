@@ -1,0 +1,114 @@
+"""Full sliding with an empirical spin pole under pressures solved on a grid.
+
+The model of `contact.sliding`, eqs (21)-(30), with the semi-axes of the spin pole's rules those of the box around the
+patch. In each element the pressure is constant: across the rolling direction by Gauss points, along it in closed form.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trackroller.contact.common import Resultants, Slip, SurfaceTractions
+from trackroller.contact.friction_laws import FrictionLaw, constant
+from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.sliding import spin_model_index
+
+POINTS = 4  # Gauss points across each element
+PIECES = 3  # of each element along the rolling direction, in which a falling friction law is constant
+_TINY = 1e-13
+
+
+@dataclass(frozen=True)
+class SlidingPatches:
+    """Resultants on the roller, dissipation per angular speed [N mm per rad] and mean shear of each element [MPa]."""
+
+    resultants: Resultants
+    power: np.ndarray
+    shear_lateral: np.ndarray
+    shear_rolling: np.ndarray
+
+
+def _slip_of(x: np.ndarray, patch: GridPatch, slip: Slip, i: int, model: int) -> tuple[np.ndarray, np.ndarray]:
+    """v_y / omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22), (25) [mm]."""
+    s, c, r, shift = slip.sine[i], slip.cosine[i], slip.guide_profile_radius[i], slip.shift[i]
+    rest = r * r * c * c - x * c * (2.0 * r * s + x * c)
+    root = np.sqrt(np.maximum(rest, 0.0))
+    along = np.where(rest < 0.0, shift - r * c, shift - x * c * (2.0 * r * s + x * c) / (root + r * c))
+    a, b, middle = patch.semi_axis_lateral[i], patch.semi_axis_rolling[i], patch.centre[i]
+    u, pole = x - middle, shift / s - middle
+    if model == 0 or abs(pole) >= a:
+        return along, np.zeros_like(x)
+    depth = -b * np.sqrt(1.0 - (pole / a) ** 2)
+    if model == 1:
+        return along, np.full_like(x, depth)
+    return along, depth * np.where(u < pole, (u + a) / (pole + a), (u - a) / (pole - a))
+
+
+def solve_sliding(
+    patch: GridPatch, slip: Slip, friction: np.ndarray, spin_model: str = "skewed", law: FrictionLaw | None = None,
+    travel_speed: np.ndarray | float = 1.0,
+) -> SlidingPatches:  # fmt: skip
+    """Friction of n sliding patches, tau = -mu f(|v|) p v/|v|.
+
+    Parameters
+    ----------
+    patch, slip : arrays (n,); friction : coefficient mu [1], (n,)
+    spin_model : 'concentric' | 'edge' | 'skewed'
+    law, travel_speed : friction by slip speed and omega r_A [mm/s], (n,) or scalar
+
+    Error against `contact.sliding` on Hertz's ellipse with 40 elements: 1e-3 of mu F_N (tests/test_normal_models.py).
+    """
+    n, m = len(patch.load), patch.elements
+    law, model = law or constant(), spin_model_index(spin_model)
+    travel = np.broadcast_to(np.asarray(travel_speed, float), (n,))
+    nodes, weights = np.polynomial.legendre.leggauss(POINTS)
+    total, shear = np.empty((n, 4)), np.empty((n, 2, m, m))
+    for i in range(n):
+        hx, hy = 2 * patch.semi_axis_lateral[i] / m, 2 * patch.semi_axis_rolling[i] / m
+        x = (patch.x[i][:, None] + 0.5 * hx * nodes).reshape(-1)
+        along, offset = _slip_of(x, patch, slip, i, model)
+        per_omega = travel[i] / slip.rolling_radius[i]
+        means = _column_means(x, along, offset, slip.sine[i], patch.semi_axis_rolling[i], m, law, per_omega)
+        across = (means.reshape(4, m, POINTS, m) * (0.5 * weights)[:, None]).sum(axis=2).transpose(0, 2, 1)
+        bound = friction[i] * patch.pressure[i]
+        shear[i] = across[:2] * bound
+        total[i] = (across * bound).sum(axis=(1, 2)) * hx * hy
+    return SlidingPatches(Resultants(total[:, 0], total[:, 1], total[:, 2]), total[:, 3], shear[:, 0], shear[:, 1])
+
+
+def _column_means(x, along, offset, sine, half, m, law, per_omega) -> np.ndarray:
+    """Means over the m elements of each column of -v_x/|v|, -v_y/|v|, their moment and |v|/omega, (4, columns, m)."""
+    pieces = 1 if law.is_constant else PIECES
+    edges = half * np.linspace(-1.0, 1.0, m * pieces + 1)
+    eps = np.maximum(np.abs(along / sine), _TINY * half)[:, None]
+    t = edges - offset[:, None]
+    rho, angle = np.hypot(t, eps), np.arcsinh(t / eps)
+    mixed = 0.5 * eps * eps * angle
+    tilt, turn = np.diff(rho, axis=1), np.diff(eps * angle, axis=1)
+    lever = np.diff(0.5 * t * rho - mixed, axis=1) + offset[:, None] * tilt
+    speed = abs(sine) * np.diff(0.5 * t * rho + mixed, axis=1)
+    sign, sign_along = np.sign(sine), np.where(along > 0, 1.0, -1.0)[:, None]
+    parts = np.stack([-sign * tilt, -sign_along * turn, sign * lever - x[:, None] * sign_along * turn, speed])
+    step = 2.0 * half / m
+    if pieces > 1:
+        parts = parts * law(speed / (step / pieces) * per_omega)
+        parts = parts.reshape(4, x.size, m, pieces).sum(axis=3)
+    return parts / step
+
+
+def tractions(
+    patch: GridPatch, slip: Slip, friction, spin_model="skewed", law=None, travel_speed=1.0
+) -> SurfaceTractions:
+    """Pressure and mean shear of each element, and the slip at its centre per travel speed; see `solve_sliding`."""
+    found = solve_sliding(patch, slip, friction, spin_model, law, travel_speed)
+    model, loaded = spin_model_index(spin_model), patch.pressure > 0
+    slip_x, slip_y = np.empty(patch.pressure.shape), np.empty(patch.pressure.shape)
+    for i in range(len(patch.load)):
+        along, offset = _slip_of(patch.x[i], patch, slip, i, model)
+        slip_x[i] = slip.sine[i] * (patch.y[i][:, None] - offset) / slip.rolling_radius[i]
+        slip_y[i] = along / slip.rolling_radius[i]
+    return SurfaceTractions(patch.x, patch.y, patch.pressure, found.shear_lateral, found.shear_rolling,
+                            np.where(loaded, slip_x, 0.0), np.where(loaded, slip_y, 0.0),
+                            np.zeros(loaded.shape, bool))  # fmt: skip
