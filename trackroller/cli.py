@@ -147,7 +147,7 @@ def materials_add(
 
 def main() -> None:
     """Entry point: every foreseeable error is one line on stderr."""
-    from trackroller.study.files import WorkError
+    from trackroller.study.files import WorkError, disk_error
 
     try:
         app()
@@ -162,4 +162,7 @@ def main() -> None:
         raise SystemExit(1) from None
     except BrokenPipeError:
         sys.stderr.close()
+        raise SystemExit(1) from None
+    except OSError as exc:
+        print(f"trackroller: {disk_error(exc, Path(str(exc.filename or 'a file')))}", file=sys.stderr)
         raise SystemExit(1) from None

@@ -15,12 +15,14 @@ from trackroller.plots.study_loads import forces_against_axial, stress_against_f
 from trackroller.plots.study_maps import life_map
 from trackroller.plots.study_regimes import regime_map
 from trackroller.plots.study_view import StudyView
+from trackroller.plots.woehler import woehler
 
 log = logging.getLogger(__name__)
 FIGURES: tuple[Callable[[StudyView], Any], ...] = (
     life_against_friction,
     stress_against_fit,
     life_map,
+    woehler,
     forces_against_axial,
     main_effects,
     regime_map,
@@ -54,6 +56,8 @@ def draw_all(study_nc: Path, out_dir: Path) -> list[style.FigureInfo]:
                     continue
                 figure, info = drawn
                 style.save(figure, Path(out_dir), info.name)
+            except OSError:  # a full disk is not the figure's fault
+                raise
             except Exception as problem:
                 log.warning("figure %s was not drawn: %s", draw.__name__, problem, exc_info=True)
                 continue

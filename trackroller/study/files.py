@@ -65,25 +65,29 @@ class StudyFolder:
         return self.root / "store" / f"{chunk}.lock"
 
     def create(self) -> StudyFolder:
-        """Make the folders; raises `InputError` when that is not possible."""
+        """Make the folders; raises `WorkError` where nothing can be written, `InputError` for what is no folder."""
         try:
             for name in ("plan", "chunks", "store"):
                 (self.root / name).mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryFile(dir=self.root / "store"):
                 pass
         except OSError as exc:
-            if exc.errno == errno.ENOSPC:
-                raise disk_error(exc, self.root) from None
-            raise InputError("results folder", str(self.root), f"it cannot be written ({exc.strerror})",
-                             "Mend its rights or choose another with --results.") from None  # fmt: skip
+            if exc.errno in (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP):
+                raise InputError("results folder", str(self.root), f"it cannot be a folder ({exc.strerror})",
+                                 "Choose another with --results.") from None  # fmt: skip
+            raise disk_error(exc, self.root) from None
         return self
 
 
 def disk_error(exc: OSError, path: Path) -> WorkError:
     """A message for a write that failed, with what to do."""
-    what = "the disk is full" if exc.errno in (errno.ENOSPC, errno.EDQUOT) else f"writing failed ({exc})"
-    return WorkError(f"{path}: {what}. Free some space or mend the folder's rights, then start again: "
-                     "every finished case is kept.")  # fmt: skip
+    if exc.errno in (errno.ENOSPC, errno.EDQUOT):
+        what, remedy = "the disk is full", "Free some space"
+    elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
+        what, remedy = f"it cannot be written ({exc.strerror})", "Mend its rights (or choose another --results)"
+    else:
+        what, remedy = f"writing failed ({exc.strerror or exc})", "Mend the folder or the disk"
+    return WorkError(f"{path}: {what}. {remedy}, then start again: every finished case is kept.")
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
@@ -92,18 +96,18 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     `write` gets the path of the temporary file. A failure leaves nothing behind; `OSError` (and netCDF's
     RuntimeError for a full disk) becomes `WorkError`.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         write(beside)
         with open(beside, "rb+") as stream:
             os.fsync(stream.fileno())
         os.replace(beside, path)
         _sync_folder(path.parent)
-    except OSError as exc:
-        raise disk_error(exc, path) from exc
-    except RuntimeError as exc:  # the netCDF library hides the operating system's error
-        free = os.statvfs(path.parent)
+    except (OSError, RuntimeError) as exc:
+        if isinstance(exc, OSError) and (exc.errno or 0) > 0:
+            raise disk_error(exc, path) from exc
+        free = os.statvfs(path.parent)  # the netCDF library hides the operating system's error
         code = errno.ENOSPC if free.f_bavail * free.f_frsize < 16_000_000 else errno.EIO
         raise disk_error(OSError(code, str(exc)), path) from exc
     finally:
@@ -137,8 +141,8 @@ def locked(path: Path, tell: Callable[[str], None] | None = None) -> Iterator[No
     """Hold a lock that the system releases when the process ends, however it ends."""
     import fcntl
 
-    path.parent.mkdir(parents=True, exist_ok=True)
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         stream = open(path, "a")
     except OSError as exc:
         raise disk_error(exc, path) from None
