@@ -29,6 +29,10 @@ OPTIONS = (
     ("hertz", p.HERTZ, "exact", "elliptic integrals, or the table of the published program"),
     ("stress_bodies", p.STRESS_BODIES, "both", "each body with its own Poisson's ratio, or one with the mean"),
     ("life_rule", p.LIFE_RULES, "elementary", "what happens below the fatigue limit"),
+    ("normal", p.NORMAL, "hertz", "pressures of Hertz, or patch and pressure solved on a grid (drawn profiles)"),
+    ("contact_tolerance", ("a number in (0, 1)",), "0.05", "relative tolerance of the contact forces, for `auto`"),
+    ("stop_if", ("a condition",), "none", "cases for which it holds are not searched for peak stresses"),
+    ("shortcuts", ("true", "false"), "true", "spare what symmetry and repetition make superfluous"),
 )
 
 
@@ -65,6 +69,7 @@ def render() -> str:
     lines += [
         "`roller_material` and `guide_material` take a name of the material database, or a mapping of material values;",
         "the default is `1.7225-normalised`. Both relative curvatures must be positive, else the input is refused.\n",
+        *_table(("name", "meaning"), [(f"`{name}`", told) for name, told in p.MAPPING_FIELDS.items()]),
         "## Options\n",
     ]
     lines += _table(
@@ -83,6 +88,9 @@ def render() -> str:
         )  # fmt: skip
     lines += ["### regime\n", "`regime` is an integer; each row has one.\n"]
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
+    lines += ["### contact_model_used, stopped\n",
+              "`contact_model_used` (with `contact_model: auto`): 0 sliding, 1 fastsim, 2 kalker.",
+              "`stopped` (with `stop_if`): 1 where the condition holds.\n"]
     lines += ["### validity\n", "`validity` is a sum of bits; 0 means that nothing is to be said.\n"]
     bits = [(1 << i, f"`{name}`", meaning) for i, (name, meaning) in enumerate(VALIDITY_BITS.items())]
     lines += _table(("bit", "name", "meaning"), bits)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
-OPTIONS = ("contact_model", "spin_model", "hertz", "stress_bodies", "life_rule", "accuracy")
+OPTIONS = ("contact_model", "spin_model", "hertz", "stress_bodies", "life_rule", "accuracy", "normal", "stop_if")
 _TOLD = {
     "study",
     "materials",

@@ -22,6 +22,7 @@ from trackroller.parameters import (
     OUTPUT_GROUPS,
     STRESS_BODIES,
 )
+from trackroller.stop import parse_condition
 from trackroller.study.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.factors import LISTS
 from trackroller.study.goals import Analysis, check, comparisons, directions
@@ -68,9 +69,12 @@ class StudyFile(BaseModel):
     hertz: str = Field("exact", description="exact elliptic integrals or the published table")
     stress_bodies: str = Field("both", description="each body with its own nu, or as published")
     life_rule: str = Field("elementary", description="below the fatigue limit: line goes on, Haibach, or no failure")
-    analysis: Analysis = Field(default_factory=Analysis, description="what is analysed, and how; see docs/analyses.md")
+    analysis: Analysis = Field(default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how; see docs/analyses.md")
     pareto: dict[str, str] = Field({}, description="outputs or factors with max or min: the designs no other beats")
     constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
+    normal: str | tuple[str, ...] = Field("hertz", description="Hertz pressures, or solved on a grid (drawn profiles)")
+    contact_tolerance: float = Field(0.05, gt=0, lt=1, description="of the forces, for contact_model: auto")
+    stop_if: str | None = Field(None, description="condition on which no peak stress is searched for")
     chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases a job; chosen if not given")
 
     @field_validator("name", mode="before")
@@ -94,7 +98,14 @@ class StudyFile(BaseModel):
             raise InputError("outputs", list(value), "each group may stand once")
         return value
 
-    @field_validator("contact_model", "spin_model")
+    @field_validator("stop_if")
+    @classmethod
+    def _stop_if(cls, value: str | None) -> str | None:
+        if value is not None:
+            parse_condition(value)
+        return value
+
+    @field_validator("contact_model", "spin_model", "normal")
     @classmethod
     def _models(cls, value: str | tuple[str, ...], info: Any) -> str | tuple[str, ...]:
         several = (value,) if isinstance(value, str) else value
@@ -193,7 +204,8 @@ class Study:
     @property
     def options(self) -> dict[str, Any]:
         """Keyword arguments of `solve`; those that are factors are missing."""
-        names = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule")
+        names = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
+                 "contact_tolerance", "stop_if")
         values = {name: getattr(self.config, name) for name in names if name not in self.factors}
         return values
 

@@ -9,7 +9,7 @@ from typing import Any
 # Cases a second on one core, measured on a 2-core machine at `standard` accuracy; orders of magnitude.
 _RATES = {"forces": 800.0, "contact": 20000.0, "friction_work": 4000.0, "peak_stress": 75.0, "life": 75.0,
           "tractions": 100.0, "subsurface": 4.0}  # fmt: skip
-_MODELS = {"sliding": 1.0, "fastsim": 20.0, "kalker": 400.0}  # times the cost of the forces
+_MODELS = {"sliding": 1.0, "fastsim": 20.0, "kalker": 400.0, "auto": 40.0}  # times the cost of the forces
 _ACCURACY = {"preview": 0.5, "standard": 1.0, "reference": 6.0}
 _BYTES = {"forces": 200, "contact": 120, "friction_work": 40, "peak_stress": 160, "life": 90,
           "tractions": 300_000, "subsurface": 1_500_000}  # fmt: skip

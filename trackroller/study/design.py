@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.case import geometry_problem
 from trackroller.errors import InputError
-from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.factors import label, parse
 from trackroller.study.goals import check_scatter
 from trackroller.study.sampling import OPTIONS, SampledDesign, sample
@@ -25,6 +25,11 @@ MAX_CASES = 20_000_000
 _GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius",
              "contact_angle")  # fmt: skip
 _DEFAULT_MATERIAL = "1.7225-normalised"
+
+
+def case_columns(known: Any) -> tuple[str, ...]:
+    """Names of the case fields among the columns of a design; mappings are there only where a study has them."""
+    return (*PARAMETERS, *MATERIAL_FIELDS, *(name for name in MAPPING_FIELDS if name in known))
 
 
 def draw(study: Study) -> SampledDesign:
@@ -70,7 +75,7 @@ def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
     for name, parameter in PARAMETERS.items():
         attrs = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
         data[name] = ("case", columns.pop(name), attrs)
-    for name in MATERIAL_FIELDS:
+    for name in case_columns(columns)[len(PARAMETERS) :]:
         attrs = {"long_name": name.replace("_", " ")}
         data[name] = ("case", columns.pop(name).astype(str).astype(object), attrs)
     coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}

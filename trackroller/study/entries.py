@@ -7,12 +7,22 @@ from collections.abc import Mapping
 from typing import Any
 
 from trackroller.errors import InputError, nearest, unknown_name
-from trackroller.parameters import CONTACT_MODELS, FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS, SPIN_MODELS
+from trackroller.parameters import (
+    CONTACT_MODELS,
+    FRICTION_LEVELS,
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    NORMAL,
+    PARAMETERS,
+    SPIN_MODELS,
+)
 from trackroller.study import expressions
 from trackroller.study.factors import LISTS, parse
 
-CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS)
-OPTION_FACTORS: dict[str, tuple[str, ...]] = {"contact_model": CONTACT_MODELS, "spin_model": SPIN_MODELS}
+CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
+OPTION_FACTORS: dict[str, tuple[str, ...]] = {
+    "contact_model": CONTACT_MODELS, "spin_model": SPIN_MODELS, "normal": NORMAL,
+}  # fmt: skip
 MAX_LEVELS = 1_000_000
 FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 
@@ -32,6 +42,8 @@ def base_value(key: Any, value: Any) -> Any:
         raise unknown_name("base", str(key), (*CASE_FIELDS, "material_pair"))
     if key in MATERIAL_FIELDS:
         return _material_name(value, f"base.{key}")
+    if key in MAPPING_FIELDS:
+        return _mapping(key, value, f"base.{key}")
     return _number(key, value, f"base.{key}")
 
 
@@ -40,6 +52,17 @@ def _material_name(value: Any, where: str) -> str:
         raise InputError(where, value, "the name of a material in the database",
                          "Put your own into config/materials.yaml (`trackroller materials add`).")  # fmt: skip
     return value
+
+
+def _mapping(name: str, value: Any, where: str) -> str:
+    """A friction law or profile as its canonical text."""
+    from trackroller.case import mapping_text
+
+    try:
+        return mapping_text(name, value)
+    except InputError as exc:
+        field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"
+        raise InputError(field, exc.value, exc.allowed, exc.remedy) from None
 
 
 def _pair(value: Any, where: str) -> tuple[str, str]:
@@ -113,6 +136,8 @@ def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
         return value
     if key in OPTION_FACTORS:
         return [choice(v, where, OPTION_FACTORS[key]) for v in value]
+    if key in MAPPING_FIELDS:
+        return [_mapping(key, v, where) for v in value]
     return [_material_name(v, where) for v in value]
 
 

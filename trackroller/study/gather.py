@@ -12,7 +12,7 @@ import numpy as np
 
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import provenance, store
-from trackroller.study.design import build, draw
+from trackroller.study.design import build, case_columns, draw
 from trackroller.study.factors import Factor, label
 from trackroller.study.files import WorkError, write_whole
 from trackroller.study.mend import Tell
@@ -175,7 +175,7 @@ def _write_axes(file: Any, design: Any, axes: Axes, drawn: dict[str, np.ndarray]
     extra = {name: design[name].values for name in design.coords if name != "case"}
     if "material_pair" in drawn and "material_pair" not in axes.factors:
         extra["material_pair"] = np.array([label(v) for v in drawn["material_pair"]], dtype=object)
-    columns = {name: design[name].values for name in (*PARAMETERS, *MATERIAL_FIELDS)} | extra
+    columns = {name: design[name].values for name in case_columns(design)} | extra
     for name, values in columns.items():
         if name in axes.factors and set(axes.factors[name].levels) & {*FRICTION_LEVELS, None}:
             name = f"{name}_value"

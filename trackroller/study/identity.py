@@ -2,8 +2,8 @@
 
 A fingerprint is the SHA-256 (first 128 bits, as hex) of: `RESULTS_VERSION`, the options of the solver
 (outputs, contact model, spin model where it matters, accuracy, hertz, stress_bodies, life_rule), the numeric
-parameters of the case with the friction coefficient resolved, and the *values* (not the names) of both
-materials. Two cases with the same fingerprint have the same results, so a case that is in the store is never
+parameters of the case with the friction coefficient resolved, friction law and profiles, and the *values* (not the names)
+of both materials. Two cases with the same fingerprint have the same results, so a case that is in the store is never
 solved again, whatever study, chunk or order it came from.
 """
 
@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 
-RESULTS_VERSION = 1  # raise it with every change of the solver that changes numbers: all cases are solved anew
+RESULTS_VERSION = 2  # raise it with every change of the solver that changes numbers: all cases are solved anew
 
 _MATERIAL_VALUES = ("youngs_modulus", "poisson_ratio", "tensile_strength", "fatigue_limit",
                     "cycles_at_tensile_strength", "cycles_at_fatigue_limit")  # fmt: skip
@@ -29,8 +29,11 @@ _PHYSICS = ("solver.py", "equilibrium.py", "geometry.py", "fatigue.py", "accurac
 def _prefix(options: Mapping[str, Any]) -> bytes:
     """The options as canonical bytes; the order of the output groups does not matter."""
     told = {k: sorted(v) if isinstance(v, (list, tuple)) else v for k, v in options.items()}
-    if told.get("contact_model") != "sliding":
+    if told.get("contact_model") not in ("sliding", "auto"):
         told.pop("spin_model", None)
+    if told.get("contact_model") != "auto":
+        told.pop("contact_tolerance", None)
+    told.pop("shortcuts", None)
     told["results_version"] = RESULTS_VERSION
     return json.dumps(told, sort_keys=True).encode()
 
@@ -58,10 +61,14 @@ def fingerprints(table: Any, options: list[dict[str, Any]] | dict[str, Any]) -> 
     else:
         known: dict[int, Any] = {}
         heads = [known.setdefault(id(o), hashlib.sha256(_prefix(o))) for o in options]
+    texts = [getattr(table, name) for name in MAPPING_FIELDS]
+    told = [column for column in texts if np.any(column != "")]
     out = np.empty(len(rows), dtype="S32")
     for i, row in enumerate(rows):
         digest = heads[i].copy()
         digest.update(row.tobytes())
+        if told:
+            digest.update(json.dumps([column[i] for column in texts]).encode())
         out[i] = digest.hexdigest()[:32]
     return out
 

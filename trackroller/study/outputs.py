@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIMES
 
 BOOKKEEPING = {"regime", "converged", "residual", "validity", "error_estimate", "reason", "material_pair"}
 FIELDS = {"x", "y", "z", "grid"}
@@ -89,7 +89,7 @@ def flat(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
 
 
 def _available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
-    known = set(factors) | set(PARAMETERS) | set(MATERIAL_FIELDS) | BOOKKEEPING
+    known = set(factors) | set(PARAMETERS) | set(MATERIAL_FIELDS) | set(MAPPING_FIELDS) | BOOKKEEPING
     return [
         str(name)
         for name, var in ds.data_vars.items()

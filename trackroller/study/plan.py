@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.case import to_table
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import store
-from trackroller.study.design import build, table_path
+from trackroller.study.design import build, case_columns, table_path
+from trackroller.study.entries import OPTION_FACTORS
 from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
 from trackroller.study.growth import with_history
 from trackroller.study.identity import RESULTS_VERSION, chunk_name, fingerprints
@@ -80,7 +80,7 @@ def study_folder(study_name: str, results: Path | str = "results") -> StudyFolde
 def case_options(study: Study, design: xr.Dataset) -> tuple[list[dict[str, Any]] | dict[str, Any], np.ndarray]:
     """Options of `solve` for each case, and the group of equal options each case belongs to, shape (n,)."""
     n = design.sizes["case"]
-    varying = [name for name in ("contact_model", "spin_model") if name in design.coords]
+    varying = [name for name in OPTION_FACTORS if name in design.coords]
     if not varying:
         return study.options, np.zeros(n, dtype=int)
     keys = list(zip(*[design[name].values.tolist() for name in varying], strict=True))
@@ -230,7 +230,7 @@ def _write_list(
     name = chunk_name(listed)
     path = folder.case_list(name)
     if not path.is_file():
-        columns = {key: design[key].values[rows] for key in (*PARAMETERS, *MATERIAL_FIELDS)}
+        columns = {key: design[key].values[rows] for key in case_columns(design)}
         _save_list(path, listed, columns, options)
     return name
 
@@ -247,7 +247,7 @@ def _save_list(path: Path, cases: np.ndarray, columns: dict[str, np.ndarray], op
 def load_list(folder: StudyFolder, name: str) -> CaseList:
     """The case list of a chunk."""
     with np.load(folder.case_list(name), allow_pickle=False) as file:
-        columns = {key: file[key] for key in (*PARAMETERS, *MATERIAL_FIELDS)}
+        columns = {key: file[key] for key in case_columns(file)}
         columns = {k: v.astype(object) if v.dtype.kind == "U" else v for k, v in columns.items()}
         return CaseList(name, file["cases"], columns, json.loads(str(file["options"])))
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.errors import InputError
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import PARAMETERS
 from trackroller.study import store
-from trackroller.study.design import build
+from trackroller.study.design import build, case_columns
 from trackroller.study.files import WorkError
 from trackroller.study.growth import with_history
 from trackroller.study.plan import case_options, identify, study_folder
@@ -40,7 +40,7 @@ class Repeat:
         for key, value in (self.case | self.options).items():
             if key == "outputs":
                 value = ",".join(value)
-            if not (isinstance(value, float) and np.isnan(value)):
+            if value is not None and not (isinstance(value, float) and np.isnan(value)):
                 words += ["--set", f"{key}={value!r}" if isinstance(value, float) else f"{key}={value}"]
         return " ".join(shlex.quote(word) for word in words)
 
@@ -68,7 +68,7 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
         old = before.columns(name)[0]
         new = again.columns(name)[0] if name in again.layout else np.full(old.shape, np.nan)
         differences[name] = _difference(old, new)
-    case = {name: row[name].values[0] for name in (*PARAMETERS, *MATERIAL_FIELDS)}
+    case = {name: row[name].values[0] for name in case_columns(row)}
     return Repeat({k: float(v) if k in PARAMETERS else str(v) for k, v in case.items()}, dict(told), differences)
 
 

@@ -10,6 +10,7 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.study.entries import OPTION_FACTORS
 from trackroller.study.factors import Factor
 from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study
 from trackroller.study.sampling import OPTIONS, SampledDesign, sample
@@ -25,7 +26,7 @@ def design_of(ds: xr.Dataset, study: Mapping[str, Any] | None = None) -> Sampled
     if not method:
         raise InputError("study", ds.attrs.get("study"), "a result with its merged study file as attribute `study`")
     specs = dict(study.get("factors", {}))
-    for name in ("contact_model", "spin_model"):
+    for name in OPTION_FACTORS:
         if isinstance(study.get(name), list):
             specs[name] = {"values": study[name]}
     if method == "table":

@@ -10,6 +10,7 @@ from trackroller.parameters import (
     ACCURACIES,
     HERTZ,
     LIFE_RULES,
+    MAPPING_FIELDS,
     MATERIAL_FIELDS,
     OUTPUT_GROUPS,
     PARAMETERS,
@@ -43,6 +44,7 @@ def schema() -> dict[str, Any]:
         base[name] = {"description": f"{parameter.allowed()}; {parameter.meaning}"}
     pair = {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2}
     base |= {name: {"type": "string"} for name in MATERIAL_FIELDS} | {"material_pair": pair}
+    base |= {name: {"type": ["object", "string", "null"], "description": told} for name, told in MAPPING_FIELDS.items()}
     properties["base"] |= {"properties": base, "additionalProperties": False}
     named = {name: _factor() | ({"description": PARAMETERS[name].allowed()} if name in PARAMETERS else {})
              for name in (*base, *OPTION_FACTORS)}  # fmt: skip

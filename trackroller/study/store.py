@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.files import write_whole
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def from_dataset(dataset: xr.Dataset, cases: np.ndarray, seconds: float = 0.0) -
     layout: dict[str, Layout] = {}
     coords: dict[str, dict[str, Any]] = {}
     columns = []
-    skip = {*PARAMETERS, *MATERIAL_FIELDS, "case", "reason"}
+    skip = {*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, "case", "reason"}
     for name, variable in dataset.variables.items():
         if name in skip:
             continue
