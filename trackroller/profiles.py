@@ -38,7 +38,7 @@ FRAMES = ("section", "contact")
 FEWEST, MOST = 5, 20_000  # points of a drawn cross-section
 
 
-def canonical(value: Mapping[str, Any], field: str) -> dict[str, Any]:
+def canonical(value: Mapping[str, Any], field: str = "profile") -> dict[str, Any]:
     """A checked mapping of plain numbers that tells the same cross-section, files read into points.
 
     Parameters
