@@ -1,5 +1,6 @@
 """Load spectra: overrollings and damage per shift, life in shifts, and files that are wrong."""
 
+import json
 import math
 from pathlib import Path
 
@@ -226,3 +227,23 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path, text, parts):
     assert all(part in str(caught.value) for part in parts), str(caught.value)
     with pytest.raises(InputError, match=r"gone\.yaml"):
         load_spectrum(tmp_path / "gone.yaml")
+
+
+def test_command_prints_the_shifts_of_the_delivered_example(tmp_path):
+    """`trackroller spectrum FILE`: table and sentences, JSON, netCDF; a misspelt field ends with its name."""
+    from typer.testing import CliRunner
+
+    from trackroller.cli import app
+
+    path = str(ROOT / "config" / "spectra" / "sorter.yaml")
+    said = CliRunner().invoke(app, ["spectrum", path])
+    assert said.exit_code == 0 and "The roller lasts" in said.output and "empty return" in said.output
+    told = json.loads(CliRunner().invoke(app, ["spectrum", path, "--json"]).output)
+    assert told["regime"]["meaning"] == ["rolling"] * 3
+    assert f"{told['roller_life_shifts']['value']:.4g} shifts" in said.output
+    assert CliRunner().invoke(app, ["spectrum", path, "-o", str(tmp_path / "out.nc")]).exit_code == 0
+    with xr.open_dataset(tmp_path / "out.nc") as kept:
+        assert float(kept["roller_life_shifts"]) == told["roller_life_shifts"]["value"]
+    (tmp_path / "wrong.yaml").write_text("blocks: [{name: a, distanc: 3}]")
+    refused = CliRunner().invoke(app, ["spectrum", str(tmp_path / "wrong.yaml")])
+    assert isinstance(refused.exception, InputError) and "distanc" in str(refused.exception)

@@ -69,7 +69,9 @@ class StudyFile(BaseModel):
     hertz: str = Field("exact", description="exact elliptic integrals or the published table")
     stress_bodies: str = Field("both", description="each body with its own nu, or as published")
     life_rule: str = Field("elementary", description="below the fatigue limit: line goes on, Haibach, or no failure")
-    analysis: Analysis = Field(default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how; see docs/analyses.md")
+    analysis: Analysis = Field(
+        default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
+    )
     pareto: dict[str, str] = Field({}, description="outputs or factors with max or min: the designs no other beats")
     constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
     normal: str | tuple[str, ...] = Field("hertz", description="Hertz pressures, or solved on a grid (drawn profiles)")
