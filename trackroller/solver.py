@@ -12,7 +12,7 @@ from numba.core.registry import cpu_target
 
 from trackroller import equilibrium as eq
 from trackroller import requirements, stages
-from trackroller.accuracy import Accuracy, accuracy_settings
+from trackroller.accuracy import Accuracy, accuracy_settings, error_attributes
 from trackroller.blocks import Block, join
 from trackroller.case import Case, CaseTable, to_table
 from trackroller.errors import InputError, unknown_name
@@ -51,7 +51,7 @@ class Options:
     outputs: tuple[str, ...] = DEFAULT_OUTPUTS
     contact_model: str = "sliding"
     spin_model: str = "skewed"
-    accuracy: str | float = "standard"
+    accuracy: str | float | Accuracy = "standard"
     hertz: str = "exact"
     stress_bodies: str = "both"
     life_rule: str = "elementary"
@@ -73,7 +73,7 @@ class Options:
                                ("normal", NORMAL)):  # fmt: skip
             if getattr(self, field) not in options:
                 raise unknown_name(field, str(getattr(self, field)), options)
-        accuracy_settings(self.accuracy)
+        accuracy_settings(self.accuracy, self.contact_model, self.outputs)
         tolerance = self.contact_tolerance
         if isinstance(tolerance, bool) or not isinstance(tolerance, (int, float)) or not 0 < tolerance < 1:
             raise InputError("contact_tolerance", tolerance, "a relative tolerance in (0, 1), for contact_model auto")
@@ -85,12 +85,12 @@ class Options:
     @property
     def settings(self) -> Accuracy:
         """What the accuracy means for each stage."""
-        return accuracy_settings(self.accuracy)
+        return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
 
 
 def solve(
     cases: Any, outputs: Iterable[str] | str = DEFAULT_OUTPUTS, *, contact_model: str = "sliding",
-    spin_model: str = "skewed", accuracy: str | float = "standard", hertz: str = "exact",
+    spin_model: str = "skewed", accuracy: str | float | Accuracy = "standard", hertz: str = "exact",
     stress_bodies: str = "both", life_rule: str = "elementary", normal: str = "hertz",
     contact_tolerance: float = 0.05, stop_if: str | None = None, shortcuts: bool = True,
     database: MaterialDatabase | None = None,
@@ -103,7 +103,8 @@ def solve(
     outputs : groups among forces, contact, friction_work, peak_stress, life, tractions, subsurface
     contact_model : 'sliding' | 'fastsim' | 'kalker' | 'auto', the cheapest of them that meets `contact_tolerance`
     spin_model : 'concentric' | 'edge' | 'skewed', for sliding only
-    accuracy : 'preview' | 'standard' | 'reference' or a relative tolerance of the peak stress
+    accuracy : 'preview' | 'standard' | 'reference' or a relative tolerance of forces and peak stress, which picks the
+        cheapest measured setting (see `trackroller.accuracy`); attributes of the results tell the expected errors
     hertz : 'exact' or 'published' (the table of the published program)
     stress_bodies : 'both', or 'published' (one body with the mean Poisson's ratio)
     life_rule : 'elementary' | 'haibach' | 'unlimited' below the fatigue limit
@@ -211,7 +212,7 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         "source": f"trackroller {__version__}",
         "contact_model": options.contact_model,
         "spin_model": options.spin_model if options.contact_model in ("sliding", "auto") else "",
-        "accuracy": str(options.accuracy),
+        "accuracy": options.settings.name if isinstance(options.accuracy, Accuracy) else str(options.accuracy),
         "hertz": options.hertz,
         "stress_bodies": options.stress_bodies,
         "life_rule": options.life_rule,
@@ -226,4 +227,8 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     if options.stop_if is not None:
         attrs["stop_if"] = options.stop_if
         flags["stopped"] = block.stopped
-    return build({name: block.values[name] for name in keep}, flags, attrs, single)
+    ds = build({name: block.values[name] for name in keep}, flags, attrs, single)
+    for name, told in error_attributes(options.settings, options.contact_model).items():
+        if name in ds:
+            ds[name].attrs.update(told)
+    return ds

@@ -127,7 +127,9 @@ class FastsimModel:
         from trackroller.contact import fastsim
 
         self.elastic, self.travel = elastic, travel_speed
-        self._fastsim, self.settings = fastsim, fastsim.FastsimSettings(law=law)
+        n = settings.elements  # strips and steps in the proportion of the default settings
+        self._fastsim = fastsim
+        self.settings = fastsim.FastsimSettings(strips=4 * n // 5, steps=6 * n // 5, points=n, law=law)
 
     def _solution(self, ellipse, slip, friction, rows):
         from trackroller.contact.linear import LARGEST_RATIO
