@@ -16,6 +16,7 @@ app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_
 materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 app.add_typer(materials, name="materials")
 
+NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="spare nothing; the numbers stay the same")]
 Results = Annotated[Path, typer.Option("--results", help="folder that holds results/NAME/")]
 StudyFile = Annotated[Path, typer.Argument(help="study file (YAML)", show_default=False)]
 AnyStudy = Annotated[str, typer.Argument(help="study file, or name of a study that was run", show_default=False)]
@@ -40,11 +41,12 @@ def solve(
     settings: Annotated[list[str] | None, typer.Option("--set", help="key=value, again and again")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+    no_shortcuts: NoShortcuts = False,
 ) -> None:
     """Solve one case. Keys are the parameters and materials of a case and the options of a study file."""
     from trackroller.cli_case import as_text, print_json, solve_case, write_result
 
-    dataset = solve_case(case, settings or [])
+    dataset = solve_case(case, settings or [], **({"shortcuts": False} if no_shortcuts else {}))
     if out is not None:
         write_result(dataset, out)
     if as_json:
@@ -54,11 +56,17 @@ def solve(
 
 
 @app.command()
-def plan(study: StudyFile, results: Results = Path("results")) -> None:
-    """Number of cases, chunks, expected time and disk, without solving anything."""
-    from trackroller.cli_study import print_plan
+def plan(
+    target: Annotated[Path | None, typer.Argument(help="study or case file (YAML)", show_default=False)] = None,
+    results: Results = Path("results"),
+    explain: Annotated[bool, typer.Option("--explain", help="stages that run, and those that are spared")] = False,
+    settings: Annotated[list[str] | None, typer.Option("--set", help="key=value of a case")] = None,
+    no_shortcuts: NoShortcuts = False,
+) -> None:
+    """Number of cases, chunks, expected time and disk, and with --explain the stages; nothing is solved."""
+    from trackroller.cli_plan import print_plan
 
-    print_plan(study, results)
+    print_plan(target, results, explain, settings or [], no_shortcuts)
 
 
 @app.command()
@@ -93,6 +101,18 @@ def repeat(
     from trackroller.cli_study import print_repeat
 
     raise typer.Exit(print_repeat(study, case, results))
+
+
+@app.command()
+def spectrum(
+    file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+) -> None:
+    """Damage of a load spectrum per shift, and life in shifts of roller and guide."""
+    from trackroller.cli_spectrum import run_spectrum
+
+    run_spectrum(file, as_json, out)
 
 
 @app.command()

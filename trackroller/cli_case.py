@@ -75,7 +75,7 @@ def print_json(dataset: xr.Dataset) -> None:
                     "value": _json(variable.values.tolist())}
         for name, variable in dataset.variables.items()
     }  # fmt: skip
-    told["regime"]["meaning"] = REGIMES[int(dataset["regime"])]
+    told["regime"]["meaning"] = np.array(REGIMES)[dataset["regime"].values].tolist()
     print(json.dumps(told))
 
 
@@ -109,7 +109,7 @@ def as_text(dataset: xr.Dataset) -> None:
 def plot_target(target: str, words: list[str], out: Path | None, results: Path) -> None:
     """Draw a case file's case, or a study's figures."""
     path = Path(target)
-    if path.suffix in (".yaml", ".yml") and not _is_study(path):
+    if path.suffix in (".yaml", ".yml") and not is_study(path):
         from trackroller.plots.contact import plot_case
 
         dataset = solve_case(path, words, outputs=("forces", "contact", "peak_stress", "tractions", "subsurface"))
@@ -128,5 +128,6 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
     print(f"{len(drawn)} figures in {folder}")
 
 
-def _is_study(path: Path) -> bool:
+def is_study(path: Path) -> bool:
+    """A file with factors, a name or a design is a study's, any other a case's."""
     return bool({"factors", "name", "design"} & set(read_mapping(path, "case file")))

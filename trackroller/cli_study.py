@@ -6,27 +6,7 @@ import sys
 from pathlib import Path
 
 from trackroller.study.config import load_study
-from trackroller.study.cost import bytes_a_case, duration, measured_rate, rate, size
-
-
-def print_plan(path: Path, results: Path) -> None:
-    """Cases, chunks, expected time and disk; nothing is written."""
-    from trackroller.study.plan import chunk_size, study_folder
-    from trackroller.study.status import status_of
-
-    study = load_study(path)
-    status = status_of(study, results)
-    chunk = chunk_size(study, status.missing)
-    measured = measured_rate(study_folder(study.name, results).root / "store")
-    chunks = -(-status.missing // chunk)
-    seconds = status.missing / (measured or rate(study.options))
-    told = "measured" if measured else "estimated"
-    print(f"study     {study.name} ({study.config.design})")
-    print(f"cases     {status.total}, {status.done} of them solved already")
-    print(f"chunks    {chunks} of up to {chunk} cases")
-    print(f"time      {duration(seconds)} on one core, {duration(seconds / 2)} on two ({told} cases/s: "
-          f"{measured or rate(study.options):.0f})")  # fmt: skip
-    print(f"disk      about {size(status.total * bytes_a_case(study.config.outputs))}")
+from trackroller.study.cost import duration
 
 
 def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool) -> None:

@@ -39,6 +39,7 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     wanted = set(options.outputs)
     asked = wanted & {"peak_stress", "life", "subsurface"}
     m, patches = len(rows), 2 * len(rows) - twins
+    bare = 2 * free - int((requirements.is_mirror_symmetric(part) & requirements.is_frictionless(part)).sum())
     sides = f"; {twins} mirror-symmetric (no axial force): one contact each" if twins else ""
     told = [
         Stage("geometry, Hertz or half-space pressure", True, m, n, "cases",
@@ -58,7 +59,8 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
                           f"{options.stop_if}: where it holds no peak is searched for" if asked
                           else "no stress is asked for: nothing to stop"))  # fmt: skip
     if asked and options.contact_model != "sliding":
-        told.append(Stage("tractions on a grid", patches > 0, patches - 2 * free if on else patches, 2 * n, "patches",
+        rubbing = patches - bare if on else patches
+        told.append(Stage("tractions on a grid", rubbing > 0, rubbing, 2 * n, "patches",
                           "the stress of stick and slip needs them"
                           + (f"; {free} cases without friction have none" if free and on else "")))  # fmt: skip
     elif "tractions" not in wanted:
@@ -66,6 +68,8 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
                           "not asked for: full sliding tractions are known in closed form"
                           if options.contact_model == "sliding" else "no output needs them"))  # fmt: skip
     why = "serves " + " and ".join(sorted(asked)) + sides
+    if on and bare > 1:
+        why += f"; {bare} patches without friction: one search for each ellipticity and material"
     if options.stress_bodies == "published":
         why += "; one body with the mean Poisson's ratio"
     stage("peak stress", {"peak_stress", "life", "subsurface"}, "patches", patches, 2 * n, why)

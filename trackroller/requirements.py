@@ -46,13 +46,38 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
         texts = getattr(table, name)
         known = {text: i for i, text in enumerate(dict.fromkeys(texts.tolist()))}
         columns.append(np.array([known[text] for text in texts.tolist()], dtype=float))
-    rows = np.ascontiguousarray(np.stack(columns, axis=1) + 0.0)  # -0.0 is 0.0
+    return distinct_rows(np.stack(columns, axis=1))
+
+
+def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First row of each kind (m,), in the order they come, and the number of its kind for each row (n,); by bits."""
+    rows = np.ascontiguousarray(values + 0.0)  # -0.0 is 0.0
     keys = rows.view(np.dtype((np.void, rows.shape[1] * rows.itemsize))).reshape(-1)
     _, first, number = np.unique(keys, return_index=True, return_inverse=True)
-    order = np.argsort(first)  # the first of each kind in the order of the cases
+    order = np.argsort(first)
     rank = np.empty_like(order)
     rank[order] = np.arange(order.size)
     return first[order], rank[number.reshape(-1)]
+
+
+def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Patches whose tractions have one direction or are none, by their ellipticity alone, and their length [mm].
+
+    Their stresses over p_max depend on b/a, on mu and on the direction only. Rows of `ellipse.patch_rows` (n, 12); the
+    others are left as they are, with length 1. The ratio is taken to 13 digits, so that patches of different
+    loads have the same.
+    """
+    plain = (patches[:, 2] == 0.0) | (patches[:, 7] != 0.0)
+    length = np.where(plain, patches[:, 0], 1.0)
+    if not plain.any():
+        return patches, length
+    out = patches.copy()
+    ratio = patches[plain, 1] / patches[plain, 0]
+    step = 10.0 ** (np.floor(np.log10(ratio)) - 12.0)
+    out[plain] = [1.0, 1.0, 0.0, 0.5, np.sqrt(0.75), 1e3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]  # what they do not depend on
+    out[plain, 1] = np.rint(ratio / step) * step
+    out[plain, 2], out[plain, 7] = patches[plain, 2], patches[plain, 7]
+    return out, length
 
 
 @dataclass(frozen=True)

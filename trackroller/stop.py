@@ -96,4 +96,4 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
     full = value.reshape(n, *value.shape[1:], *(1,) * (3 - value.ndim))
     with np.errstate(invalid="ignore"):
         true = comparison.compare(full, limit) & np.isfinite(full)
-    return np.broadcast_to(true, np.broadcast_shapes(true.shape, (n, 1, 1))).reshape(n, -1).any(axis=1)
+    return np.asarray(np.broadcast_to(true, np.broadcast_shapes(true.shape, (n, 1, 1))).reshape(n, -1).any(axis=1))
