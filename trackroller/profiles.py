@@ -292,7 +292,7 @@ def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alph
                alpha, rolling_radius, guide_curve_radius)  # fmt: skip
 
 
-def is_one_sided(text: str) -> bool:
+def treats_sides_alike(text: str) -> bool:
     """Does the profile treat both contacts alike (one mirrors the other)?"""
     told = _parsed(text) if text else {}
     if told.get("frame") != "section":

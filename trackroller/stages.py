@@ -11,19 +11,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller import equilibrium as eq
-from trackroller import fatigue
+from trackroller import fatigue, stages_grid
 from trackroller.case import CaseTable
 from trackroller.contact import sliding
 from trackroller.contact.common import Elastic, Ellipse, Slip, SurfaceTractions
+from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.models import ContactModel, contact_model, traction_share
+from trackroller.contact.normal_patch import GridPatch
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
-from trackroller.halfspace.peak import find_peaks
+from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.stress import von_mises
-from trackroller.requirements import Mirror, is_mirror_symmetric
+from trackroller.requirements import Mirror, distinct_rows, is_mirror_symmetric, normalised_patches
 from trackroller.stop import holds, parse_condition
 
 if TYPE_CHECKING:
@@ -79,6 +81,8 @@ class Results:
         slip = Slip(np.concatenate([sine, -sine]), two(np.cos(scene.loads.contact_angle)),
                     two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius),
                     two(balance.shift))  # fmt: skip
+        if isinstance(scene.model, stages_grid.GRID_MODELS):
+            ellipse = scene.model.patch(ellipse, slip, np.tile(np.arange(scene.n), 2))
         out = cls(scene, balance, balance.regime, balance.converged, ellipse, slip, two(scene.loads.friction),
                   np.isfinite(normal), np.zeros(scene.n, np.int32), np.zeros(scene.n, bool))  # fmt: skip
         out.values["residual"] = balance.residual
@@ -114,7 +118,14 @@ def prepare(table: CaseTable, options: Options) -> Scene:
     bodies = (table.roller.youngs_modulus, table.roller.poisson_ratio,
               table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
     hertz = shape(k_x, k_y, contact_modulus(*bodies), options.hertz)
-    model = contact_model(options.contact_model, options.settings, Elastic.of_pair(*bodies), options.spin_model)
+    # the cases of a group share their law
+    law, travel = law_of(table.friction_law[0] if len(table) else None), table.velocity * (1000.0 / 60.0)
+    model: ContactModel
+    if options.normal == "halfspace":
+        model = stages_grid.halfspace_model(table, options, r_a, law, travel)
+    else:
+        model = contact_model(options.contact_model, options.settings, Elastic.of_pair(*bodies), options.spin_model,
+                              law, travel)  # fmt: skip
     loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
                      table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual)  # fmt: skip
     twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
@@ -135,6 +146,8 @@ def forces(results: Results) -> None:
     v["tilting_moment"] = h_n * (n[:, 0] - n[:, 1]) + h_t * (t[:, 0] + t[:, 1])
     v["yaw_moment"] = -((m[:, 0] + m[:, 1]) * cosine + (a[:, 0] - a[:, 1]) * loads.rolling_radius * sine)
     v["transmitted_force"] = a[:, 0] + a[:, 1]
+    if isinstance(results.ellipse, GridPatch):
+        stages_grid.shift_of_pressure(results, results.ellipse)
 
 
 def contact(results: Results, options: Options) -> None:
@@ -144,9 +157,14 @@ def contact(results: Results, options: Options) -> None:
     v["semi_axis_rolling"] = results.by_contact(e.semi_axis_rolling)
     v["max_pressure"] = results.by_contact(e.max_pressure)
     v["max_shear"] = results.by_contact(results.friction * e.max_pressure)
+    if isinstance(e, GridPatch):
+        stages_grid.contact(results, e, 1 << list(VALIDITY_BITS).index("conformal"))
+    else:
+        v["patch_area"] = np.pi * v["semi_axis_lateral"] * v["semi_axis_rolling"]
+        v["pressure_centre"] = 0.0 * v["semi_axis_lateral"]
     pole_x = results.slip.pole_lateral
     with np.errstate(invalid="ignore"):
-        ratio = pole_x / e.semi_axis_lateral
+        ratio = (pole_x - (e.centre if isinstance(e, GridPatch) else 0.0)) / e.semi_axis_lateral
         pole_y = np.where(np.abs(ratio) < 1, -e.semi_axis_rolling * np.sqrt(np.maximum(1 - ratio**2, 0)), 0.0)
     if options.spin_model == "concentric":
         pole_y = np.zeros_like(pole_y)
@@ -244,11 +262,8 @@ def _peak_bound(results: Results, options: Options) -> np.ndarray:
     return results.by_contact(out)
 
 
-def peak_stress(results: Results, options: Options) -> None:
-    """Peak von Mises stress of each contact and body, its place and error estimate."""
-    good = results.good & ~np.tile(results.stopped, 2)
-    mirror = results.scene.mirror
-    asked = mirror.asked(good)
+def _ellipse_peaks(results: Results, options: Options, asked: np.ndarray):
+    """Peaks under the ellipses `asked` (2 n,) over p_max; p_max, and the sign that their x needs."""
     among = asked[results.good]  # of the existing patches
     # contact 2 is searched as its mirror image, so that mirrored scenes have the same numbers
     second = np.repeat([False, True], results.scene.n)
@@ -257,10 +272,21 @@ def peak_stress(results: Results, options: Options) -> None:
     if fields is not None:
         fields = fields[among]
         fields[second[asked]] = fields[second[asked]][..., ::-1] * np.array([-1.0, 1.0])[:, None, None]
-    peak = find_peaks(_patches(results, options, seen)[among], _poisson(results, options)[asked],
-                      options.settings.peak, fields)  # fmt: skip
+    peak = _peaks(_patches(results, options, seen)[among], _poisson(results, options)[asked], fields, options)
     scale = results.ellipse.max_pressure[asked][:, None]
     side = np.where(second[asked], -1.0, 1.0)[:, None]
+    return peak, scale, side
+
+
+def peak_stress(results: Results, options: Options) -> None:
+    """Peak von Mises stress of each contact and body, its place and error estimate."""
+    good = results.good & ~np.tile(results.stopped, 2)
+    mirror = results.scene.mirror
+    asked = mirror.asked(good)
+    if isinstance(results.ellipse, GridPatch):
+        peak, scale, side = stages_grid.peaks(results, asked, _poisson(results, options), options), 1.0, 1.0
+    else:
+        peak, scale, side = _ellipse_peaks(results, options, asked)
     found = {"peak_stress": (peak.stress * scale, 1.0), "peak_x": (side * peak.x, -1.0), "peak_y": (peak.y, 1.0),
              "peak_z": (peak.z, 1.0), "error_estimate": (peak.error, 1.0)}  # fmt: skip
     for name, (value, sign) in found.items():
@@ -270,6 +296,20 @@ def peak_stress(results: Results, options: Options) -> None:
         if options.stress_bodies == "published":
             full = np.repeat(full[:, :, :1], 2, axis=2)
         results.values[name] = full
+
+
+def _peaks(patches: np.ndarray, ratios: np.ndarray, fields: np.ndarray | None, options: Options) -> Peak:
+    """Peaks of patches; patches without a slip field of their own are searched once for each ellipticity."""
+    if fields is not None:
+        return find_peaks(patches, ratios, options.settings.peak, fields)
+    patches, length = normalised_patches(patches)
+    first = number = np.arange(len(patches))
+    if options.shortcuts:
+        first, number = distinct_rows(np.hstack([patches, ratios]))
+    peak = find_peaks(patches[first], ratios[first], options.settings.peak)
+    scale = length[:, None]
+    return Peak(peak.stress[number], peak.x[number] * scale, peak.y[number] * scale, peak.z[number] * scale,
+                peak.error[number])  # fmt: skip
 
 
 def finish(table: CaseTable, block: Block, options: Options) -> None:
@@ -343,14 +383,16 @@ def subsurface(results: Results, options: Options) -> None:
         v[name] = np.full((n, 6, *shape_xz[1:]), np.nan)
     for name, count in (("xz_x", m), ("xz_z", depth_points), ("yz_y", m), ("yz_z", depth_points)):
         v[name] = np.full((n, 2, 2, count), np.nan)
-    rows, fields = _patches(results, options), _traction_fields(results)
+    grid = isinstance(results.ellipse, GridPatch)
+    rows, fields = (None, None) if grid else (_patches(results, options), _traction_fields(results))
+    centre = results.ellipse.centre if isinstance(results.ellipse, GridPatch) else np.zeros(2 * n)
     nu = _poisson(results, options)
     order = max(options.settings.peak.polish, 24)  # the rim is met exactly, where quadrature is hardest
     for row, flat in enumerate(np.flatnonzero(results.good)):
         j, i = divmod(flat, n)
         e = results.ellipse
         a, b, p = e.semi_axis_lateral[flat], e.semi_axis_rolling[flat], e.max_pressure[flat]
-        across, along = np.linspace(-1.5 * a, 1.5 * a, m), np.linspace(-1.5 * b, 1.5 * b, m)
+        across, along = centre[flat] + np.linspace(-1.5 * a, 1.5 * a, m), np.linspace(-1.5 * b, 1.5 * b, m)
         depth = np.linspace(0.0, 1.0, depth_points) ** 1.5 * 2.0 * min(a, b)
         for body in (0, 1):
             x0, y0 = v["peak_x"][i, j, body], v["peak_y"][i, j, body]
@@ -358,10 +400,13 @@ def subsurface(results: Results, options: Options) -> None:
             planes = (("xz", across, np.full(m, y0)), ("yz", np.full(m, x0), along))
             for plane, xs, ys in planes:
                 points = np.stack([np.tile(xs, depth_points), np.tile(ys, depth_points), np.repeat(depth, m)], axis=1)
-                one = NO_FIELD if fields is None else fields[row]
-                parts = stress_parts(rows[row], points, order, order, one)
-                s = p * (parts[:, 0] + nu[flat, body] * parts[:, 1]
-                         + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3]))  # fmt: skip
+                if rows is None:
+                    s = stages_grid.section(results, row, points, nu[flat, body], sign)
+                else:
+                    one = NO_FIELD if fields is None else fields[row]
+                    parts = stress_parts(rows[row], points, order, order, one)
+                    s = p * (parts[:, 0] + nu[flat, body] * parts[:, 1]
+                             + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3]))  # fmt: skip
                 v[f"stress_{plane}"][i, :, j, body] = s.T.reshape(6, depth_points, m)
                 v[f"von_mises_{plane}"][i, j, body] = von_mises(s).reshape(depth_points, m)
             v["xz_x"][i, j, body], v["yz_y"][i, j, body] = across, along

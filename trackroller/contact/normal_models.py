@@ -20,25 +20,28 @@ from trackroller.contact.normal_patch import GridPatch
 from trackroller.errors import InputError
 
 
+GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
+
+
 class Patches:
     """Patches of n rollers under any load.
 
     Parameters
     ----------
-    gaps : the gap of roller `row` beside contact `side` (1 or 2), and a key that equal gaps share
+    gaps : for roller `row` and contact `side` (1 or 2), a key that equal gaps share, and what makes the gap
     modulus : contact modulus E* of the rollers [MPa], (n,)
     elements : along each axis of the box around a patch
     """
 
-    def __init__(self, gaps: Callable[[int, int], tuple[tuple, Gap]], modulus: np.ndarray, elements: int) -> None:
+    def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int) -> None:
         self.modulus, self.elements = modulus, elements
         self._families: dict[tuple, Family] = {}
         self._places: dict[tuple[int, int], Family] = {}
         for row in range(len(modulus)):
             for side in (1, 2):
-                key, gap = gaps(row, side)
+                key, make = gaps(row, side)
                 if key not in self._families:
-                    self._families[key] = Family(gap, elements)
+                    self._families[key] = Family(make(), elements)
                 self._places[row, side] = self._families[key]
 
     def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True) -> GridPatch:
