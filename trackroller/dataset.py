@@ -42,7 +42,7 @@ _ALL = (
     Variable("yaw_moment", "forces", (), "N mm", "M_zR", "moment about the radial direction, eq. (12)"),
     Variable("transmitted_force", "forces", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track"),
     Variable("semi_axis_lateral", "contact", _C, "mm", "a", "lateral semi-axis of the ellipse, half width of a patch"),
-    Variable("semi_axis_rolling", "contact", _C, "mm", "b", "semi-axis in the rolling direction, half length of a patch"),
+    Variable("semi_axis_rolling", "contact", _C, "mm", "b", "semi-axis in the rolling direction, half length"),
     Variable("patch_area", "contact", _C, "mm2", "A", "area of the contact patch"),
     Variable("pressure_centre", "contact", _C, "mm", "x_p", "lateral position of the resultant of the pressure"),
     Variable("max_pressure", "contact", _C, "MPa", "p_max", "largest contact pressure"),

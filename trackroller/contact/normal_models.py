@@ -19,7 +19,6 @@ from trackroller.contact.normal_family import Family
 from trackroller.contact.normal_patch import GridPatch
 from trackroller.errors import InputError
 
-
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
 
 
