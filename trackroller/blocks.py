@@ -30,20 +30,25 @@ class Block:
 
 
 def join(parts: Sequence[Block]) -> Block:
-    """Blocks one after another; fields of different grids are filled up with NaN."""
+    """Blocks one after another; fields of different grids, and those that a block lacks, are filled up with NaN."""
     if len(parts) == 1:
         return parts[0]
     names = dict.fromkeys(name for part in parts for name in part.values)
-    values = {name: _joined([part.values[name] for part in parts]) for name in names}
+    none: np.ndarray = np.empty(0)
+    values = {name: _joined([part.values.get(name, none) for part in parts], [len(part) for part in parts])
+              for name in names}  # fmt: skip
     plain = (np.concatenate([getattr(part, name) for part in parts])
              for name in ("regime", "converged", "bits", "model", "stopped"))  # fmt: skip
     return Block(values, *plain)
 
 
-def _joined(arrays: list[np.ndarray]) -> np.ndarray:
-    shapes = {array.shape[1:] for array in arrays}
-    if len(shapes) > 1:
-        shape = tuple(np.max([array.shape[1:] for array in arrays], axis=0))
-        arrays = [np.pad(array, [(0, 0), *((0, full - own) for full, own in zip(shape, array.shape[1:], strict=True))],
-                         constant_values=np.nan) for array in arrays]  # fmt: skip
-    return np.concatenate(arrays)
+def _joined(arrays: list[np.ndarray], lengths: list[int]) -> np.ndarray:
+    known = [array for array in arrays if array.size]
+    if not known:
+        return np.concatenate([a for a, n in zip(arrays, lengths, strict=True) if len(a) == n])
+    shape = tuple(np.max([array.shape[1:] for array in known], axis=0).astype(int))
+    out = np.full((sum(lengths), *shape), np.nan)
+    for array, end, n in zip(arrays, np.cumsum(lengths), lengths, strict=True):
+        if array.size:
+            out[(slice(end - n, end), *(slice(0, own) for own in array.shape[1:]))] = array
+    return out

@@ -44,7 +44,7 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     told = [
         Stage("geometry, Hertz or half-space pressure", True, m, n, "cases",
               f"{n - m} cases repeat the mechanics of others" if m < n else "every case has mechanics of its own"),
-        Stage("equilibrium", True, patches, 2 * n, "patches", _model(options, free) + sides),
+        Stage("equilibrium", True, patches, 2 * n, "patches", f"contact model {options.contact_model}" + sides),
     ]  # fmt: skip
 
     def stage(name: str, need: set[str], unit: str, count: int, total: int, why: str) -> None:
@@ -77,9 +77,3 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     stage("tractions output", {"tractions"}, "patches", 2 * n, 2 * n, "asked for")
     stage("subsurface sections", {"subsurface"}, "patches", 2 * n, 2 * n, "asked for")
     return told
-
-
-def _model(options: Options, frictionless: int) -> str:
-    if not options.shortcuts or not frictionless or options.contact_model == "sliding":
-        return f"contact model {options.contact_model}"
-    return f"contact model {options.contact_model}; {frictionless} cases without friction need none"

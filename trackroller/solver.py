@@ -165,15 +165,14 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:
-    """Contact model and rows of cases that can be solved in one batch."""
+    """Contact model and rows of cases that can be solved in one batch; without friction there are no tractions."""
     model = np.full(len(table), options.contact_model, dtype=object)
     if options.contact_model == "auto":
         from trackroller.contact.choice import choose
 
         model = choose(table, options)
-    if options.shortcuts and "tractions" not in options.outputs:  # no friction, no tractions: any model will do
-        model = np.where(requirements.is_frictionless(table), "sliding", model)
-    keys = list(zip(model, *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
+    bare = requirements.is_frictionless(table) & options.shortcuts
+    keys = list(zip(model, bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
     for key in dict.fromkeys(keys):
         yield str(key[0]), np.array([i for i, own in enumerate(keys) if own == key])
     if not keys:

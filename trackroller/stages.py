@@ -25,7 +25,7 @@ from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.stress import von_mises
-from trackroller.requirements import Mirror, distinct_rows, is_mirror_symmetric, normalised_patches
+from trackroller.requirements import Mirror, distinct_rows, is_frictionless, is_mirror_symmetric, normalised_patches
 from trackroller.stop import holds, parse_condition
 
 if TYPE_CHECKING:
@@ -51,6 +51,7 @@ class Scene:
     loads: eq.Loads
     model: ContactModel
     mirror: Mirror
+    frictionless: bool  # none of the cases has friction: no tractions to look for
     n: int
 
 
@@ -128,8 +129,9 @@ def prepare(table: CaseTable, options: Options) -> Scene:
                               law, travel)  # fmt: skip
     loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
                      table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual)  # fmt: skip
+    bare = options.shortcuts and bool(is_frictionless(table).all())
     twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
-    return Scene(table, loads, model, Mirror(twins), len(table))
+    return Scene(table, loads, model, Mirror(twins), bare, len(table))
 
 
 def forces(results: Results) -> None:
@@ -170,7 +172,7 @@ def contact(results: Results, options: Options) -> None:
         pole_y = np.zeros_like(pole_y)
     pole_y = np.where(np.isfinite(pole_x), pole_y, np.nan)
     v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
-    if results.scene.model.full_sliding:
+    if results.scene.model.full_sliding or results.scene.frictionless:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
     elif "contact" in options.outputs:
         t = surface_tractions(results)
@@ -181,7 +183,9 @@ def friction_work(results: Results, options: Options) -> None:
     """Friction energy int |tau| |v| per distance travelled, and the balance of energy."""
     per_distance = np.full(2 * results.scene.n, np.nan)
     rolls = results.good & (results.slides_along == 0)
-    if rolls.any():
+    if results.scene.frictionless:
+        per_distance[rolls] = 0.0
+    elif rolls.any():
         mirror = results.scene.mirror
         asked = mirror.asked(rolls)
         per_distance[rolls] = mirror.spread(rolls, results.scene.model.power(
@@ -225,7 +229,7 @@ def _poisson(results: Results, options: Options) -> np.ndarray:
 
 def _traction_fields(results: Results) -> np.ndarray | None:
     """Traction over its bound on the grid of each existing patch; None where full sliding needs no grid."""
-    if results.scene.model.full_sliding:
+    if results.scene.model.full_sliding or results.scene.frictionless:
         return None
     return traction_share(surface_tractions(results), results.friction[results.good])
 
