@@ -61,6 +61,8 @@ _ALL = (
     Variable("peak_y", "peak_stress", _CB, "mm", "y_C", "position of the peak stress in the rolling direction"),
     Variable("peak_z", "peak_stress", _CB, "mm", "z_C", "depth of the peak stress"),
     Variable("life_cycles", "life", _CB, "1", "N", "overrollings to failure"),
+    Variable("life_error_estimate", "life", _CB, "1", "k delta(sigma)/sigma",
+             "estimated relative error of the life: Woehler exponent times that of the peak stress"),
     Variable("life_hours", "life", _CB, "h", "L_h", "life in hours of travel"),
     Variable("roller_life_hours", "life", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
     Variable("guide_life_hours", "life", (), "h", "L_h,G", "hours to the first failure of the guide"),

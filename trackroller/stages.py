@@ -328,14 +328,18 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 
 def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
     """Overrollings and hours to failure from the peak stress."""
-    per_body = []
+    per_body, errors = [], []
     for j, m in enumerate((table.roller, table.guide)):
         column = lambda a: a[:, None]  # noqa: E731
-        per_body.append(fatigue.life_cycles(
-            v["peak_stress"][:, :, j], column(m.tensile_strength), column(m.fatigue_limit),
-            column(m.cycles_at_tensile_strength), column(m.cycles_at_fatigue_limit),
-            rule=options.life_rule))  # fmt: skip
+        line = [column(a) for a in (m.tensile_strength, m.fatigue_limit, m.cycles_at_tensile_strength,
+                                    m.cycles_at_fatigue_limit)]  # fmt: skip
+        per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], *line, rule=options.life_rule))
+        exponent = fatigue.woehler_exponent(*line)
+        if options.life_rule == "haibach":  # the flatter line below the fatigue limit
+            exponent = np.where(v["peak_stress"][:, :, j] < line[1], 2.0 * exponent - 1.0, exponent)
+        errors.append(exponent * v["error_estimate"][:, :, j])
     v["life_cycles"] = np.stack(per_body, axis=2)
+    v["life_error_estimate"] = np.stack(errors, axis=2)
     r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle))
     roller = fatigue.roller_hours(per_body[0], table.velocity[:, None], r_a[:, None])
     guide = fatigue.guide_hours(per_body[1], table.guide_overrollings_per_hour[:, None])

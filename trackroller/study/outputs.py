@@ -14,7 +14,16 @@ import xarray as xr
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIMES
 
-BOOKKEEPING = {"regime", "converged", "residual", "validity", "error_estimate", "reason", "material_pair"}
+BOOKKEEPING = {
+    "regime",
+    "converged",
+    "residual",
+    "validity",
+    "error_estimate",
+    "life_error_estimate",
+    "reason",
+    "material_pair",
+}
 FIELDS = {"x", "y", "z", "grid"}
 
 # what an engineer asks for first: name -> (variable, selection, how contacts are joined, scale, words)
