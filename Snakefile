@@ -39,3 +39,4 @@ rule all:
 
 include: "workflow/rules/solve.smk"
 include: "workflow/rules/show.smk"
+include: "workflow/rules/tradeoff.smk"

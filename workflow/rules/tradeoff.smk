@@ -1,0 +1,77 @@
+# Error against cost of stages and contact models: snakemake --cores all tradeoff
+from trackroller.study.tradeoff import load_sizes
+
+TRADEOFF = f"{config.get('results', 'results')}/tradeoff"
+TRADEOFF_SIZES = "config/tradeoff.yaml"
+
+
+rule tradeoff:
+    input:
+        f"{TRADEOFF}/tradeoff.nc",
+        f"{TRADEOFF}/tradeoff.html",
+
+
+rule tradeoff_part:
+    input:
+        sizes=TRADEOFF_SIZES,
+        code=sources(
+            "solver.py",
+            "stages.py",
+            "equilibrium.py",
+            "contact",
+            "halfspace",
+            "study/tradeoff_settings.py",
+            "study/tradeoff_sample.py",
+            "study/tradeoff_errors.py",
+            "study/tradeoff_measure.py",
+            "study/tradeoff_stages.py",
+        ),
+    output:
+        f"{TRADEOFF}/parts/{{part}}.nc",
+    log:
+        f"{TRADEOFF}/logs/{{part}}.log",
+    wildcard_constraints:
+        part="[a-z]+-[0-9]+",
+    conda:
+        "../envs/trackroller.yaml"
+    threads: 1
+    script:
+        "../scripts/tradeoff_part.py"
+
+
+rule tradeoff_gather:
+    input:
+        sizes=TRADEOFF_SIZES,
+        parts=[
+            f"{TRADEOFF}/parts/{name}.nc"
+            for name in load_sizes(TRADEOFF_SIZES).names()
+        ],
+    output:
+        f"{TRADEOFF}/tradeoff.nc",
+    log:
+        f"{TRADEOFF}/logs/gather.log",
+    conda:
+        "../envs/trackroller.yaml"
+    script:
+        "../scripts/tradeoff_gather.py"
+
+
+rule tradeoff_show:
+    input:
+        measured=f"{TRADEOFF}/tradeoff.nc",
+        code=sources(
+            "study/tradeoff_page.py",
+            "study/tradeoff_summary.py",
+            "plots/tradeoff.py",
+            "plots/style.py",
+        ),
+    output:
+        summary=f"{TRADEOFF}/tradeoff.json",
+        figures=directory(f"{TRADEOFF}/figures"),
+        report=f"{TRADEOFF}/tradeoff.html",
+    log:
+        f"{TRADEOFF}/logs/show.log",
+    conda:
+        "../envs/trackroller.yaml"
+    script:
+        "../scripts/tradeoff_show.py"
