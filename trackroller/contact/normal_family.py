@@ -115,8 +115,10 @@ class Family:
         self.limits = gap.limits
         self._nodes: dict[int, Node] = {}
         self._asked: dict[float, Node] = {}
-        x = np.linspace(*self.limits, SAMPLES)
-        x = x[1:-1]
+        x = np.linspace(-1.0, 1.0, SAMPLES)[1:-1]
+        low, high = self.limits
+        # evenly over all there is, and closer around the nominal point, however small the patch
+        x = np.unique(np.concatenate([0.5 * (low + high) + 0.5 * (high - low) * x, np.where(x < 0, -low, high) * x**5]))
         self._samples, self._lateral = x, gap.lateral(x)
 
     def between(self, load: float) -> tuple[Box, np.ndarray]:
@@ -177,6 +179,8 @@ class Family:
             change = max(abs(filled.low - box.low), abs(filled.high - box.high)) / (box.high - box.low)
             if max(change, abs(filled.half / box.half - 1)) < BOX_TOLERANCE or attempt > 2:
                 break
+            if attempt > 0:  # it may go to and fro by a part of an element
+                filled = Box(*(0.5 * (getattr(box, k) + getattr(filled, k)) for k in ("low", "high", "half")))
             box = self._clipped(filled.low, filled.high, filled.half)
         return self._told(solution, box, load)
 

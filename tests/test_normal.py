@@ -1,0 +1,152 @@
+"""The normal problem on a grid against closed forms: Hertz, a blunter indenter, a flat punch, and edges."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import gamma
+
+from trackroller.contact.cross_sections import Gap, arcs, parabola, with_edges
+from trackroller.contact.hertz import exact_shape
+from trackroller.contact.kalker_grid import unit_cells
+from trackroller.contact.normal import TOLERANCE, displacement, solve_normal
+from trackroller.contact.normal_family import LATTICE, Family, largest_pressure, patch_area
+
+LOAD = 1e-3  # over the contact modulus [mm^2]
+
+
+def hertz(k_x, k_y, load=LOAD):
+    e = exact_shape(np.array([k_x]), np.array([k_y]), np.ones(1)).at(np.array([load]))
+    return float(e.semi_axis_lateral[0]), float(e.semi_axis_rolling[0]), float(e.max_pressure[0])
+
+
+def on_ellipse(k_x, k_y, n):
+    """Solution on the box of Hertz's ellipse with n x n elements."""
+    a, b, _ = hertz(k_x, k_y)
+    unit = (2 * np.arange(n) + 1) / n - 1
+    gap = 0.5 * k_x * (a * unit[None, :]) ** 2 + 0.5 * k_y * (b * unit[:, None]) ** 2
+    return solve_normal(gap, 2 * a / n, 2 * b / n, LOAD)
+
+
+def straight_gap(guide, roller, alpha=math.radians(30), r_a=16.55, r_curve=220.0):
+    return Gap(guide, roller, alpha, r_a, r_curve)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 0.1, 0.02])
+def test_hertz_comes_out_with_second_order(ratio):
+    """Largest pressure, mean pressures and approach converge to Hertz's; the load is kept to rounding."""
+    _, _, p_max = hertz(ratio, 1.0)
+    errors = []
+    for n in (20, 40, 80):
+        solution = on_ellipse(ratio, 1.0, n)
+        assert solution.residual <= TOLERANCE and solution.iterations < 100
+        errors.append(abs(largest_pressure(solution.pressure) / p_max - 1))
+        mean = np.abs(solution.pressure / p_max - unit_cells(n, n)[0]).sum() / unit_cells(n, n)[0].sum()
+        assert mean < 1.5 * n**-1.5
+    assert errors[1] < 5e-4
+    assert math.log2(errors[0] / errors[2]) / 2 > 1.4
+    assert on_ellipse(1.0, 1.0, 40).approach == pytest.approx((0.75 * LOAD) ** (2 / 3), rel=3e-4)  # a^2/R, R = 1
+
+
+def test_load_is_kept_and_pressure_ends_smoothly():
+    a, b, _ = hertz(0.2, 1.0)
+    solution = on_ellipse(0.2, 1.0, 40)
+    assert solution.pressure.sum() * (a / 20) * (b / 20) == pytest.approx(LOAD, rel=1e-13)
+    assert solution.pressure.min() == 0.0
+    assert patch_area(solution.pressure, a / 20, b / 20) == pytest.approx(np.pi * a * b, rel=6e-3)
+
+
+def test_fourth_power_indenter_matches_its_closed_form():
+    """Axisymmetric gap A r^4 (Steuermann 1939; Popov & Hess 2015, method of dimensionality reduction)."""
+    n, radius, power = 80, 1.0, 4
+    kappa = math.sqrt(math.pi) / 2 * power * gamma(power / 2) / gamma(power / 2 + 0.5)
+    load = 2 * kappa * radius**5 * power / (power + 1)
+    half = 1.02 * radius
+    x = half * ((2 * np.arange(n) + 1) / n - 1)
+    r = np.hypot(x[None, :], x[:, None])
+    solution = solve_normal(r**4, 2 * half / n, 2 * half / n, load)
+    inside = np.maximum(radius**2 - r**2, 0.0)
+    expected = 4 * kappa / np.pi * (np.sqrt(inside) * r**2 + inside**1.5 / 3)
+    # its largest pressure is not in the middle
+    assert solution.approach == pytest.approx(kappa, rel=1e-3)
+    middle = r < 0.9 * radius
+    np.testing.assert_allclose(solution.pressure[middle], expected[middle], rtol=0.01)
+    assert abs(r.flat[np.argmax(solution.pressure)] / radius - math.sqrt(0.5)) < 0.06
+    assert largest_pressure(solution.pressure) == pytest.approx(expected.max(), rel=3e-3)
+
+
+def test_flat_round_punch_matches_boussinesq():
+    """Where the material ends, the pressure rises towards the edge: p = F/(2 pi a sqrt(a^2 - r^2)), d = F/(2 a)."""
+    n, a = 96, 1.0
+    x = a * ((2 * np.arange(n) + 1) / n - 1)
+    r = np.hypot(x[None, :], x[:, None])
+    solution = solve_normal(np.zeros((n, n)), 2 * a / n, 2 * a / n, 1.0, material=r < a)
+    assert solution.approach == pytest.approx(0.5 / a, rel=0.01)
+    middle = r < 0.7 * a
+    np.testing.assert_allclose(solution.pressure[middle], 0.5 / np.pi / np.sqrt(a * a - r[middle] ** 2), rtol=0.015)
+    assert np.all(solution.pressure[r >= a] == 0.0)
+
+
+def test_surfaces_touch_inside_and_are_apart_outside():
+    """The conditions of contact, checked with a displacement that is summed anew."""
+    family = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), arcs([-7.0], [])), 30)
+    node = family.at(1e-3)
+    x, y, hx, hy = node.box.grid(30)
+    pressure = node.shares * 1e-3 / (hx * hy)
+    distance = displacement(pressure, hx, hy) + family.gap.field(x, y) - node.scalars[0]
+    depth = node.scalars[0] - family.gap.field(x, y).min()
+    assert np.abs(distance[pressure > 0]).max() < 2 * TOLERANCE * depth
+    assert distance[pressure == 0].min() > -2 * TOLERANCE * depth
+
+
+@pytest.mark.parametrize(("guide", "roller"), [(6.0, -7.0), (6.0, -6.2), (6.0, 10.0), (4.0, math.inf)])
+def test_family_of_parabolas_is_hertz_for_every_load(guide, roller):
+    gap = Gap(with_edges(parabola(guide), -9, 9), parabola(roller), math.radians(30), 16.55, math.inf)
+    family = Family(gap, 40)
+    k_y = math.cos(math.radians(30)) / 16.55
+    for load in (2e-5, 7e-4):
+        a, b, p = hertz(1 / guide + 1 / roller, k_y, load)
+        node = family.at(load)
+        assert 0.5 * (node.box.high - node.box.low) == pytest.approx(a, rel=4e-3)
+        assert node.box.half == pytest.approx(b, rel=4e-3)
+        assert node.scalars[1] == pytest.approx(p, rel=1e-3)
+        assert node.scalars[2] == pytest.approx(np.pi * a * b, rel=8e-3)
+        assert not node.reaches
+
+
+def test_result_at_a_load_does_not_depend_on_what_was_asked_before():
+    """Bit for bit: starts come from the lattice of loads only."""
+    gap = straight_gap(with_edges(arcs([6.0], []), -0.35, 0.3, 0.2), arcs([-7.0], []))
+    fresh, used = Family(gap, 24), Family(gap, 24)
+    for load in (3e-4, 2e-3, 1.1e-3, LATTICE**-14):
+        used.at(load)
+    assert np.array_equal(fresh.at(1e-3).shares, used.at(1e-3).shares)
+
+
+def test_patch_stops_at_the_grooves_edge_and_presses_there():
+    """A sharp edge cuts the patch, pressure rises at it; a rounded one lets it end smoothly and presses less."""
+    wide = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), arcs([-7.0], [])), 40).at(1e-3)
+    cut = with_edges(arcs([-7.0], []), -3, 0.25)
+    sharp = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), cut), 40).at(1e-3)
+    soft = with_edges(arcs([-7.0], []), -3, 0.25, chamfer=0.8)
+    rounded = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), soft), 40).at(1e-3)
+    assert wide.box.high > 0.3 and not wide.reaches
+    assert sharp.box.high == 0.25 and sharp.reaches
+    across = sharp.shares.sum(axis=0)
+    assert np.argmax(across) == 39 and across[39] > 1.3 * across[30]
+    assert wide.scalars[1] < rounded.scalars[1] < sharp.scalars[1]
+    assert 0.25 < rounded.box.high < wide.box.high and not rounded.reaches
+    for node in (wide, sharp, rounded):
+        assert node.shares.sum() == pytest.approx(1.0, abs=1e-12)
+
+
+def test_two_bumps_give_two_patches():
+    """Contact outside the first guess is found: a guide with two crests."""
+    crests = arcs([1.0, -1.0, 1.0, -1.0, 1.0], [-0.45, -0.3, 0.3, 0.45])
+    gap = Gap(with_edges(parabola(50.0), -1.5, 1.5), with_edges(crests, -1.5, 1.5), math.radians(30), 16.55, math.inf)
+    family = Family(gap, 40)
+    node = family.at(2e-3)
+    lateral = gap.lateral(np.linspace(-1.4, 1.4, 2001))
+    lowest = np.linspace(-1.4, 1.4, 2001)[np.argmin(lateral)]
+    assert node.box.low - 0.05 <= lowest <= node.box.high + 0.05
+    assert node.residual <= TOLERANCE
