@@ -8,6 +8,7 @@ element: |tau| <= mu p, and tau = -mu p s/|s| where it slides. Rectangular eleme
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -87,18 +88,19 @@ class PatchSolution:
 
     resultants : on the roller, extrapolated if asked for
     traction, slip : (n, 2, ny, nx), x_C and y_C part, over mu p_max and per travel speed
+    stick : (n, ny, nx) where the surfaces stick
     stick_fraction : share of the ellipse that sticks [-]
     friction_energy_per_distance : dissipation per travelled distance [N], from the work of the rigid slip
     energy_residual : relative difference of the dissipation summed over the elements and that work
     error_estimate : (n, 3) |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation
     residual, steps, products : largest residual of the friction law over mu p_max, Newton steps, products
-    friction_change : last relative change of a falling friction coefficient
-    converged : residual and friction change within their tolerances
+    converged : residual within its tolerance
     """
 
     resultants: Resultants
     traction: np.ndarray
     slip: np.ndarray
+    stick: np.ndarray
     stick_fraction: np.ndarray
     friction_energy_per_distance: np.ndarray
     energy_residual: np.ndarray
@@ -106,7 +108,6 @@ class PatchSolution:
     residual: np.ndarray
     steps: np.ndarray
     products: np.ndarray
-    friction_change: np.ndarray
     converged: np.ndarray
 
     def take(self, index) -> PatchSolution:
@@ -115,7 +116,7 @@ class PatchSolution:
 
 
 def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings, elements: int, traction):
-    """Solve on one grid; `traction` is the start. Returns slips and the report (n, REPORT)."""
+    """Solve on one grid; `traction` is the start. Returns slips, stick and the report (n, REPORT)."""
     n = friction.size
     height, share = cells(ellipse, elements)
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
@@ -126,14 +127,17 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel
     with np.errstate(divide="ignore", invalid="ignore"):
         coupling = elastic.coupling / friction
     slip, report = np.empty_like(traction), np.empty((n, batch.REPORT))
+    stick = np.zeros((n, elements, elements), bool)
     control = np.array([settings.tolerance, settings.steps, settings.krylov])
-    given = (a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x), creep.lateral,
-             creep.spin, travel)  # fmt: skip
+    given: tuple[Any, ...] = (
+        a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x), creep.lateral,
+        creep.spin, travel,
+    )  # fmt: skip
     for rows, own, share_own in _by_cells(height, share, n):
-        batch.solve_batch(*(v[rows] for v in given), own, share_own, law.speed, law.factor, control, traction[rows],
-                          slip[rows], report[rows])  # fmt: skip
+        arguments: Any = (*(v[rows] for v in given), own, share_own, law.speed, law.factor, control)
+        batch.solve_batch(*arguments, traction[rows], slip[rows], stick[rows], report[rows])
     report[:, batch.M_R] += centre * report[:, batch.F_A]
-    return slip, report
+    return slip, stick, report
 
 
 def _by_cells(height: np.ndarray, share: np.ndarray, n: int):
@@ -152,12 +156,12 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         first = np.zeros((n, 2, half, half))
         if start is not None:
             first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
-        _, coarse = _level(ellipse, creep, friction, elastic, travel, settings, half, first)
+        *_, coarse = _level(ellipse, creep, friction, elastic, travel, settings, half, first)
         if start is None:
             (low, _), (high, _) = cells(ellipse, half), cells(ellipse, elements)
             for rows, own, above in _by_cells(low, high, n):
                 batch.refine(first[rows], own, above, traction[rows])
-    slip, fine = _level(ellipse, creep, friction, elastic, travel, settings, elements, traction)
+    slip, stick, fine = _level(ellipse, creep, friction, elastic, travel, settings, elements, traction)
     value = fine[:, :3]
     error = np.full((n, 3), np.nan)
     work = fine[:, batch.WORK]
@@ -168,12 +172,10 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         work = work + weight * (work - coarse[:, batch.WORK])
     with np.errstate(divide="ignore", invalid="ignore"):
         energy = np.where(fine[:, batch.WORK] != 0, fine[:, batch.POWER] / fine[:, batch.WORK] - 1.0, 0.0)
-    good = (fine[:, batch.RESIDUAL] <= settings.tolerance) & (
-        fine[:, batch.FRICTION_ERROR] <= batch.FRICTION_TOLERANCE
-    )
+    good = fine[:, batch.RESIDUAL] <= settings.tolerance
     return PatchSolution(
-        Resultants(value[:, 0], value[:, 1], value[:, 2]), traction, slip, fine[:, batch.STICK], work, energy, error,
-        fine[:, batch.RESIDUAL], fine[:, batch.STEPS], fine[:, batch.PRODUCTS], fine[:, batch.FRICTION_ERROR], good,
+        Resultants(value[:, 0], value[:, 1], value[:, 2]), traction, slip, stick, fine[:, batch.STICK], work, energy,
+        error, fine[:, batch.RESIDUAL], fine[:, batch.STEPS], fine[:, batch.PRODUCTS], good,
     )  # fmt: skip
 
 
@@ -255,7 +257,7 @@ def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> Surface
     scale = (friction * ellipse.max_pressure)[:, None, None]
     shear = solution.traction * share * scale[:, None]
     slip = np.where(inside, solution.slip, 0.0)
-    stick = inside & (np.hypot(shear[:, 0], shear[:, 1]) < scale * root * (1.0 - 1e-9)) & (scale > 0)
+    stick = inside & solution.stick
     return SurfaceTractions(
         ellipse.semi_axis_lateral[:, None] * u, ellipse.semi_axis_rolling[:, None] * v,
         ellipse.max_pressure[:, None, None] * root, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], stick,
@@ -267,8 +269,7 @@ def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> Surf
     scale = (friction * patch.max_pressure)[:, None, None]
     shear, loaded = solution.traction * scale[:, None], patch.pressure > 0
     slip = np.where(loaded[:, None], solution.slip, 0.0)
-    bound = friction[:, None, None] * patch.pressure
-    stick = loaded & (np.hypot(shear[:, 0], shear[:, 1]) < bound * (1.0 - 1e-9)) & (scale > 0)
+    stick = loaded & solution.stick
     return SurfaceTractions(patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], stick)
 
 

@@ -38,7 +38,7 @@ def unit_cells(ny: int, nx: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cells(patch: Ellipse, elements: int) -> tuple[np.ndarray, np.ndarray]:
-    """`unit_cells` of ellipses, shared by all, or the mean pressures and loaded elements (n, ., .) of solved patches."""
+    """`unit_cells` of ellipses, shared by all, or mean pressures and loaded elements (n, ., .) of solved patches."""
     if not isinstance(patch, GridPatch):
         return unit_cells(elements, elements)
     height = patch.heights(elements)

@@ -10,11 +10,14 @@ Lengths are scaled by c = sqrt(a b), tractions by the largest traction bound, sl
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numba import njit
+from scipy import fft
 
-from trackroller.contact.kalker_fft import FAST, backward, forward, good_length, workspace
+FAST = {"contract", "reassoc", "arcp", "nsz"}
 
 # The derivative of the displacements in the rolling direction is a difference of second order towards the leading
 # edge, where the material comes from. A central one would leave the shortest waves undetermined in the stick
@@ -23,6 +26,7 @@ from trackroller.contact.kalker_fft import FAST, backward, forward, good_length,
 # central difference by this share. ASSUME: the share at which Carter's problem loses its first-order error.
 LEADING_SHARE = 0.45
 HALO = 3  # rows of displacements beside those of the elements: one behind, two ahead
+DIGITS = 13  # of element sizes and Poisson's ratio: patches alike but for rounding share their influence functions
 
 
 @njit(cache=True, fastmath=FAST)
@@ -82,70 +86,82 @@ def pressure_displacements(hx, hy, ny, nx, below, above):
     return _over_element(corner, -1.0 / math.pi)
 
 
-@njit(cache=True)
-def spectra(kernel, ny, nx, ly, lx):
-    """Multipliers (4, lx * ly: Re P, Im P, Re Q, Im Q) for W = P Z + Q conj(Z(-k)), Z the spectrum of x + iy.
+def _multipliers(kernel: np.ndarray, ny: int, nx: int, ly: int, lx: int) -> np.ndarray:
+    """Spectrum (ly, lx) of a complex influence function over the distances, (2 ny - 1 + HALO, 2 nx - 1)."""
+    field = np.zeros((ly, lx), complex)
+    rows, columns = (np.arange(2 * ny - 1 + HALO) - ny + 1) % ly, (np.arange(2 * nx - 1) - nx + 1) % lx
+    field[rows[:, None], columns] = kernel
+    return fft.fft2(field)
 
-    `kernel` (4, 2 ny - 1 + HALO, 2 nx - 1) holds P and Q over the distances; the scale 1/(lx ly) is included.
+
+@dataclass(frozen=True)
+class Influence:
+    """Influence functions of ny x nx elements for products by fast Fourier transforms; a field is x + iy.
+
+    hy : element size in the rolling direction
+    p, q : spectra W = P Z + Q conj(Z(-k)) of displacements W and tractions Z, (ly, lx)
+    own : mean slip that an element's unit traction causes at itself
+    column : displacements xx and yy that it causes in its own column, (2, 2 ny - 1 + HALO)
     """
-    fields = np.zeros((2, ly, lx))
-    result = np.zeros((4, lx * ly))
-    work = workspace(ly, lx)
-    scale = 1.0 / (lx * ly)
-    for part in (0, 2):
-        for j in range(2 * ny - 1 + HALO):
-            for i in range(2 * nx - 1):
-                row, column = (j - ny + 1) % ly, (i - nx + 1) % lx
-                fields[0, row, column] = kernel[part, j, i] * scale
-                fields[1, row, column] = kernel[part + 1, j, i] * scale
-        here = forward(fields, ly, lx, work)
-        for k in range(lx * ly):
-            result[part, k] = work[here, k]
-            result[part + 1, k] = work[here + 1, k]
-    return result
+
+    hy: float
+    p: np.ndarray
+    q: np.ndarray
+    own: float
+    column: np.ndarray
+
+    def displacements(self, field: np.ndarray) -> np.ndarray:
+        """Displacements (ny + HALO, nx), one row behind to two rows ahead, of the tractions `field` (ny, nx)."""
+        ny, nx = field.shape
+        ly, lx = self.p.shape
+        spectrum = fft.fft(fft.fft(field, lx, axis=1), ly, axis=0, overwrite_x=True)
+        product = fft.ifft(_combined(self.p, self.q, spectrum), axis=0, overwrite_x=True)[: ny + HALO]
+        return fft.ifft(product, axis=1)[:, :nx]
+
+    def slip(self, field: np.ndarray, leading: np.ndarray) -> np.ndarray:
+        """Slip -du/dy (ny, nx) caused by the tractions `field`; see `differences`."""
+        out = np.empty(field.shape, complex)
+        differences(self.displacements(field), leading, self.hy, out)
+        return out
 
 
-@njit(cache=True)
-def padded_lengths(ny, nx):
-    """Lengths of the transforms along y and x that keep products free of wrap-around."""
-    return good_length(2 * ny - 1 + HALO), good_length(2 * nx - 1)
+@njit(cache=True, fastmath=FAST, nogil=True)
+def _combined(p, q, z):
+    """P Z + Q conj(Z(-k))."""
+    ly, lx = z.shape
+    w = np.empty_like(z)
+    for i in range(ly):
+        mirror = ly - i if i > 0 else 0
+        w[i, 0] = p[i, 0] * z[i, 0] + q[i, 0] * z[mirror, 0].conjugate()
+        for j in range(1, lx):
+            w[i, j] = p[i, j] * z[i, j] + q[i, j] * z[mirror, lx - j].conjugate()
+    return w
 
 
-@njit(cache=True)
-def prepare(hx, hy, poisson, ny, nx):
-    """Spectral multipliers of the tractions and the mean slip that an element's unit traction causes at itself."""
-    ly, lx = padded_lengths(ny, nx)
+@lru_cache(maxsize=64)
+def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influence:
+    ly, lx = fft.next_fast_len(2 * ny - 1 + HALO), fft.next_fast_len(2 * nx - 1)
     u = displacements(hx, hy, poisson, ny, nx, 1, 2)
-    kernel = np.zeros((4, u.shape[1], u.shape[2]))
-    for j in range(u.shape[1]):
-        for i in range(u.shape[2]):
-            kernel[0, j, i] = 0.5 * (u[0, j, i] + u[1, j, i])
-            kernel[2, j, i] = 0.5 * (u[0, j, i] - u[1, j, i])
-            kernel[3, j, i] = u[2, j, i]
-    own = (1.5 * kernel[0, ny, nx - 1] - 2.0 * kernel[0, ny + 1, nx - 1] + 0.5 * kernel[0, ny + 2, nx - 1]) / hy
-    return spectra(kernel, ny, nx, ly, lx), own
+    p = 0.5 * (u[0] + u[1])
+    own = (1.5 * p[ny, nx - 1] - 2.0 * p[ny + 1, nx - 1] + 0.5 * p[ny + 2, nx - 1]) / hy
+    q = 0.5 * (u[0] - u[1]) + 1j * u[2]
+    spectra = (_multipliers(kernel, ny, nx, ly, lx) for kernel in (p, q))
+    return Influence(hy, *spectra, float(own), np.ascontiguousarray(u[:2, :, nx - 1]))
 
 
-@njit(cache=True)
-def coupling_slip(pressure, hx, hy):
-    """Slip -du/dy (2, ny, nx) of a pressure field (ny, nx) for K = G = 1, by central differences."""
+def influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influence:
+    """Influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept."""
+    return _influence(*(float(f"{v:.{DIGITS}g}") for v in (hx, hy, poisson)), ny, nx)
+
+
+def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
+    """Slip -du/dy (ny, nx), x + iy, of a pressure field (ny, nx) for K = G = 1, by central differences."""
     ny, nx = pressure.shape
-    ly, lx = padded_lengths(ny, nx)
+    ly, lx = fft.next_fast_len(2 * ny - 1 + HALO), fft.next_fast_len(2 * nx - 1)
     u = pressure_displacements(hx, hy, ny, nx, 1, 2)
-    kernel, field = np.zeros((4, u.shape[1], u.shape[2])), np.zeros((2, ny, nx))
-    for j in range(u.shape[1]):
-        for i in range(u.shape[2]):
-            kernel[0, j, i], kernel[1, j, i] = u[0, j, i], u[1, j, i]
-    halo, slip = np.empty((2, ny + HALO, nx)), np.empty((2, ny, nx))
-    for j in range(ny):
-        for i in range(nx):
-            field[0, j, i] = pressure[j, i]
-    displace(spectra(kernel, ny, nx, ly, lx), field, ly, lx, workspace(ly, lx), halo)
-    for c in range(2):
-        for j in range(ny):
-            for i in range(nx):
-                slip[c, j, i] = (halo[c, j, i] - halo[c, j + 2, i]) / (2.0 * hy)
-    return slip
+    p = _multipliers(u[0] + 1j * u[1], ny, nx, ly, lx)
+    halo = Influence(hy, p, np.zeros_like(p), 1.0, np.zeros((2, 1))).displacements(pressure.astype(complex))
+    return 0.5 * (halo[:ny] - halo[2 : ny + 2]) / hy
 
 
 @njit(cache=True)
@@ -162,38 +178,18 @@ def leading_rows(bound):
     return rows
 
 
-@njit(cache=True, fastmath=FAST)
-def displace(multipliers, field, ly, lx, work, halo):
-    """Displacements `halo` (2, ny + 3, nx), one row behind to two rows ahead, of the tractions `field`."""
-    here = forward(field, ly, lx, work)
-    there = 2 - here
-    zr, zi, wr, wi = work[here], work[here + 1], work[there], work[there + 1]
-    for i in range(lx):
-        mirror_row = ((lx - i) % lx) * ly
-        for j in range(ly):
-            k = i * ly + j
-            o = mirror_row + (ly - j if j > 0 else 0)
-            pr, pi, qr, qi = multipliers[0, k], multipliers[1, k], multipliers[2, k], multipliers[3, k]
-            wr[k] = pr * zr[k] - pi * zi[k] + qr * zr[o] + qi * zi[o]
-            wi[k] = pr * zi[k] + pi * zr[k] + qi * zr[o] - qr * zi[o]
-    backward(work, there, ly, lx, halo)
-
-
-@njit(cache=True, fastmath=FAST)
-def multiply(multipliers, field, ly, lx, hy, leading, work, halo, result):
-    """Slip -du/dy caused by the tractions `field` (2, ny, nx) into `result` (2, ny, nx); `halo` is work space.
+@njit(cache=True, fastmath=FAST, nogil=True)
+def differences(halo, leading, hy, result):
+    """Slip -du/dy (ny, nx) into `result` from displacements `halo` (ny + HALO, nx).
 
     Upwind difference of second order, blended with the central one in the `leading` element of each column.
     """
-    displace(multipliers, field, ly, lx, work, halo)
-    ny, nx = result.shape[1], result.shape[2]
-    for c in range(2):
-        for i in range(ny):
-            for j in range(nx):
-                ahead = halo[c, i + 2, j]
-                result[c, i, j] = (1.5 * halo[c, i + 1, j] - 2.0 * ahead + 0.5 * halo[c, i + 3, j]) / hy
+    ny, nx = result.shape
+    for i in range(ny):
         for j in range(nx):
-            i = leading[j]
-            if i >= 0:
-                central = 0.5 * (halo[c, i, j] - halo[c, i + 2, j]) / hy
-                result[c, i, j] += LEADING_SHARE * (central - result[c, i, j])
+            result[i, j] = (1.5 * halo[i + 1, j] - 2.0 * halo[i + 2, j] + 0.5 * halo[i + 3, j]) / hy
+    for j in range(nx):
+        i = leading[j]
+        if i >= 0:
+            central = 0.5 * (halo[i, j] - halo[i + 2, j]) / hy
+            result[i, j] += LEADING_SHARE * (central - result[i, j])

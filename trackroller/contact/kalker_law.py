@@ -58,8 +58,7 @@ class KalkerLaw:
         solution = parts[0] if len(parts) == 1 else joined(parts, np.argsort(np.concatenate([old, new])))
         self._starts.update(zip(keys, solution.traction.astype(np.float32), strict=True))
         if fine:
-            worst = np.maximum(solution.residual, solution.friction_change)
-            for key, value, good in zip(keys, worst, solution.converged, strict=True):
+            for key, value, good in zip(keys, solution.residual, solution.converged, strict=True):
                 self._states[key[:2]] = (float(value), bool(good))
         return solution
 

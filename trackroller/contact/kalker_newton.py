@@ -1,74 +1,117 @@
-"""Stick and slip on a patch: a semi-smooth Newton method with Krylov steps, compiled.
+"""Stick and slip on a patch: a semi-smooth Newton method with Krylov steps.
 
 For each element with traction bound g the law of dry friction is the fixed point tau = P_g(tau - rho s), where
 P_g shortens a vector to at most g and s = w + B tau is the slip (Alart & Curnier 1991). Newton's method is the
 active-set method of stick and slip elements; its linear systems are solved by GMRES with fast products B tau.
+Friction that depends on the slip makes g a function of s, whose derivative belongs to Newton's matrix.
+
+Fields are complex, x + iy, (ny, nx); compiled loops run over their real numbers, (ny, nx, 2).
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
-from trackroller.contact.kalker_fft import FAST
-from trackroller.contact.kalker_influence import HALO, leading_rows, multiply, padded_lengths
+from trackroller.contact.kalker_columns import apply_inverse, column_ranges, column_slips, factorise
+from trackroller.contact.kalker_influence import FAST, Influence, differences, leading_rows
 
 
-@njit(cache=True, fastmath=FAST)
+@dataclass(frozen=True)
+class Problem:
+    """A patch: influence functions, rigid slip (ny, nx), traction bounds at rest `height` and the friction law.
+
+    scale : slip speed [mm/s] per scaled slip; knots, factors : friction over its value at rest by slip speed
+    """
+
+    influence: Influence
+    rigid: np.ndarray
+    height: np.ndarray
+    scale: float
+    knots: np.ndarray
+    factors: np.ndarray
+
+
+def reals(field: np.ndarray) -> np.ndarray:
+    """View of a complex field (ny, nx) as (ny, nx, 2)."""
+    return field.view(float).reshape(*field.shape, 2)
+
+
+@njit(cache=True, nogil=True)
+def law_of_slip(slip, height, scale, knots, factors, bound, slope):
+    """Traction bound height f(scale |s|) and its derivative with respect to |s|; f linear between its knots."""
+    last = knots.size - 1
+    for i in range(height.shape[0]):
+        for j in range(height.shape[1]):
+            speed = scale * math.hypot(slip[i, j, 0], slip[i, j, 1])
+            slope[i, j] = 0.0
+            if last == 0 or speed <= knots[0]:
+                bound[i, j] = height[i, j] * factors[0]
+            elif speed >= knots[last]:
+                bound[i, j] = height[i, j] * factors[last]
+            else:
+                low, high = 0, last
+                while high - low > 1:
+                    middle = (low + high) // 2
+                    if knots[middle] <= speed:
+                        low = middle
+                    else:
+                        high = middle
+                steep = (factors[high] - factors[low]) / (knots[high] - knots[low])
+                bound[i, j] = height[i, j] * (factors[low] + steep * (speed - knots[low]))
+                slope[i, j] = height[i, j] * steep * scale
+
+
+@njit(cache=True, fastmath=FAST, nogil=True)
 def residual(traction, slip, bound, rho, out):
     """F = tau - P_g(tau - rho s) into `out`; returns its largest component [scaled as tau] and its norm."""
-    ny, nx = bound.shape
     largest, square = 0.0, 0.0
-    for i in range(ny):
-        for j in range(nx):
+    for i in range(bound.shape[0]):
+        for j in range(bound.shape[1]):
             g = bound[i, j]
-            zx = traction[0, i, j] - rho * slip[0, i, j]
-            zy = traction[1, i, j] - rho * slip[1, i, j]
+            zx = traction[i, j, 0] - rho * slip[i, j, 0]
+            zy = traction[i, j, 1] - rho * slip[i, j, 1]
             z = math.sqrt(zx * zx + zy * zy)
             if z > g:
                 factor = g / z
                 zx *= factor
                 zy *= factor
-            fx, fy = traction[0, i, j] - zx, traction[1, i, j] - zy
-            out[0, i, j], out[1, i, j] = fx, fy
+            fx, fy = traction[i, j, 0] - zx, traction[i, j, 1] - zy
+            out[i, j, 0], out[i, j, 1] = fx, fy
             largest = max(largest, abs(fx), abs(fy))
             square += fx * fx + fy * fy
     return largest, math.sqrt(square)
 
 
-@njit(cache=True, fastmath=FAST)
-def jacobian(traction, slip, bound, rho, out):
-    """Derivative of P_g at tau - rho s: xx, xy, yy into `out` (3, ny, nx)."""
-    ny, nx = bound.shape
-    for i in range(ny):
-        for j in range(nx):
+@njit(cache=True, fastmath=FAST, nogil=True)
+def jacobian(traction, slip, bound, slope, rho, derivative, turn):
+    """Derivative of P_g at z = tau - rho s: xx, xy, yy into `derivative` (3, ny, nx).
+
+    And n (dg/d|s|) s/|s| of sliding elements, n the direction of z, into `turn` (4, ny, nx: xx, xy, yx, yy).
+    """
+    for i in range(bound.shape[0]):
+        for j in range(bound.shape[1]):
             g = bound[i, j]
-            zx = traction[0, i, j] - rho * slip[0, i, j]
-            zy = traction[1, i, j] - rho * slip[1, i, j]
+            sx, sy = slip[i, j, 0], slip[i, j, 1]
+            zx, zy = traction[i, j, 0] - rho * sx, traction[i, j, 1] - rho * sy
             square = zx * zx + zy * zy
+            steep = 0.0
             if square <= g * g:
                 inside = 1.0 if g > 0.0 else 0.0
-                out[0, i, j], out[1, i, j], out[2, i, j] = inside, 0.0, inside
+                derivative[0, i, j], derivative[1, i, j], derivative[2, i, j] = inside, 0.0, inside
             else:
-                factor = g / math.sqrt(square)
-                out[0, i, j] = factor * zy * zy / square
-                out[1, i, j] = -factor * zx * zy / square
-                out[2, i, j] = factor * zx * zx / square
-
-
-@njit(cache=True, fastmath=FAST)
-def _apply(direction, product, derivative, rho, out):
-    """out = d - P'(d - rho B d)."""
-    ny, nx = derivative.shape[1], derivative.shape[2]
-    for i in range(ny):
-        for j in range(nx):
-            x = direction[0, i, j] - rho * product[0, i, j]
-            y = direction[1, i, j] - rho * product[1, i, j]
-            pxx, pxy, pyy = derivative[0, i, j], derivative[1, i, j], derivative[2, i, j]
-            out[0, i, j] = direction[0, i, j] - pxx * x - pxy * y
-            out[1, i, j] = direction[1, i, j] - pxy * x - pyy * y
+                z = math.sqrt(square)
+                factor = g / (z * square)
+                derivative[0, i, j] = factor * zy * zy
+                derivative[1, i, j] = -factor * zx * zy
+                derivative[2, i, j] = factor * zx * zx
+                speed = math.hypot(sx, sy)
+                steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
+            turn[0, i, j], turn[1, i, j] = steep * zx * sx, steep * zx * sy
+            turn[2, i, j], turn[3, i, j] = steep * zy * sx, steep * zy * sy
 
 
 @njit(cache=True, fastmath=FAST)
@@ -77,23 +120,6 @@ def _dot(a, b):
     for i in range(a.size):
         total += a[i] * b[i]
     return total
-
-
-@njit(cache=True, fastmath=FAST)
-def _orthogonalise(basis, k, hessenberg):
-    """One Arnoldi step: basis[k + 1] against basis[: k + 1] (modified Gram-Schmidt)."""
-    v = basis[k + 1]
-    for i in range(k + 1):
-        h = _dot(basis[i], v)
-        hessenberg[i, k] = h
-        row = basis[i]
-        for j in range(v.size):
-            v[j] -= h * row[j]
-    h = math.sqrt(_dot(v, v))
-    hessenberg[k + 1, k] = h
-    if h > 0.0:
-        for j in range(v.size):
-            v[j] /= h
 
 
 @njit(cache=True)
@@ -112,86 +138,124 @@ def _rotate(hessenberg, givens, rhs, k):
     rhs[k] = c * rhs[k]
 
 
-@njit(cache=True)
-def gmres(multipliers, derivative, rho, right, ly, lx, hy, leading, work, halo, tolerance, basis, product):
-    """Solve d - P'(d - rho B d) = right (2, ny, nx). Returns d and the number of products."""
-    steps = basis.shape[0] - 1
-    shape = right.shape
-    hessenberg = np.zeros((steps + 1, steps))
-    givens = np.zeros((2, steps))
-    rhs = np.zeros(steps + 1)
-    flat = right.reshape(-1)
-    norm = math.sqrt(_dot(flat, flat))
-    solution = np.zeros(flat.size)
-    if norm == 0.0:
-        return solution.reshape(shape), 0
-    for j in range(flat.size):
-        basis[0, j] = flat[j] / norm
-    rhs[0] = norm
-    done = 0
-    for k in range(steps):
-        direction = basis[k].reshape(shape)
-        multiply(multipliers, direction, ly, lx, hy, leading, work, halo, product)
-        _apply(direction, product, derivative, rho, basis[k + 1].reshape(shape))
-        _orthogonalise(basis, k, hessenberg)
-        _rotate(hessenberg, givens, rhs, k)
-        done = k + 1
-        if abs(rhs[k + 1]) <= tolerance * norm:
-            break
+@njit(cache=True, fastmath=FAST, nogil=True)
+def arnoldi(direction, product, derivative, turn, rho, basis, k, hessenberg, givens, rhs):
+    """Newton's matrix times `direction`, d - P'(d - rho B d) - turn B d, made orthogonal to basis[: k + 1].
+
+    `product` is B d. Returns the norm of the residual with this much of the Krylov space.
+    """
+    ny, nx = derivative.shape[1], derivative.shape[2]
+    v = basis[k + 1]
+    for i in range(ny):
+        for j in range(nx):
+            bx, by = product[i, j, 0], product[i, j, 1]
+            dx, dy = direction[i, j, 0], direction[i, j, 1]
+            x, y = dx - rho * bx, dy - rho * by
+            pxx, pxy, pyy = derivative[0, i, j], derivative[1, i, j], derivative[2, i, j]
+            place = 2 * (i * nx + j)
+            v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * bx - turn[1, i, j] * by
+            v[place + 1] = dy - pxy * x - pyy * y - turn[2, i, j] * bx - turn[3, i, j] * by
+    for i in range(k + 1):
+        h = _dot(basis[i], v)
+        hessenberg[i, k] = h
+        row = basis[i]
+        for j in range(v.size):
+            v[j] -= h * row[j]
+    h = math.sqrt(_dot(v, v))
+    hessenberg[k + 1, k] = h
+    if h > 0.0:
+        for j in range(v.size):
+            v[j] /= h
+    _rotate(hessenberg, givens, rhs, k)
+    return abs(rhs[k + 1])
+
+
+@njit(cache=True, nogil=True)
+def combination(basis, hessenberg, rhs, done, out):
+    """Least-squares combination of basis[: done] into `out` (2 ny nx,)."""
+    for j in range(out.size):
+        out[j] = 0.0
     for i in range(done - 1, -1, -1):
         for j in range(i + 1, done):
             rhs[i] -= hessenberg[i, j] * rhs[j]
         rhs[i] = rhs[i] / hessenberg[i, i] if hessenberg[i, i] != 0.0 else 0.0
-        for j in range(flat.size):
-            solution[j] += rhs[i] * basis[i, j]
-    return solution.reshape(shape), done
+        for j in range(out.size):
+            out[j] += rhs[i] * basis[i, j]
 
 
-@njit(cache=True, fastmath=FAST)
-def _move(start, step, length, out):
-    """out = start + length step, all (2, ny, nx)."""
-    for c in range(2):
-        for i in range(start.shape[1]):
-            for j in range(start.shape[2]):
-                out[c, i, j] = start[c, i, j] + length * step[c, i, j]
+class _Newton:
+    """Work space and steps of Newton's method for one patch."""
+
+    def __init__(self, problem: Problem, krylov: int) -> None:
+        ny, nx = problem.height.shape
+        self.problem, self.rho = problem, 1.0 / problem.influence.own
+        self.leading = leading_rows(problem.height)
+        self.first, self.count = column_ranges(problem.height)
+        self.slips = column_slips(problem.influence.column, problem.influence.hy)
+        self.factors = np.empty((nx, 2, ny, ny))
+        self.basis = np.empty((krylov + 1, 2 * ny * nx))
+        self.derivative, self.turn = np.empty((3, ny, nx)), np.empty((4, ny, nx))
+        self.bound, self.slope = np.empty((ny, nx)), np.zeros((ny, nx))
+        self.value, self.field, self.product = (np.empty((ny, nx), complex) for _ in range(3))
+
+    def multiply(self, field: np.ndarray) -> np.ndarray:
+        """B `field` into the kept array."""
+        differences(self.problem.influence.displacements(field), self.leading, self.problem.influence.hy, self.product)
+        return self.product
+
+    def residual(self, traction: np.ndarray, slip: np.ndarray) -> tuple[float, float]:
+        """Largest component and norm of the friction law's residual, which is kept."""
+        p = self.problem
+        law_of_slip(reals(slip), p.height, p.scale, p.knots, p.factors, self.bound, self.slope)
+        return residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value))
+
+    def step(self, traction: np.ndarray, slip: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
+        """Newton's step against the kept residual by preconditioned GMRES, and the products it took."""
+        jacobian(reals(traction), reals(slip), self.bound, self.slope, self.rho, self.derivative, self.turn)
+        factorise(self.slips, self.derivative, self.rho, self.first, self.count, self.factors)
+        steps = self.basis.shape[0] - 1
+        hessenberg, givens, rhs = np.zeros((steps + 1, steps)), np.zeros((2, steps)), np.zeros(steps + 1)
+        flat = self.value.reshape(-1).view(float)
+        norm = math.sqrt(_dot(flat, flat))
+        np.divide(flat, norm, out=self.basis[0])
+        rhs[0] = norm
+        done = 0
+        for k in range(steps):
+            apply_inverse(self.factors, self.first, self.count, self.basis[k].reshape(*self.value.shape, 2),
+                          reals(self.field))  # fmt: skip
+            product = self.multiply(self.field)
+            rest = arnoldi(reals(self.field), reals(product), self.derivative, self.turn, self.rho, self.basis, k,
+                           hessenberg, givens, rhs)  # fmt: skip
+            done = k + 1
+            if rest <= tolerance * norm:
+                break
+        combination(self.basis, hessenberg, rhs, done, flat)
+        out = np.empty_like(self.field)
+        apply_inverse(self.factors, self.first, self.count, reals(self.value), reals(out))
+        return out, done
 
 
-@njit(cache=True)
-def newton(multipliers, own, hy, rigid, bound, traction, slip, tolerance, limit, krylov):
-    """Tractions (2, ny, nx) of the friction law for the rigid slip `rigid` and the bounds `bound`.
+def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int, krylov: int):
+    """Tractions (ny, nx) of the friction law, from the start `traction`.
 
-    `traction` is the start and is overwritten, as is `slip`. Returns the residual (largest component of the law's
-    residual), Newton steps, products. Steps are halved until the residual's norm falls (at most four times).
+    Returns tractions, slips, traction bounds at these slips, the residual (largest component of the law's residual),
+    Newton steps and products. Steps are halved until the residual's norm falls (at most four times).
     """
-    ny, nx = bound.shape
-    ly, lx = padded_lengths(ny, nx)
-    work, halo = np.empty((4, lx * ly)), np.empty((2, ny + HALO, nx))
-    leading = leading_rows(bound)
-    rho = 1.0 / own
-    basis = np.empty((krylov + 1, 2 * ny * nx))
-    product, change = np.empty((2, ny, nx)), np.empty((2, ny, nx))
-    value, derivative = np.empty((2, ny, nx)), np.empty((3, ny, nx))
-    new_traction, new_slip = np.empty((2, ny, nx)), np.empty((2, ny, nx))
-    multiply(multipliers, traction, ly, lx, hy, leading, work, halo, product)
-    _move(rigid, product, 1.0, slip)
-    largest, norm = residual(traction, slip, bound, rho, value)
+    work = _Newton(problem, krylov)
+    slip = problem.rigid + work.multiply(traction)
+    largest, norm = work.residual(traction, slip)
     products, iteration = 1, 0
     while largest > tolerance and iteration < limit:
         iteration += 1
-        jacobian(traction, slip, bound, rho, derivative)
-        inner = min(0.1, max(1e-4, 0.3 * tolerance / largest))
-        step, used = gmres(multipliers, derivative, rho, value, ly, lx, hy, leading, work, halo, inner, basis, product)
-        multiply(multipliers, step, ly, lx, hy, leading, work, halo, change)
+        step, used = work.step(traction, slip, min(0.1, max(1e-4, 0.3 * tolerance / largest)))
+        change = work.multiply(step)
         products += used + 1
-        length = -1.0
+        length = 1.0
         while True:
-            _move(traction, step, length, new_traction)
-            _move(slip, change, length, new_slip)
-            largest, new_norm = residual(new_traction, new_slip, bound, rho, value)
-            if new_norm < (1.0 + 0.1 * length) * norm or length > -0.05:
+            new_traction, new_slip = traction - length * step, slip - length * change
+            largest, new_norm = work.residual(new_traction, new_slip)
+            if new_norm < (1.0 - 0.1 * length) * norm or length < 0.05 or math.isnan(new_norm):
                 break
             length *= 0.5
-        norm = new_norm
-        _move(new_traction, step, 0.0, traction)
-        _move(new_slip, step, 0.0, slip)
-    return largest, iteration, products
+        traction, slip, norm = new_traction, new_slip, new_norm
+    return traction, slip, work.bound, largest, iteration, products
