@@ -18,6 +18,7 @@ from trackroller.contact.hertz import HertzShape
 from trackroller.contact.sliding import tractions_full_slip
 
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
+LAST_SLIP = 1.0 - 2.0**-53  # largest |w|; beyond, the friction is that of complete slip to the last digit
 TOLERANCE = 0.01  # aimed at, over the residual that counts as converged
 
 # ellipse, slip, friction, rows -> resultants; `fine` chooses the discretisation
@@ -45,7 +46,7 @@ class Equilibrium:
     """Solution for n rollers: `regime` (n,), shift (n,) [mm], normal_force (n, 2) [N] and the resultants.
 
     `forces` has the fields of `Resultants`, each of shape (n, 2). `residual` is the largest relative
-    imbalance: forces over the applied loads, torque over mu (|F_rad| + |F_ax|) + |F_Motor|. Undefined is NaN.
+    imbalance: forces over the applied loads, torque over what friction and motor can give. Undefined is NaN.
     """
 
     regime: np.ndarray
@@ -69,7 +70,16 @@ class _Roller:
         s = loads.shape
         self.shape = HertzShape(s.lateral[rows], s.rolling[rows], s.pressure[rows])
         self.load = np.abs(self.radial_force) + np.abs(self.axial_force)
-        self.slip_scale = 0.5 * self.sin * np.hypot(s.lateral[rows], s.rolling[rows]) * np.cbrt(self.load)
+        self.largest = self.load * np.maximum(1e3, 10.0 / np.minimum(self.sin, self.cos))
+        # how far the slip varies over the patch, by the spin and by the curved guide, which ends at its equator;
+        # the drilling friction of a patch above the roller's size decays slowly
+        root, flat = np.cbrt(self.load * np.maximum(1.0, 0.5 / self.cos)), self.guide_profile_radius * self.cos
+        bend = np.minimum((s.lateral[rows] * root * self.cos) ** 2 / flat, flat)
+        varies = 0.5 * (self.sin * np.hypot(s.lateral[rows], s.rolling[rows]) * root + bend)
+        self.slip_scale = varies * (1.0 + varies / self.radius)
+        # the torque is measured against what friction can give, so that little friction does not hide its imbalance
+        pressing = np.abs(self.radial_force) / self.cos + np.abs(self.axial_force)
+        self.torque_scale = self.friction * pressing * (1.0 + varies / self.radius) + np.abs(self.motor_force)
 
     radial_force: np.ndarray
     axial_force: np.ndarray
@@ -103,6 +113,18 @@ class _Roller:
         drilling = (f[2, 0] - f[2, 1]) * self.sin[pick] / self.radius[pick]
         return drilling + f[1, 0] + f[1, 1] + self.motor_force[pick]
 
+    def wedged(self, normal: np.ndarray, f: np.ndarray) -> np.ndarray:
+        """Do more axial force and more lateral difference of the normal forces go together? Shape (m,).
+
+        The determinant of eqs (7), (9) vanishes nowhere on the branch of solutions that grows out of the frictionless
+        wedge; beyond self-locking, mu f = tan(alpha), stands another one on which the lateral load rests on the wrong
+        contact. Without axial load both are the same.
+        """
+        one, two = f[0] / normal
+        double = 2.0 * self.sin * self.cos
+        det = double * (1.0 + one * two) + (one - two) * (self.cos - self.sin) * (self.cos + self.sin)
+        return (det > 0) | (self.axial_force == 0)
+
     def residuals(self, normal: np.ndarray, f: np.ndarray, pick=slice(None)) -> np.ndarray:
         """The three balances [N], shape (3, m)."""
         s, c = self.sin[pick], self.cos[pick]
@@ -115,12 +137,12 @@ class _Roller:
             return self.slip_scale[pick] * w / np.sqrt((1 - w) * (1 + w))
 
     def w_of(self, shift: np.ndarray) -> np.ndarray:
-        return shift / np.hypot(self.slip_scale, shift)
+        return np.clip(shift / np.hypot(self.slip_scale, shift), -LAST_SLIP, LAST_SLIP)
 
-
-def _floor(normal: np.ndarray, load: np.ndarray) -> np.ndarray:
-    # a contact about to lift still needs a positive force for its ellipse
-    return np.clip(np.nan_to_num(normal, nan=1.0), 1e-9 * load, 1e3 * load)
+    def floored(self, normal: np.ndarray, pick=slice(None)) -> np.ndarray:
+        """Normal forces kept positive, for a contact about to lift still needs an ellipse, and finite."""
+        load = self.load[pick]
+        return np.clip(np.where(np.isnan(normal), load, normal), 1e-9 * load, self.largest[pick])
 
 
 def _bracketed(roller: _Roller, w_low, w_high, fine: bool, sweeps: int, tolerance: float):
@@ -129,7 +151,7 @@ def _bracketed(roller: _Roller, w_low, w_high, fine: bool, sweeps: int, toleranc
     The torque falls with w. Returns w (m,) and normal forces (2, m).
     """
     m = roller.rows.size
-    normal = _floor(roller.normal_forces(np.zeros((2, m))), roller.load)
+    normal = roller.floored(roller.normal_forces(np.zeros((2, m))))
     t_low, t_high = np.full(m, np.nan), np.full(m, np.nan)
     w, side = np.clip(np.zeros(m), w_low, w_high), np.zeros(m)
     active = np.arange(m)
@@ -137,7 +159,7 @@ def _bracketed(roller: _Roller, w_low, w_high, fine: bool, sweeps: int, toleranc
         # the normal forces follow the slip; twice when the answer counts
         for _ in range(3 if fine else 1):
             f = roller.contact(roller.shift(w[active], active), normal[:, active], fine, active)
-            normal[:, active] = _floor(roller.normal_forces(f[0] / normal[:, active], active), roller.load[active])
+            normal[:, active] = roller.floored(roller.normal_forces(f[0] / normal[:, active], active), active)
         t = roller.torque(f, active)
         up = t > 0
         w_low[active] = np.where(up, w[active], w_low[active])
@@ -185,9 +207,7 @@ def _newton(roller: _Roller, w, normal, w_low, w_high, steps: int = 14):
     active = np.arange(m)
     jac = np.empty((m, 3, 3))
     step_old, r_old = np.zeros((m, 3)), np.zeros((m, 3))
-    # the torque is measured against what friction can give, so that little friction does not hide its imbalance
-    torque_scale = roller.friction * roller.load + np.abs(roller.motor_force)
-    scale = np.stack([roller.load, roller.load, torque_scale], axis=1)
+    scale = np.stack([roller.load, roller.load, roller.torque_scale], axis=1)
     for k in range(steps):
         n_a, w_a = normal[:, active], w[active]
         f = roller.contact(roller.shift(w_a, active), n_a, True, active)
@@ -208,7 +228,8 @@ def _newton(roller: _Roller, w, normal, w_low, w_high, steps: int = 14):
             s = step_old[active]
             y = r - r_old[active]
             miss = y - np.einsum("mij,mj->mi", jac[active], s)
-            jac[active] += miss[:, :, None] * s[:, None, :] / np.sum(s * s, axis=1)[:, None, None]
+            with np.errstate(divide="ignore", invalid="ignore"):  # no step, no news: the row ends as singular
+                jac[active] += miss[:, :, None] * s[:, None, :] / np.sum(s * s, axis=1)[:, None, None]
         step = _solve3(jac[active], -r)
         room = np.stack([0.9 * normal[0, active], 0.9 * normal[1, active]], axis=1)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -227,16 +248,15 @@ def _newton(roller: _Roller, w, normal, w_low, w_high, steps: int = 14):
 
 
 def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Batch of 3x3 systems; a singular one gives NaN instead of an exception."""
-    scale = np.max(np.abs(a), axis=(1, 2))
-    good = np.isfinite(scale) & (scale > 0)
-    det = np.zeros(len(a))
-    det[good] = np.linalg.det(a[good] / scale[good, None, None])
-    good &= np.abs(det) > 1e-30
-    x = np.full(b.shape, np.nan)
-    if good.any():
-        x[good] = np.linalg.solve(a[good], b[good][:, :, None])[:, :, 0]
-    return x
+    """Batch of 3x3 systems by Cramer's rule on scaled rows and columns; a singular one gives NaN, no exception."""
+    with np.errstate(all="ignore"):
+        a, b = a / (rows := np.max(np.abs(a), axis=2))[:, :, None], b / rows
+        columns = np.max(np.abs(a), axis=1)
+        a = a / columns[:, None, :]
+        cross = np.stack([np.cross(a[:, :, 1], a[:, :, 2]), np.cross(a[:, :, 2], a[:, :, 0]),
+                          np.cross(a[:, :, 0], a[:, :, 1])], axis=1)  # fmt: skip
+        x = np.einsum("mij,mj->mi", cross, b) / np.sum(a[:, :, 0] * cross[:, 0], axis=1)[:, None] / columns
+    return np.where(np.isfinite(x), x, np.nan)
 
 
 def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
@@ -283,11 +303,12 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
     full[rows] = friction
     rolled = replace(loads, friction=full)
     roller = _Roller(rolled, law, rows)
-    w_low, w_high = roller.w_of(-roller.radius), roller.w_of(1e4 * roller.radius)
-    w_end = np.where(roller.motor_force < 0, w_low, w_high)
-    f_end = _forces_at(roller, w_end)
-    t_end = roller.torque(f_end)
-    beyond = np.where(roller.motor_force < 0, t_end < 0, (roller.motor_force > 0) & (t_end > 0))
+    w_low, w_high = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
+    # locked, the friction along the track is complete and there is no other, as in full slip
+    beyond = roller.motor_force > friction * np.sum(roller.normal_forces(np.zeros((2, rows.size))), axis=0)
+    drives = np.flatnonzero(roller.motor_force < 0)
+    spins = _Roller(rolled, law, rows[drives])
+    beyond[drives] = spins.torque(_forces_at(spins, w_low[drives])) < 0
     go = np.flatnonzero(~beyond)
     if go.size == 0:
         return rows
@@ -302,10 +323,12 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
         b2, w2, n2, f2 = _newton(again, w2, n2, low[bad], high[bad])
         best[bad], w[bad], n[:, bad], f[:, :, bad] = b2, w2, n2, f2
     lift = np.any(n <= 1e-8 * roller.load, axis=0)
-    bad = np.flatnonzero(~(best <= loads.converged) & ~lift)
+    bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift)
     if bad.size:
         b3, w3, n3, f3, lift[bad] = _follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
         best[bad], w[bad], n[:, bad], f[:, :, bad] = b3, w3, n3, f3
+    # without a solution, what holds without friction decides
+    lift |= ~(best <= 1e-6) & np.any(roller.normal_forces(np.zeros((2, go.size))) <= 0, axis=0)
     k = rows[go]
     regime[k] = np.where(lift, LIFT_OFF, np.where(best <= 1e-6, ROLLING, FAILED))
     residual[k], shift[k], normal[:, k] = best, roller.shift(w), n
@@ -320,15 +343,18 @@ def _follow_friction(loads, law, rows, low, high):
     frictionless wedge is the one that loading reaches. Returns what `_newton` does, and the rows that lift off.
     """
     m = rows.size
-    lifted, w, normal = np.zeros(m, bool), np.zeros(m), None
+    lifted, w = np.zeros(m, bool), np.zeros(m)
+    normal = np.full((2, m), np.nan)
     best, f = np.full(m, np.inf), np.full((3, 2, m), np.nan)
-    lost, found = np.zeros(m, bool), np.zeros(m, bool)
+    lost, found, grip = np.zeros(m, bool), np.zeros(m, bool), np.zeros(m)
     scale = np.ones_like(loads.friction)
-    for share in (*np.linspace(0.05, 0.95, 19), 1.0):
-        scale[rows] = share
+    tangent = np.tan(loads.contact_angle[rows])
+    start = np.clip(0.2 * tangent / loads.friction[rows], 1e-8, 0.05)  # well before the wedge may lock
+    for k in range(21):
+        scale[rows] = np.maximum(start ** (1 - k / 20), k / 20)
         eased = replace(loads, friction=loads.friction * scale, motor_force=loads.motor_force * scale)
         roller = _Roller(eased, law, rows)
-        if normal is None:
+        if k == 0:
             w, normal = _bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
         best, w_new, n_new, f = _newton(roller, w.copy(), normal.copy(), low, high)
         fine = best <= 1e-8
@@ -336,16 +362,20 @@ def _follow_friction(loads, law, rows, low, high):
         shrunk = np.any(normal < 0.15 * roller.load, axis=0)
         lifted |= np.where(fine, np.any(n_new < 1e-6 * roller.load, axis=0), shrunk)
         w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
+        with np.errstate(invalid="ignore"):
+            grip = np.where(fine, np.max(np.abs(f[0] / n_new), axis=0) / tangent, grip)
     best = np.where(lost, np.inf, best)
+    # a branch that ends where friction nearly carries the lateral load has shed a contact
+    lifted |= np.where(lost, (grip > 0.5) & (loads.axial_force[rows] != 0), ~roller.wedged(normal, f))
     return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing
 
 
 def _forces_at(roller: _Roller, w) -> np.ndarray:
     """Contact forces (3, 2, m) at a given slip, the normal forces having followed."""
-    normal = _floor(roller.normal_forces(np.zeros((2, w.size))), roller.load)
+    normal = roller.floored(roller.normal_forces(np.zeros((2, w.size))))
     for _ in range(3):
         f = roller.contact(roller.shift(w), normal, True)
-        normal = _floor(roller.normal_forces(f[0] / normal), roller.load)
+        normal = roller.floored(roller.normal_forces(f[0] / normal))
     return roller.contact(roller.shift(w), normal, True)
 
 

@@ -1,0 +1,60 @@
+"""Equilibria at the ends of the parameters: each of these once failed, warned or stood on the wrong branch."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+
+ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
+
+
+def solved(*cases, **options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return tr.solve(list(cases), ("forces", "contact"), **options)
+
+
+def test_a_nearly_flat_wedge_needs_great_normal_forces_and_gets_them():
+    case = tr.Case(contact_angle=89.99, guide_profile_radius=6, axis_distance=20, axial_force=0, motor_force=0)
+    ds = solved(case)
+    assert ds.regime == ROLLING and ds.converged == 1
+    expected = 200 / (2 * np.cos(np.deg2rad(89.99)))
+    assert ds.normal_force.values == pytest.approx(expected, rel=0.5)  # friction carries a part
+
+
+def test_drilling_friction_that_nearly_stops_a_small_roller_is_balanced():
+    # the patch is as large as the rolling radius: the slip is many patch lengths
+    soft = {"name": "soft", "youngs_modulus": 3, "poisson_ratio": 0.5, "tensile_strength": 10,
+            "fatigue_strength_ratio": 0.3, "cycles_at_tensile_strength": 1e4,
+            "cycles_at_fatigue_limit": 5e6}  # fmt: skip
+    case = tr.Case(contact_angle=85, axis_distance=1.0, axial_force=0, motor_force=0, roller_material=soft)
+    ds = solved(case)
+    assert ds.regime == ROLLING and ds.converged == 1
+    assert ds.slip.item() > 1.0
+
+
+def test_the_lateral_load_rests_on_the_contact_that_faces_it():
+    # beyond self-locking stands a branch on which it rests on the other one
+    cases = [tr.Case(contact_angle=11, friction_coefficient=0.49, radial_force=-200, axial_force=a, motor_force=0)
+             for a in (-5.0, 5.0, -0.1, 0.1)]  # fmt: skip
+    ds = solved(*cases)
+    for i, sign in enumerate((-1, 1, -1, 1)):
+        one, two = ds.normal_force.values[i]
+        assert ds.regime.values[i] == LIFT_OFF or sign * (two - one) > 0
+
+
+def test_braking_up_to_the_slip_limit_ends_in_the_state_of_full_slip():
+    limit = 0.3 * 200 / np.cos(np.deg2rad(30))
+    ds = solved(*(tr.Case(axial_force=20, motor_force=limit * (1 + e)) for e in (-1e-9, 1e-9)))
+    assert ds.regime.values.tolist() == [ROLLING, FULL_SLIP]
+    assert ds.normal_force.values[0] == pytest.approx(ds.normal_force.values[1], rel=1e-4)
+    assert float(ds.transmitted_force[0]) == pytest.approx(float(ds.transmitted_force[1]), rel=1e-7)
+
+
+@pytest.mark.parametrize("friction", [0.0, 1e-12, 1e-6])
+def test_little_friction_rolls_at_the_slip_of_the_limit(friction):
+    near = solved(tr.Case(friction_coefficient=friction, motor_force=0))
+    limit = solved(tr.Case(friction_coefficient=0.0, motor_force=0))
+    assert near.slip.item() == pytest.approx(limit.slip.item(), rel=1e-5)
