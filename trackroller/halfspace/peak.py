@@ -7,15 +7,13 @@ is evaluated again with finer quadrature. Stresses per unit p_max, depth in unit
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
-from trackroller.contact.sliding import clustered_rule
-from trackroller.halfspace.ellipse import FRICTION, K0, K1, K2, POLE_X, A, B, stress_at
+from trackroller.halfspace.ellipse import near_parts, unit_rule
+from trackroller.halfspace.ellipse_kernels import FRICTION, K0, K1, K2, POLE_X, A, B
 from trackroller.threads import share_rows
 
 
@@ -64,103 +62,155 @@ def _scan_points() -> np.ndarray:
 
 
 SCAN = _scan_points()
+PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of first steps along radius, circumference and depth
+GAPS = (0.045, 0.017, 0.008)  # to the highest, times the number of finalists: seeds further down are given up
 
 
-@njit(cache=True)
-def _von_mises(parts, nu, sign):
-    """von Mises stress, eq. (6), from stress parts (4, 6)."""
-    s0 = parts[0, 0] + nu * parts[1, 0] + sign * (parts[2, 0] + nu * parts[3, 0])
-    s1 = parts[0, 1] + nu * parts[1, 1] + sign * (parts[2, 1] + nu * parts[3, 1])
-    s2 = parts[0, 2] + nu * parts[1, 2] + sign * (parts[2, 2] + nu * parts[3, 2])
-    t0 = parts[0, 3] + nu * parts[1, 3] + sign * (parts[2, 3] + nu * parts[3, 3])
-    t1 = parts[0, 4] + nu * parts[1, 4] + sign * (parts[2, 4] + nu * parts[3, 4])
-    t2 = parts[0, 5] + nu * parts[1, 5] + sign * (parts[2, 5] + nu * parts[3, 5])
-    return math.sqrt(0.5 * ((s0 - s1) ** 2 + (s2 - s0) ** 2 + (s1 - s2) ** 2)
-                     + 3.0 * (t0 * t0 + t1 * t1 + t2 * t2))  # fmt: skip
+@dataclass(frozen=True)
+class _Patches:
+    """What the search needs of n patches; `climbs` have a patch and a body each."""
+
+    rows: np.ndarray
+    fields: np.ndarray
+    poisson_ratio: np.ndarray
+
+    def parts(self, of: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
+        """Stress parts (4, 6, m) of patches `of` at normalised points u (m, 3)."""
+        patch = self.rows[of]
+        points = np.empty((len(u), 3))
+        points[:, 0], points[:, 1] = u[:, 0] * patch[:, A], u[:, 1] * patch[:, B]
+        points[:, 2] = u[:, 2] * np.minimum(patch[:, A], patch[:, B])
+        return np.moveaxis(near_parts(self.rows, self.fields, of, points, waves, rule), 0, 2)
+
+    def stress(self, of: np.ndarray, body: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray):
+        """von Mises stress (m,) in bodies `body` of patches `of` at normalised points u (m, 3), on all threads."""
+        out = np.empty(len(u))
+
+        def work(first: int, last: int) -> None:
+            some = slice(first, last)
+            parts = self.parts(of[some], u[some], waves, rule)
+            out[some] = _von_mises(parts, self.poisson_ratio[of[some], body[some]], 1.0 - 2.0 * body[some])
+
+        share_rows(work, len(u), 64, 1024)
+        return out
+
+    def scan(self, u: np.ndarray, rule: np.ndarray) -> np.ndarray:
+        """von Mises stress (n, m, 2) in both bodies at normalised points u (n, m, 3), on all threads."""
+        n, m = u.shape[:2]
+        out = np.empty((n * m, 2))
+        of, flat = np.repeat(np.arange(n), m), u.reshape(n * m, 3)
+
+        def work(first: int, last: int) -> None:
+            some = slice(first, last)
+            parts = self.parts(of[some], flat[some], rule, rule)
+            for body, sign in ((0, 1.0), (1, -1.0)):
+                out[some, body] = _von_mises(parts, self.poisson_ratio[of[some], body], sign)
+
+        share_rows(work, n * m, 64, 1024)
+        return out.reshape(n, m, 2)
 
 
-@njit(cache=True)
-def _value(patch, field, nu, sign, u, rule, rule_w, waves, waves_w, parts):
-    c = min(patch[A], patch[B])
-    stress_at(patch, field, u[0] * patch[A], u[1] * patch[B], u[2] * c, waves, waves_w, rule, rule_w, parts)
-    return _von_mises(parts, nu, sign)
+def _von_mises(parts: np.ndarray, nu: np.ndarray, sign) -> np.ndarray:
+    """von Mises stress (m,), eq. (6), from stress parts (4, 6, m)."""
+    s = parts[0] + nu * parts[1] + sign * (parts[2] + nu * parts[3])
+    one, two, three = s[0] - s[1], s[2] - s[0], s[1] - s[2]
+    shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5]
+    return np.sqrt(0.5 * (one * one + two * two + three * three) + 3.0 * shear)
 
 
-@njit(cache=True)
-def _copy(source, target):
-    target[0], target[1], target[2] = source[0], source[1], source[2]
+def _project(u: np.ndarray) -> np.ndarray:
+    """The nearest points of the closed half-space below the patch."""
+    r = np.sqrt(u[:, 0] ** 2 + u[:, 1] ** 2)
+    u[:, :2] /= np.maximum(r, 1.0)[:, None]
+    u[:, 2] = np.maximum(u[:, 2], 0.0)
+    return u
 
 
-@njit(cache=True)
-def _distance2(u, v):
-    return (u[0] - v[0]) ** 2 + (u[1] - v[1]) ** 2 + (u[2] - v[2]) ** 2
+@dataclass
+class _Climbs:
+    """Points u (m, 3) with stress f (m,) on their way up, each in a body of a patch; `gained` by the last sweep,
+    `step` (m, 3) of the search along radius, circumference and depth."""
 
+    patches: _Patches
+    of: np.ndarray
+    body: np.ndarray
+    u: np.ndarray
+    f: np.ndarray
+    gained: np.ndarray
+    step: np.ndarray
 
-@njit(cache=True)
-def _project(u):
-    r = math.hypot(u[0], u[1])
-    if r > 1.0:
-        u[0] /= r
-        u[1] /= r
-    u[2] = max(u[2], 0.0)
+    def values(self, i: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
+        return self.patches.stress(self.of[i], self.body[i], u, waves, rule)
 
+    def try_points(self, i: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
+        """Moves climbs `i` to u (len(i), 3) where that is higher; returns the values there."""
+        value = self.values(i, u, waves, rule)
+        better = value > self.f[i]
+        self.u[i[better]], self.f[i[better]] = u[better], value[better]
+        return value
 
-@njit(cache=True)
-def _climb(patch, field, nu, sign, u, f, rule, rule_w, waves, waves_w, parts, first, smallest, sweeps):
-    """Pattern search from u with value f: a parabola along radius, circumference and depth in turn."""
-    h, trial, axis, f_side, start = np.empty(3), np.empty(3), np.empty(3), np.empty(2), np.empty(3)
-    h[0], h[1], h[2] = first, 1.6 * first, first
-    gained = 0.0
-    for _sweep in range(sweeps):
-        before = f
-        _copy(u, start)
-        r = math.hypot(u[0], u[1])
-        cx, cy = (u[0] / r, u[1] / r) if r > 1e-9 else (1.0, 0.0)
-        moved = 0.0
+    def sweep(self, rows: np.ndarray, waves, rule, smallest: float, ridge: bool) -> np.ndarray:
+        """A parabola along radius, circumference and depth in turn from `rows`; returns those not yet at rest."""
+        before, start = self.f[rows], self.u[rows]
+        r = np.sqrt(start[:, 0] ** 2 + start[:, 1] ** 2)
+        off = r > 1e-9
+        c, s = np.where(off, start[:, 0], 1.0), np.where(off, start[:, 1], 0.0)
+        r = np.where(off, r, 1.0)
+        zero = np.zeros_like(r)
+        axes = np.stack([np.stack([c / r, s / r, zero], 1), np.stack([-s / r, c / r, zero], 1),
+                         np.stack([zero, zero, zero + 1.0], 1)])  # fmt: skip
+        moved = zero
         for k in range(3):
-            axis[0] = cx if k == 0 else (-cy if k == 1 else 0.0)
-            axis[1] = cy if k == 0 else (cx if k == 1 else 0.0)
-            axis[2] = 1.0 if k == 2 else 0.0
-            u0, v0, w0, f0 = u[0], u[1], u[2], f
-            for side in range(2):
-                step = h[k] if side == 0 else -h[k]
-                trial[0], trial[1], trial[2] = u0 + step * axis[0], v0 + step * axis[1], w0 + step * axis[2]
-                _project(trial)
-                same = abs(trial[0] - u0) + abs(trial[1] - v0) + abs(trial[2] - w0) < 1e-12
-                f_side[side] = (
-                    f0 if same else _value(patch, field, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
-                )
-                if f_side[side] > f:
-                    f = f_side[side]
-                    _copy(trial, u)
-            curve = f_side[0] - 2.0 * f0 + f_side[1]
-            if curve < 0.0:
-                step = 0.5 * h[k] * (f_side[1] - f_side[0]) / curve
-                step = min(max(step, -2.0 * h[k]), 2.0 * h[k])
-                if abs(step) > 0.05 * h[k] and abs(abs(step) - h[k]) > 0.05 * h[k]:
-                    trial[0], trial[1], trial[2] = u0 + step * axis[0], v0 + step * axis[1], w0 + step * axis[2]
-                    _project(trial)
-                    value = _value(patch, field, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
-                    if value > f:
-                        f = value
-                        _copy(trial, u)
-            distance = abs(u[0] - u0) + abs(u[1] - v0) + abs(u[2] - w0)
-            moved = max(moved, distance / h[k])
-            if distance < 0.5 * h[k]:
-                h[k] *= 0.35
-        if _sweep > 0 and _distance2(u, start) > 1e-8:  # along a ridge that lies askew to the axes
-            for k in range(3):
-                trial[k] = 2.0 * u[k] - start[k]
-            _project(trial)
-            value = _value(patch, field, nu, sign, trial, rule, rule_w, waves, waves_w, parts)
-            if value > f:
-                f = value
-                _copy(trial, u)
-        gained = f - before
-        widest = max(h[0], h[1], h[2])
-        if widest < smallest or (gained < 1e-6 * f and moved < 1e-9 and widest < 4 * smallest):
-            break
-    return f, gained
+            moved = np.maximum(moved, self._along(rows, axes[k], self.step[:, k], waves, rule))
+        if ridge:  # one that lies askew to the axes
+            far = ((self.u[rows] - start) ** 2).sum(axis=1) > 1e-8
+            self.try_points(rows[far], _project(2.0 * self.u[rows[far]] - start[far]), waves, rule)
+        self.gained[rows] = self.f[rows] - before
+        widest = self.step[rows].max(axis=1)
+        still = (self.gained[rows] < 1e-6 * self.f[rows]) & (moved < 1e-9) & (widest < 4.0 * smallest)
+        return rows[~((widest < smallest) | still)]
+
+    def standing(self, share: float, gap: float, most: int) -> np.ndarray:
+        """Up to `most` climbs of each body: the highest, and those above its `share` that are not the same summit.
+
+        The others are given up. Points closer than `gap` to a higher one are taken for the same summit.
+        """
+        of_a_body = len(self.f) // (2 * len(self.patches.rows))
+        f, u = self.f.reshape(-1, of_a_body), self.u.reshape(-1, of_a_body, 3)
+        every = np.arange(len(f))
+        left, enough = f.copy(), share * f.max(axis=1)
+        rows = []
+        for _ in range(min(most, of_a_body)):
+            best = left.argmax(axis=1)
+            good = left[every, best] >= enough
+            rows.append((every * of_a_body + best)[good])
+            left[every, best] = -1.0
+            left = np.where(((u - u[every, best][:, None, :]) ** 2).sum(axis=2) < gap * gap, -1.0, left)
+        standing = np.sort(np.concatenate(rows))
+        fallen = np.ones(len(self.f), bool)
+        fallen[standing] = False
+        self.f[fallen] = -1.0
+        return standing
+
+    def _along(self, rows: np.ndarray, axis: np.ndarray, h: np.ndarray, waves, rule) -> np.ndarray:
+        """One axis (m, 3) of the pattern: both sides, then the summit of the parabola; returns moves over steps h."""
+        u_0, f_0, step = self.u[rows], self.f[rows], h[rows]
+        side = np.stack([_project(u_0 + step[:, None] * axis), _project(u_0 - step[:, None] * axis)])
+        fresh = np.abs(side - u_0).sum(axis=2) >= 1e-12
+        f_side = np.stack([f_0, f_0])
+        f_side[fresh] = self.values(np.concatenate([rows[fresh[0]], rows[fresh[1]]]), side[fresh], waves, rule)
+        for k in (0, 1):
+            better = f_side[k] > self.f[rows]
+            self.u[rows[better]], self.f[rows[better]] = side[k][better], f_side[k][better]
+        curve = f_side[0] - 2.0 * f_0 + f_side[1]
+        round_top = curve < 0.0
+        jump = 0.5 * step * (f_side[1] - f_side[0]) / np.where(round_top, curve, -1.0)
+        jump = np.minimum(np.maximum(jump, -2.0 * step), 2.0 * step)
+        worth = round_top & (np.abs(jump) > 0.05 * step) & (np.abs(np.abs(jump) - step) > 0.05 * step)
+        self.try_points(rows[worth], _project(u_0[worth] + jump[worth, None] * axis[worth]), waves, rule)
+        distance = np.abs(self.u[rows] - u_0).sum(axis=1)
+        h[rows] = np.where(distance < 0.5 * step, 0.35 * step, step)
+        return distance / step
 
 
 def _scans(patches: np.ndarray) -> np.ndarray:
@@ -179,118 +229,51 @@ def _scans(patches: np.ndarray) -> np.ndarray:
     return np.concatenate([np.broadcast_to(SCAN, (len(patches), *SCAN.shape)), turning], axis=1)
 
 
-@njit(cache=True)
-def _seeds(scan, values, count, chosen):
-    """Indices of the best scan points that lie apart from each other; returns how many."""
-    found = 0
-    best = 0.0
-    for i in range(values.size):
-        best = max(best, values[i])
-    taken = np.zeros(values.size)
-    while found < count:
-        k, top = -1, 0.85 * best
-        for i in range(values.size):
-            if taken[i] == 0.0 and values[i] > top:
-                k, top = i, values[i]
-        if k < 0:
-            break
-        chosen[found] = k
-        found += 1
-        for i in range(values.size):
-            d = (SCAN[i, 0] - SCAN[k, 0]) ** 2 + (SCAN[i, 1] - SCAN[k, 1]) ** 2 + (SCAN[i, 2] - SCAN[k, 2]) ** 2
-            if d < 0.25:
-                taken[i] = 1.0
-    return found
+def _seeds(points: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """The best scan points (n, m, 3) that lie apart from each other: indices (n, count), -1 where there are no more."""
+    left, every = values.copy(), np.arange(len(values))
+    enough = 0.85 * values.max(axis=1)
+    chosen = np.full((len(values), count), -1)
+    for k in range(count):
+        best = left.argmax(axis=1)
+        good = left[every, best] > enough
+        chosen[good, k] = best[good]
+        gap = ((points - points[every, best][:, None, :]) ** 2).sum(axis=2)
+        left = np.where(gap < 0.25, 0.0, left)
+    return chosen
 
 
-@njit(cache=True)
-def _one_peak(patch, field, points, nu, rules, seeds, finalists, smallest, floor, out):
-    s_rule, s_w, c_rule, c_w, p_rule, p_w, f_rule, f_w, waves, waves_w = rules
-    count = points.shape[0]
-    parts = np.empty((4, 6))
-    scan = np.empty((2, count))
-    slender = max(patch[A], patch[B]) / min(patch[A], patch[B])
-    # a missed or not quite climbed ridge shows nowhere: measured, it grows so with friction and slenderness
-    risk = floor * (1.0 + 10.0 * patch[FRICTION] ** 2 * math.sqrt(slender))
-    c = min(patch[A], patch[B])
-    for i in range(count):
-        u = points[i]
-        stress_at(patch, field, u[0] * patch[A], u[1] * patch[B], u[2] * c, s_rule, s_w, s_rule, s_w, parts)
-        scan[0, i], scan[1, i] = _von_mises(parts, nu[0], 1.0), _von_mises(parts, nu[1], -1.0)
-    chosen = np.empty(seeds, np.int64)
-    tops, values = np.empty((seeds, 3)), np.empty(seeds)
-    for body in range(2):
-        sign = 1.0 if body == 0 else -1.0
-        found = _seeds(points, scan[body], seeds, chosen)
-        high = 0.0
-        for s in range(found):
-            _copy(points[chosen[s]], tops[s])
-            values[s] = _value(patch, field, nu[body], sign, tops[s], c_rule, c_w, c_rule, c_w, parts)
-            high = max(high, values[s])
-        for s in range(found):  # the scan is rough: seeds that fall behind with better quadrature are given up
-            if values[s] > 0.9 * high:
-                values[s], _ = _climb(
-                    patch, field, nu[body], sign, tops[s], values[s], c_rule, c_w, c_rule, c_w, parts, 0.12, 0.06, 1
-                )
-        best_seed = 0
-        for k in range(1, found):
-            if values[k] > values[best_seed]:
-                best_seed = k
-        top = values[best_seed]
-        for k in range(found):  # only those that may still win climb on
-            if values[k] > 0.965 * top:
-                values[k], _ = _climb(
-                    patch, field, nu[body], sign, tops[k], values[k], c_rule, c_w, c_rule, c_w, parts, 0.08, 0.06, 3
-                )
-                if values[k] > values[best_seed]:
-                    best_seed = k
-        top = values[best_seed]
-        best = gained_best = -1.0
-        for k in range(min(found, finalists)):
-            s, high = best_seed, -1.0  # the highest not yet polished
-            for j in range(found):
-                if values[j] > high:
-                    s, high = j, values[j]
-            values[s] = -1.0
-            u = tops[s]
-            if high < 0.95 * top:
-                break
-            if k > 0 and _distance2(u, tops[best_seed]) < 0.0025:
-                continue  # the same summit
-            f = _value(patch, field, nu[body], sign, u, p_rule, p_w, waves, waves_w, parts)
-            f, gained = _climb(
-                patch,
-                field,
-                nu[body],
-                sign,
-                u,
-                f,
-                p_rule,
-                p_w,
-                waves,
-                waves_w,
-                parts,
-                max(3.0 * smallest, 0.01),
-                smallest,
-                12,
-            )
-            if f > best:
-                best, gained_best = f, gained
-                out[body, 1], out[body, 2], out[body, 3] = u[0] * patch[A], u[1] * patch[B], u[2] * c
-        stress_at(patch, field, out[body, 1], out[body, 2], out[body, 3], f_rule, f_w, f_rule, f_w, parts)
-        f = _von_mises(parts, nu[body], sign)
-        out[body, 0] = f
-        out[body, 4] = 4.0 * (abs(f - best) + gained_best) / f + risk
-
-
-@njit(cache=True, nogil=True)
-def _all_peaks(first, last, patches, fields, scans, nu, rules, seeds, finalists, smallest, floor, out):
-    for i in range(first, last):
-        _one_peak(patches[i], fields[i], scans[i], nu[i], rules, seeds, finalists, smallest, floor, out[i])
-
-
-def _search_rows(rest: tuple, first: int, last: int) -> None:
-    _all_peaks(first, last, *rest)
+def _search(patches: _Patches, rules: tuple, settings: PeakSettings, smallest: float, out: np.ndarray) -> None:
+    """Fills out (n, 2, 5): stress, place in normalised coordinates and error of both bodies of each patch."""
+    scan_rule, climb_rule, polish_rule, summit_rule, waves = rules
+    n, count = len(patches.rows), settings.seeds
+    points = _scans(patches.rows)
+    values = patches.scan(points, scan_rule)
+    chosen = np.stack([_seeds(points, values[:, :, body], count) for body in (0, 1)], axis=1)
+    of, body, _ = (index.ravel() for index in np.indices((n, 2, count)))
+    climbs = _Climbs(patches, of, body, points[of, chosen.ravel()], np.full(of.size, -1.0), np.zeros(of.size),
+                     0.12 * PROPORTIONS * np.ones((of.size, 3)))  # fmt: skip
+    rows = np.flatnonzero(chosen.ravel() >= 0)
+    climbs.f[rows] = climbs.values(rows, climbs.u[rows], climb_rule, climb_rule)
+    # the scan is rough: seeds that fall behind with better quadrature are given up, and sooner with every sweep
+    most = max(settings.finalists, 2)
+    for k, gap in enumerate(GAPS):
+        if k == 1:
+            climbs.step[:] = 0.08 * PROPORTIONS
+        rows = climbs.standing(max(1.0 - gap * most, 1e-9), 0.15 if k > 0 else 0.0, most)
+        climbs.sweep(rows, climb_rule, climb_rule, 0.06, k > 1)
+    rows = climbs.standing(0.97, 0.1, settings.finalists)
+    found = climbs.values(rows, climbs.u[rows], waves, polish_rule)
+    climbs.f[rows] = found
+    climbs.step[:] = max(3.0 * smallest, 0.01) * PROPORTIONS
+    for k in range(12):
+        if rows.size > 0:
+            rows = climbs.sweep(rows, waves, polish_rule, smallest, k > 0)
+    best = np.arange(2 * n) * count + climbs.f.reshape(2 * n, count).argmax(axis=1)
+    summit = climbs.values(best, climbs.u[best], summit_rule, summit_rule)
+    error = 4.0 * (np.abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
+    out[:, :, 0], out[:, :, 4] = summit.reshape(n, 2), error.reshape(n, 2)
+    out[:, :, 1:4] = climbs.u[best].reshape(n, 2, 3)
 
 
 def find_peaks(
@@ -310,18 +293,19 @@ def find_peaks(
     """
     patches = np.ascontiguousarray(patches)
     out = np.empty((len(patches), 2, 5))
-    slender = np.maximum(patches[:, A], patches[:, B]) / np.minimum(patches[:, A], patches[:, B])
+    long, short = np.maximum(patches[:, A], patches[:, B]), np.minimum(patches[:, A], patches[:, B])
     # a slender patch turns its slip within a small part of its length
-    finer = np.clip(np.rint(np.sqrt(slender / 2.0)), 1, 6).astype(int)
+    finer = np.clip(np.rint(np.sqrt(long / short / 2.0)), 1, 6).astype(int)
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
-        found = np.empty((group.size, 2, 5))
         orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
-        rules = tuple(array for order in orders for array in clustered_rule(int(order * factor)))
+        rules = tuple(unit_rule(int(order * factor)) for order in orders)
         chosen = np.zeros((group.size, 2, 1, 1)) if fields is None else np.ascontiguousarray(fields[group])
-        ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
-        effort = (settings.seeds, settings.finalists, settings.step / factor, settings.floor)
-        rest = (patches[group], chosen, _scans(patches[group]), ratios, rules, *effort, found)
-        share_rows(functools.partial(_search_rows, rest), group.size, 1)
+        some = _Patches(patches[group], chosen, np.ascontiguousarray(poisson_ratio[group], dtype=float))
+        found = np.empty((group.size, 2, 5))
+        _search(some, rules, settings, settings.step / factor, found)
         out[group] = found
+    # a missed or not quite climbed ridge shows nowhere: measured, it grows so with friction and slenderness
+    out[:, :, 4] += (settings.floor * (1.0 + 10.0 * patches[:, FRICTION] ** 2 * np.sqrt(long / short)))[:, None]
+    out[:, :, 1:4] *= np.stack([patches[:, A], patches[:, B], short], axis=1)[:, None, :]
     return Peak(*np.moveaxis(out, 2, 0))

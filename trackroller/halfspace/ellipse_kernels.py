@@ -1,0 +1,289 @@
+"""Compiled kernels of the stress below a sliding ellipse; `ellipse` says what they add up.
+
+Loops run over waves and rays in vector registers: their angles and weights go through rows of a scratch array.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from trackroller.halfspace.vectors import angle, exp, inner, log, sine_cosine
+
+PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU = range(4)  # rows of the result
+
+# columns of the array that describes a patch; the slip v_x vanishes at y = K0 + K1 (x + a) left of POLE_X and at
+# y = K0 + K2 (x - a) right of it, which holds all three spin models
+A, B, FRICTION, SINE, COSINE, RADIUS, SHIFT, FIXED, POLE_X, K0, K1, K2 = range(12)
+
+# rows of the scratch array: angle and weight of waves and chords, then what the loop over the rays needs
+STRIDE = 4104  # numbers a row; not a power of two, for such rows would meet in the same lines of the cache
+ANGLE, WEIGHT, C, S, START, SPAN, NEAR, FAR, LENGTH = (row * STRIDE for row in range(9))
+SCRATCH = 9 * STRIDE
+MOST_POINTS = 1024  # of a rule: rows hold four rays for each
+
+
+@inner
+def slip_at(patch, x, y):
+    """Rigid slip v/omega of the roller against the guide at (x, y) [mm], eqs (21), (24), without branches."""
+    left = patch[K1] * (x + patch[A])
+    right = patch[K2] * (x - patch[A])
+    v_x = patch[SINE] * (y - patch[K0] - (left if x < patch[POLE_X] else right))
+    flat = patch[RADIUS] * patch[COSINE]
+    product = min(x * patch[COSINE] * (2.0 * patch[RADIUS] * patch[SINE] + x * patch[COSINE]), flat * flat)
+    return v_x, (patch[SHIFT] - flat) + math.sqrt(flat * flat - product)
+
+
+@inner
+def interpolated(field, u, v):
+    """Shares (x, y) of the traction bound at (u, v) in [-1, 1]^2, bilinear between element centres."""
+    ny, nx = field.shape[1], field.shape[2]
+    s = min(max(0.5 * (u + 1.0) * nx - 0.5, 0.0), nx - 1.000001)
+    t = min(max(0.5 * (v + 1.0) * ny - 0.5, 0.0), ny - 1.000001)
+    i, j = int(s), int(t)
+    s, t = s - i, t - j
+    w00, w01, w10, w11 = (1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t
+    f_x = w00 * field[0, j, i] + w01 * field[0, j, i + 1] + w10 * field[0, j + 1, i] + w11 * field[0, j + 1, i + 1]
+    f_y = w00 * field[1, j, i] + w01 * field[1, j, i + 1] + w10 * field[1, j + 1, i] + w11 * field[1, j + 1, i + 1]
+    return f_x, f_y
+
+
+@inner
+def direction(patch, field, x, y):
+    """Share of the traction bound on the roller at (x, y): of length 1 where it slides; (0, 0) at the pole."""
+    if patch[FIXED] != 0.0:  # full slip along y_C
+        return 0.0, patch[FIXED]
+    if field.shape[1] > 1:
+        return interpolated(field, x / patch[A], y / patch[B])
+    v_x, v_y = slip_at(patch, x, y)
+    speed = math.sqrt(v_x * v_x + v_y * v_y)
+    if speed == 0.0:
+        return 0.0, 0.0
+    return -v_x / speed, -v_y / speed
+
+
+@inner
+def spread_angles(work, at, start, end, turn, scale, rule):
+    """Angles and weights of [start, end] from place `at` on, dense on `scale` at `turn` if it is an end of it."""
+    span = end - start
+    if span < 1e-15:
+        return at
+    count = rule.shape[1]
+    if start == turn or end == turn:
+        sign = 0.5 * scale if start == turn else -0.5 * scale
+        u = math.asinh(span / scale)
+        for j in range(count):
+            grown = exp(u * rule[0, j])
+            shrunk = 1.0 / grown
+            work[ANGLE + at + j] = turn + sign * (grown - shrunk)
+            work[WEIGHT + at + j] = rule[1, j] * 0.5 * scale * u * (grown + shrunk)
+    else:
+        for j in range(count):
+            work[ANGLE + at + j] = start + span * rule[0, j]
+            work[WEIGHT + at + j] = rule[1, j] * span
+    return at + count
+
+
+@inner
+def sum_waves(patch, px, py, z, d_x, d_y, count, work, out):
+    """Adds the stresses of `count` plane waves; symmetric components about the wave vector (c, s) turned to x, y."""
+    inv_a, inv_b = 1.0 / patch[A], 1.0 / patch[B]
+    p_xx = p_yy = p_zz = p_xy = p_yz = p_zx = n_xx = n_yy = n_xy = 0.0
+    s_xx = s_yy = s_zz = s_xy = s_yz = s_zx = m_xx = m_yy = m_xy = 0.0
+    for k in range(count):
+        ky, kx = sine_cosine(work[ANGLE + k])
+        weight = work[WEIGHT + k] * (0.5 / math.pi)
+        p = px * kx + py * ky
+        kx, ky = kx * inv_a, ky * inv_b
+        lam = math.sqrt(kx * kx + ky * ky)
+        c, s = kx / lam, ky / lam
+        q = max(lam * z, 1e-14)
+        p2, q2 = p * p, q * q
+        plus, minus, square = (p + 1.0) * (p + 1.0) + q2, (p - 1.0) * (p - 1.0) + q2, p2 + q2
+        inv = 1.0 / (plus * minus)
+        log_r, log_i = 0.5 * log(minus * minus * inv), angle(2.0 * q, square - 1.0)
+        real, twice = p2 - q2, 2.0 * p * q
+        g_r, g_i = 2.0 + p * log_r - q * log_i, p * log_i + q * log_r
+        d_r = log_r + 2.0 * (p * (real - 1.0) + q * twice) * inv
+        d_i = log_i + 2.0 * (q * (real - 1.0) - p * twice) * inv
+        # far away the closed form cancels: -(2/3 + 2/5 h) h and (4/3 + 8/5 h) h/zeta with h = 1/zeta^2
+        inv = 1.0 / square
+        h_r, h_i = real * inv * inv, -twice * inv * inv
+        t_r, t_i = 4.0 / 3.0 + 1.6 * h_r, 1.6 * h_i
+        u_r, u_i = (p * h_r + q * h_i) * inv, (p * h_i - q * h_r) * inv
+        far = square > 1e4
+        g_r = -((2.0 / 3.0 + 0.4 * h_r) * h_r - 0.4 * h_i * h_i) if far else g_r
+        g_i = -((2.0 / 3.0 + 0.4 * h_r) * h_i + 0.4 * h_i * h_r) if far else g_i
+        d_r = t_r * u_r - t_i * u_i if far else d_r
+        d_i = t_r * u_i + t_i * u_r if far else d_i
+        deep = lam * z * weight
+        g_r, g_i, d_r, d_i = g_r * weight, g_i * weight, d_i * deep, -d_r * deep
+        cc, ss, cs = c * c, s * s, c * s
+        e = d_r - g_r
+        p_xx += cc * e
+        p_yy += ss * e
+        p_xy += cs * e
+        p_zz -= g_r + d_r
+        p_yz -= s * d_i
+        p_zx -= c * d_i
+        n_xx += ss * g_r
+        n_yy += cc * g_r
+        n_xy -= cs * g_r
+        along, across = d_x * c + d_y * s, d_y * c - d_x * s
+        e, t, f = along * (d_i - 2.0 * g_i), across * g_i, along * g_i
+        s_xx += cc * e + 2.0 * cs * t
+        s_yy += ss * e - 2.0 * cs * t
+        s_xy += cs * e - (cc - ss) * t
+        s_zz -= along * d_i
+        e, t = along * (d_r - g_r), across * g_r
+        s_yz += s * e - c * t
+        s_zx += c * e + s * t
+        m_xx += ss * f
+        m_yy += cc * f
+        m_xy -= cs * f
+    mu = patch[FRICTION]
+    out[PRESSURE, 0] += p_xx
+    out[PRESSURE, 1] += p_yy
+    out[PRESSURE, 2] += p_zz
+    out[PRESSURE, 3] += p_xy
+    out[PRESSURE, 4] += p_yz
+    out[PRESSURE, 5] += p_zx
+    out[PRESSURE_NU, 0] += -2.0 * n_xx
+    out[PRESSURE_NU, 1] += -2.0 * n_yy
+    out[PRESSURE_NU, 3] += -2.0 * n_xy
+    out[SHEAR, 0] += mu * s_xx
+    out[SHEAR, 1] += mu * s_yy
+    out[SHEAR, 2] += mu * s_zz
+    out[SHEAR, 3] += mu * s_xy
+    out[SHEAR, 4] += mu * s_yz
+    out[SHEAR, 5] += mu * s_zx
+    out[SHEAR_NU, 0] += -2.0 * mu * m_xx
+    out[SHEAR_NU, 1] += -2.0 * mu * m_yy
+    out[SHEAR_NU, 3] += -2.0 * mu * m_xy
+
+
+@inner
+def wave_angles(patch, px, py, rule, work):
+    """Angles and weights of the plane waves for the point (px a, py b); returns their number."""
+    a, b = patch[A], patch[B]
+    r = math.sqrt(px * px + py * py)
+    beta = math.acos(1.0 / r) if r > 1.0 else 0.0
+    center = 0.0 if a >= b else 0.5 * math.pi  # where the wave vector turns fast
+    first = math.atan2(py, px) - beta
+    turn = center + math.pi * math.ceil((first - center) / math.pi)
+    low, high = turn, turn
+    if beta > 0.0:
+        low, high = min(turn, first + 2.0 * beta), max(turn, first + 2.0 * beta)
+    count = np.int64(0)  # a literal would have `spread_angles` compiled twice
+    for piece in range(3):
+        start = first if piece == 0 else (low if piece == 1 else high)
+        end = low if piece == 0 else (high if piece == 1 else first + math.pi)
+        count = spread_angles(work, count, start, end, turn, min(a, b) / max(a, b), rule)
+    return count
+
+
+@inner
+def rays_of_chords(patch, px, py, count, work):
+    """Turns `count` chords through the point into rays from it: those of both sides, or the one that sees the patch."""
+    a, b = patch[A], patch[B]
+    outside = px * px + py * py > 1.0
+    scale = patch[FRICTION] * a * b / (2.0 * math.pi)
+    second = 0 if outside else count
+    for k in range(count):
+        sine, cosine = sine_cosine(work[ANGLE + k])
+        along = px * cosine + py * sine
+        root = math.sqrt(max(along * along + 1.0 - px * px - py * py, 0.0))
+        # a side of no length (point on the edge) would divide by zero
+        start = -along - root if outside else 0.0
+        far = root - along if outside else max(root - along, 1e-13)
+        near = -along - root if outside else min(-along - root, -1e-13)
+        ex, ey = a * cosine, b * sine
+        length = math.sqrt(ex * ex + ey * ey)
+        c, s = ex / length, ey / length
+        weight = work[WEIGHT + k] * scale
+        work[LENGTH + second + k], work[LENGTH + k] = length, length
+        work[C + second + k], work[C + k] = -c, c
+        work[S + second + k], work[S + k] = -s, s
+        work[START + second + k], work[START + k] = 0.0, start
+        work[SPAN + second + k], work[SPAN + k] = -near, far - start
+        work[NEAR + second + k], work[NEAR + k] = -far, near
+        work[FAR + second + k], work[FAR + k] = -near, far
+        work[WEIGHT + second + k], work[WEIGHT + k] = -near * weight, (far - start) * weight
+    return count + second
+
+
+@inner
+def sum_rays(patch, field, x, y, z, d_x, d_y, count, rule, work, out):
+    """Adds the stresses of the friction along `count` rays less that of direction (d_x, d_y)."""
+    gridded = field.shape[1] > 1
+    xx = yy = xy = zz = yz = zx = n_xx = n_yy = n_xy = 0.0
+    for i in range(rule.shape[1]):
+        for k in range(count):
+            tau = work[START + k] + work[SPAN + k] * rule[0, i]
+            c, s = work[C + k], work[S + k]
+            r = tau * work[LENGTH + k]
+            rho_2 = r * r + z * z
+            rho = math.sqrt(rho_2)
+            deep = rho + z
+            if gridded:
+                f_x, f_y = interpolated(field, (x + c * r) / patch[A], (y + s * r) / patch[B])
+                inv = 1.0 / (rho * deep)
+            else:
+                v_x, v_y = slip_at(patch, x + c * r, y + s * r)
+                speed = math.sqrt(v_x * v_x + v_y * v_y + 1e-300)
+                inv_all = 1.0 / (speed * rho * deep)  # one division for three
+                inv = speed * inv_all
+                inv_all *= -rho * deep
+                f_x, f_y = v_x * inv_all, v_y * inv_all
+            f_x, f_y = f_x - d_x, f_y - d_y
+            weight = rule[1, i] * work[WEIGHT + k] * tau * math.sqrt(
+                max((work[FAR + k] - tau) * (tau - work[NEAR + k]), 0.0))  # fmt: skip
+            q_e, q_t = weight * (f_x * c + f_y * s), weight * (f_y * c - f_x * s)
+            wz, inv = inv * rho, inv * deep
+            inv_2 = inv * inv
+            swing = r * wz * wz * inv
+            flat = r * inv_2 * inv
+            ratio = r * r * swing * inv_2
+            axial = 3.0 * q_e * flat * inv_2
+            e = axial * r * r
+            e_nu = q_e * (3.0 * swing - flat - ratio - 2.0 * ratio * wz * rho)
+            t_nu = q_e * (swing - flat)
+            et = q_t * swing
+            cc, ss, cs = c * c, s * s, c * s
+            xx += cc * e
+            yy += ss * e
+            xy += cs * e
+            zz += axial * z * z
+            yz -= s * axial * r * z
+            zx -= c * axial * r * z
+            n_xx += cc * e_nu + ss * t_nu - 2.0 * cs * et
+            n_yy += ss * e_nu + cc * t_nu + 2.0 * cs * et
+            n_xy += cs * (e_nu - t_nu) + (cc - ss) * et
+    out[SHEAR, 0] += 1.0 * (xx + n_xx)
+    out[SHEAR, 1] += 1.0 * (yy + n_yy)
+    out[SHEAR, 2] += zz
+    out[SHEAR, 3] += 1.0 * (xy + n_xy)
+    out[SHEAR, 4] += yz
+    out[SHEAR, 5] += zx
+    out[SHEAR_NU, 0] += -2.0 * n_xx
+    out[SHEAR_NU, 1] += -2.0 * n_yy
+    out[SHEAR_NU, 3] += -2.0 * n_xy
+
+
+@inner
+def chord_angles(patch, px, py, rule, work):
+    """Angles and weights of chords through the point (px a, py b); returns their number."""
+    a, b = patch[A], patch[B]
+    r2 = px * px + py * py
+    half = math.asin(1.0 / math.sqrt(r2)) if r2 > 1.0 else 0.5 * math.pi  # outside only the cone that sees the patch
+    first = math.atan2(py, px) + math.pi - half
+    last = first + 2.0 * half
+    center = 0.5 * math.pi if a >= b else 0.0  # where the ray turns fast
+    turn = center + math.pi * math.ceil((first - center) / math.pi)
+    middle = min(turn, last)
+    count = np.int64(0)  # a literal would have `spread_angles` compiled twice
+    for piece in range(2):
+        start, end = (first if piece == 0 else middle), (middle if piece == 0 else last)
+        count = spread_angles(work, count, start, end, turn, min(a, b) / max(a, b), rule)
+    return count

@@ -1,0 +1,81 @@
+"""Elementary functions as branchless arithmetic, so that loops over them run in vector registers.
+
+The mathematics library's own are called one number at a time. Relative errors below 1e-11 in the ranges stated, far
+below those of the quadratures they serve (tests/test_vector_functions.py).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keeps NaN and inf
+
+
+def inner(function: Callable[..., Any]) -> Any:
+    """Compiles a function that only compiled ones call: without the wrappers for callers in Python."""
+    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    return njit(cache=True, fastmath=FAST, error_model="numpy", **options)(function)
+
+
+@inner
+def exp(x):
+    """e^x for 0 <= x < 12: Taylor's series of x/32, squared five times."""
+    y = x * 0.03125
+    e = 1.0 + y * (1.0 + y * (0.5 + y * (1 / 6 + y * (1 / 24 + y * (1 / 120 + y * (1 / 720 + y * (1 / 5040
+            + y * (1 / 40320 + y * (1 / 362880)))))))))  # fmt: skip
+    e *= e
+    e *= e
+    e *= e
+    e *= e
+    return e * e
+
+
+@inner
+def sine_cosine(x):
+    """sin x and cos x for |x| < 100."""
+    turns = math.floor(x * (2.0 / math.pi) + 0.5)
+    r = (x - turns * 1.5707963267341256) - turns * 6.077100506506192e-11
+    q = r * r
+    s = r * (1.0 - q * (1 / 6 - q * (1 / 120 - q * (1 / 5040 - q * (1 / 362880 - q * (1 / 39916800
+             - q * (1 / 6227020800)))))))  # fmt: skip
+    c = 1.0 - q * (0.5 - q * (1 / 24 - q * (1 / 720 - q * (1 / 40320 - q * (1 / 3628800 - q * (1 / 479001600
+             - q * (1 / 87178291200)))))))  # fmt: skip
+    quarter = turns - 4.0 * math.floor(0.25 * turns)
+    odd = quarter == 1.0 or quarter == 3.0
+    first, second = (c, s) if odd else (s, c)
+    return (-first if quarter >= 2.0 else first), (-second if quarter == 1.0 or quarter == 2.0 else second)
+
+
+@inner
+def log(x):
+    """ln x for normal x > 0: exponent and mantissa apart, the latter by the series of artanh."""
+    bits = np.float64(x).view(np.int64)
+    exponent = float((bits >> 52) - 1023)
+    m = np.int64((bits & 0xFFFFFFFFFFFFF) | 0x3FF0000000000000).view(np.float64)
+    large = m > 1.4142135623730951
+    m = 0.5 * m if large else m
+    exponent = exponent + 1.0 if large else exponent
+    f = (m - 1.0) / (m + 1.0)
+    q = f * f
+    series = 1.0 + q * (1 / 3 + q * (1 / 5 + q * (1 / 7 + q * (1 / 9 + q * (1 / 11 + q * (1 / 13 + q * (1 / 15)))))))
+    return exponent * 0.6931471805599453 + 2.0 * f * series
+
+
+@inner
+def angle(y, x):
+    """atan2(y, x) for y > 0."""
+    a = abs(x)
+    low, high = min(a, y), max(a, y)
+    wide = low > 0.41421356237309503 * high
+    t = (low - high if wide else low) / (low + high if wide else high)
+    q = t * t
+    at = t * (1.0 - q * (1 / 3 - q * (1 / 5 - q * (1 / 7 - q * (1 / 9 - q * (1 / 11 - q * (1 / 13 - q * (1 / 15
+              - q * (1 / 17 - q * (1 / 19 - q * (1 / 21 - q * (1 / 23 - q * (1 / 25)))))))))))))  # fmt: skip
+    at = at + 0.7853981633974483 if wide else at
+    at = 1.5707963267948966 - at if y > a else at
+    return math.pi - at if x < 0.0 else at
