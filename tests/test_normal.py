@@ -28,8 +28,8 @@ def on_ellipse(k_x, k_y, n):
     return solve_normal(gap, 2 * a / n, 2 * b / n, LOAD)
 
 
-def straight_gap(guide, roller, alpha=math.radians(30), r_a=16.55, r_curve=220.0):
-    return Gap(guide, roller, alpha, r_a, r_curve)
+def straight_gap(guide, roller):
+    return Gap(guide, roller, math.radians(30), 16.55, 220.0)
 
 
 @pytest.mark.parametrize("ratio", [1.0, 0.1, 0.02])

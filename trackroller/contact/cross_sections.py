@@ -115,7 +115,7 @@ def _steep_ends(starts, sine, kappa, order) -> tuple[float, float]:
 
 
 def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossSection:
-    """Cubic spline through points, or smoothed as far as their noise allows.
+    """Cubic spline through points, or smoothed as far as their noise allows; height 0 at u = 0.
 
     Parameters
     ----------
@@ -125,8 +125,8 @@ def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossS
         1979); 0: through every point, whose scatter then counts as shape
     """
     spline = smoothed(u, height, noise)
-    slope = spline.derivative()
-    return CrossSection(lambda v: spline(v), lambda v: slope(v), float(u[0]), float(u[-1]))
+    slope, zero = spline.derivative(), float(spline(0.0))
+    return CrossSection(lambda v: spline(v) - zero, lambda v: slope(v), float(u[0]), float(u[-1]))
 
 
 def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):

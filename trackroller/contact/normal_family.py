@@ -200,7 +200,7 @@ class Family:
         around[1:-1, 1:-1] = solution.pressure
         x, y = np.concatenate([[x[0] - hx], x, [x[-1] + hx]]), np.concatenate([[y[0] - hy], y, [y[-1] + hy]])
         total = displacement(around, hx, hy) + self.gap.field(x, y)
-        overlap = total < solution.approach - OVERLAP * abs(solution.approach)
+        overlap = total < solution.approach - OVERLAP * (solution.approach - self._lateral.min())
         low = box.low - 1.2 * hx * overlap[:, 0].any()
         high = box.high + 1.2 * hx * overlap[:, -1].any()
         return self._clipped(low, high, box.half + 1.2 * hy * overlap[[0, -1]].any())
@@ -237,6 +237,6 @@ class Family:
             return np.inf, -np.inf
         distance = np.hypot(places[:, None, None] - x, y[:, None])
         sink = (hx * hy / np.pi) * (solution.pressure / distance).sum(axis=(1, 2))
-        overlap = places[self._lateral[beyond] + sink < solution.approach - OVERLAP * abs(solution.approach)]
+        overlap = places[self._lateral[beyond] + sink < solution.approach - OVERLAP * (solution.approach - self._lateral.min())]
         left, right = overlap[overlap < box.low], overlap[overlap > box.high]
         return (float(left.min()) if left.size else np.inf), (float(right.max()) if right.size else -np.inf)

@@ -1,0 +1,172 @@
+"""Drawn and measured cross-sections: what is accepted, what shape they give, where the material ends."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.contact.cross_sections import arcs, drawn, parabola, with_edges
+from trackroller.profiles import canonical, cross_section, gap, treats_sides_alike
+
+ALPHA = math.radians(30)
+
+
+def text(mapping, field="guide_profile"):
+    return json.dumps(canonical(mapping, field))
+
+
+def circle_points(radius, centre=(0.0, 0.0), low=-4.0, high=4.0, n=161):
+    x = np.linspace(low, high, n)
+    return [[float(v), float(centre[1] + math.sqrt(radius**2 - (v - centre[0]) ** 2))] for v in x]
+
+
+def gothic_groove(radius=7.0, guide=6.0, alpha=ALPHA, half=4.5, n=181):
+    """A groove of two circular flanks that touch a guide of radius `guide` at +-alpha, in one picture with it."""
+    apart = (radius - guide) * math.sin(alpha)
+    x = np.linspace(-half, half, n)
+    z = [math.sqrt(radius**2 - (abs(v) + apart) ** 2) for v in x]
+    return [[float(a), float(b)] for a, b in zip(x, z, strict=True)]
+
+
+def test_one_arc_is_its_circle_and_begins_as_the_parabola():
+    section, u = arcs([6.0], []), np.array([-2.0, -1e-3, 0.0, 1e-3, 3.0])
+    np.testing.assert_allclose(section.height(u), np.sqrt(36 - u * u) - 6, atol=1e-14)
+    np.testing.assert_allclose(section.slope(u), -u / np.sqrt(36 - u * u), atol=1e-14)
+    np.testing.assert_allclose(section.height(u)[1:4], parabola(6.0).height(u)[1:4], atol=1e-13)
+    assert -6 < section.inner < -5.99 and 5.99 < section.outer < 6
+    assert not np.any(arcs([math.inf], []).height(u))
+
+
+def test_arcs_follow_one_another_tangentially():
+    section = arcs([-7.0, 3.0, math.inf], [-0.5, 0.8])
+    for knot in (-0.5, 0.8):
+        at = np.array([knot - 1e-9, knot + 1e-9])
+        assert abs(np.diff(section.height(at))[0]) < 1e-8 and abs(np.diff(section.slope(at))[0]) < 1e-8
+    h = 1e-4
+    for u, curvature in ((-1.0, -1 / 7), (0.2, 1 / 3), (1.5, 0.0)):
+        second = (section.slope(np.array(u + h)) - section.slope(np.array(u - h))) / (2 * h)
+        steep = (1 + section.slope(np.array(u)) ** 2) ** 1.5
+        assert second == pytest.approx(-curvature * steep, abs=1e-6)
+    assert section.height(np.array(0.0)) == 0.0 and section.slope(np.array(0.0)) == 0.0
+
+
+def test_points_of_a_circle_give_back_the_circle():
+    """In the picture of the whole cross-section, and turned by the contact angle."""
+    u = np.linspace(-1.5, 1.0, 11)
+    exact = np.sqrt(36 - u * u) - 6
+    whole = cross_section(text({"points": circle_points(6.0)}), "guide_profile", 6.0, ALPHA, 6.0, 1)
+    np.testing.assert_allclose(whole.height(u), exact, atol=2e-7)
+    turned = [[float(v), float(math.sqrt(36 - v * v) - 6 + 2.5)] for v in np.linspace(-2, 2, 81)]
+    local = cross_section(text({"points": turned, "frame": "contact"}), "guide_profile", 6.0, ALPHA, 6.0, 1)
+    np.testing.assert_allclose(local.height(u), exact, atol=2e-7)
+
+
+def test_a_drawn_groove_leaves_the_gap_of_its_arcs_on_both_sides():
+    by_arcs = gap("", "", 6.0, -7.0, ALPHA, 16.55, 220.0, 1)
+    told = text({"points": circle_points(6.0)}), text({"points": gothic_groove()}, "roller_profile")
+    x = np.linspace(-0.8, 0.8, 9)
+    for side in (1, 2):
+        by_points = gap(*told, 6.0, -7.0, ALPHA, 16.55, 220.0, side)
+        np.testing.assert_allclose(by_points.lateral(x), by_arcs.lateral(x), atol=1e-6)
+        np.testing.assert_allclose(by_points.curvature(x), by_arcs.curvature(x), rtol=1e-5)
+    assert not treats_sides_alike(told[0]) and treats_sides_alike("") and treats_sides_alike(text({"arc": 6}))
+
+
+def test_the_curvature_in_the_rolling_direction_is_that_of_bodies_of_revolution():
+    """k_y(x) against the distance of the surfaces of revolution, by finite differences."""
+    g = gap("", "", 6.0, -7.0, ALPHA, 16.55, math.inf, 1)
+    for x in (-0.5, 0.0, 0.7):
+        height = -float(g.roller.height(np.array(x)))  # of the roller's flank over the tangent plane, along the normal
+        radius = 16.55 + x * math.sin(ALPHA) - height * math.cos(ALPHA)
+        slope = float(g.roller.slope(np.array(x)))
+        expected = (math.cos(ALPHA) - math.sin(ALPHA) * slope) / radius
+        assert float(g.curvature(np.array(x))) == pytest.approx(expected, rel=3e-3)
+    assert g.curvature(np.array(0.0)) == pytest.approx(math.cos(ALPHA) / 16.55)
+
+
+def test_measured_noise_is_smoothed_as_far_as_it_is_noise():
+    rng = np.random.default_rng(0)
+    u = np.linspace(-2, 2, 400)
+    exact, noise = -u * u / 12, 1e-3
+    measured = exact + rng.normal(0, noise, u.size)
+    h, curvature = 1e-3, -1 / 6
+    inner = np.linspace(-1, 1, 21)
+
+    def bend(section):
+        return (section.slope(inner + h) - section.slope(inner - h)) / (2 * h)
+
+    for told in (noise, "auto"):
+        section = drawn(u, measured, told)
+        assert np.std(section.height(inner) + inner**2 / 12) < 0.4 * noise
+        assert np.abs(bend(section) - curvature).max() < 0.1
+    assert np.std(drawn(u, measured, noise).height(u) - measured) == pytest.approx(noise, rel=0.01)
+    assert np.abs(bend(drawn(u, measured)) - curvature).max() > 10  # through every point: the noise is taken for shape
+
+
+def test_edges_cut_and_round_the_material():
+    section = with_edges(arcs([-7.0], []), -0.4, 0.6, chamfer=0.1)
+    assert section.limits == pytest.approx((-0.4 - 0.0999, 0.6 + 0.0999))
+    inside, beyond = np.array([0.5]), np.array([0.65])
+    assert section.full_height(inside) == section.height(inside)
+    tangent = section.height(np.array([0.6])) + 0.05 * section.slope(np.array([0.6]))
+    assert section.full_height(beyond) == pytest.approx(tangent - (0.1 - math.sqrt(0.01 - 0.05**2)))
+    width = cross_section(text({"arc": -7, "width": 7.0}), "roller_profile", -7.0, ALPHA, 6.0, 1)
+    assert width.outer == pytest.approx(0.5 / math.cos(ALPHA))
+    plain = cross_section("", "guide_profile", 6.0, ALPHA, 6.0, 1)
+    assert (plain.inner, plain.outer) == pytest.approx((-3.0, 6 * math.cos(ALPHA)))  # middle and equator
+
+
+@pytest.mark.parametrize(
+    ("mapping", "words"),
+    [
+        ({"arcc": 6}, "arc"),
+        ({"arc": 6, "points": []}, "exactly one"),
+        ({"width": 6}, "exactly one"),
+        ({"arc": 0}, "other than 0"),
+        ({"arc": True}, "number"),
+        ({"arc": -7, "frame": "section"}, "only with points"),
+        ({"arc": -7, "edge": {"iner": 1}}, "inner"),
+        ({"arc": -7, "edge": {"inner": -1}}, "> 0"),
+        ({"arc": -7, "edge": {"inner": 1}, "width": 9}, "one of both"),
+        ({"arcs": [{"radius": -7, "to": 1}]}, "to"),
+        ({"arcs": [{"radius": -7, "to": 1}, {"radius": 3, "to": 0.5}, {"radius": 2}]}, "beyond"),
+        ({"points": [[0, 0], [1, 1]]}, "rows"),
+        ({"points": [[0, 0], [1, 1], [1, 2], [3, 3], [4, 4]]}, "increases"),
+        ({"points": [[0, 0], [1, "b"], [2, 2], [3, 3], [4, 4]]}, "numbers"),
+        ({"points": [[i, 0.0] for i in range(6)], "frame": "contact"}, "both sides"),
+        ({"points": [[i, 0.0] for i in range(6)], "smooth": -1}, "noise"),
+        ({"points": [[i, 0.0] for i in range(6)], "frame": "sektion"}, "section"),
+        ({"file": "/etc/passwd"}, "below the working directory"),
+        ({"file": "../points.csv"}, "below the working directory"),
+        ({"file": "missing.csv"}, "a file below"),
+    ],
+)
+def test_a_wrong_profile_is_refused_by_name(mapping, words):
+    with pytest.raises(tr.InputError) as caught:
+        tr.Case(guide_profile=mapping)
+    assert "guide_profile" in str(caught.value) and words in str(caught.value)
+
+
+def test_a_curve_without_the_contacts_inclination_is_refused():
+    flat = [[float(x), 5.0 - 0.001 * x * x] for x in np.linspace(-4, 4, 41)]
+    with pytest.raises(tr.InputError, match=r"guide_profile.*30 deg"):
+        tr.solve(tr.Case(guide_profile={"points": flat}), normal="halfspace", outputs="forces")
+    with pytest.raises(tr.InputError, match="distance of the contacts"):
+        tr.solve(tr.Case(roller_profile={"arc": -7, "width": 5}), normal="halfspace", outputs="forces")
+
+
+def test_files_are_read_into_points(tmp_path, monkeypatch):
+    """Commas, semicolons or blanks, headings and remarks; the case keeps the numbers, not the name."""
+    monkeypatch.chdir(tmp_path)
+    rows = circle_points(6.0, n=9)
+    for separator in (",", ";", "\t", "  "):
+        lines = ["x [mm]" + separator + "z [mm]", "# measured", *(separator.join(map(repr, row)) for row in rows)]
+        (tmp_path / "guide.csv").write_text("\n".join(lines), encoding="utf-8")
+        case = tr.Case(guide_profile={"file": "guide.csv"})
+        np.testing.assert_array_equal(case.guide_profile["points"], rows)
+        assert "file" not in case.guide_profile
+    (tmp_path / "bad.csv").write_text("1 2\n2 x\n", encoding="utf-8")
+    with pytest.raises(tr.InputError, match="line 2"):
+        tr.Case(guide_profile={"file": "bad.csv"})
