@@ -134,8 +134,9 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel
         creep.spin, travel,
     )  # fmt: skip
     for rows, own, share_own in _by_cells(height, share, n):
-        arguments: Any = (*(v[rows] for v in given), own, share_own, law.speed, law.factor, control)
-        batch.solve_batch(*arguments, traction[rows], slip[rows], stick[rows], report[rows])
+        arguments: Any = (*(v[rows] for v in given), own, share_own, law.speed, law.factor, control, traction[rows],
+                          slip[rows], stick[rows], report[rows])  # fmt: skip
+        batch.solve_batch(*arguments)
     report[:, batch.M_R] += centre * report[:, batch.F_A]
     return slip, stick, report
 

@@ -6,6 +6,7 @@ Per patch: lengths over c = sqrt(a b), tractions over mu p_max, slips over mu p_
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -104,12 +105,13 @@ def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, tra
     traction (n, 2, ny, nx): start and result over mu p_max; slip likewise, per travel speed; stick
     (n, ny, nx), False at the start; report (n, REPORT).
     """
-    rows = (a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel)
+    rows: tuple[Any, ...] = (a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel)
+    law: tuple[Any, ...] = (height, share, speeds, values, control)
 
     def work(first: int, last: int) -> None:
         for i in range(first, last):
-            _one_patch(*(v[i] for v in rows), height, share, speeds, values, control, traction[i], slip[i],
-                       stick[i], report[i])  # fmt: skip
+            own: Any = (*(v[i] for v in rows), *law, traction[i], slip[i], stick[i], report[i])
+            _one_patch(*own)
 
     share_rows(work, a.size, 1, 1)
 

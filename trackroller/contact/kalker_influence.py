@@ -145,8 +145,8 @@ def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influe
     p = 0.5 * (u[0] + u[1])
     own = (1.5 * p[ny, nx - 1] - 2.0 * p[ny + 1, nx - 1] + 0.5 * p[ny + 2, nx - 1]) / hy
     q = 0.5 * (u[0] - u[1]) + 1j * u[2]
-    spectra = (_multipliers(kernel, ny, nx, ly, lx) for kernel in (p, q))
-    return Influence(hy, *spectra, float(own), np.ascontiguousarray(u[:2, :, nx - 1]))
+    spectrum_p, spectrum_q = (_multipliers(kernel, ny, nx, ly, lx) for kernel in (p, q))
+    return Influence(hy, spectrum_p, spectrum_q, float(own), np.ascontiguousarray(u[:2, :, nx - 1]))
 
 
 def influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influence:
