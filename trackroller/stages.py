@@ -19,12 +19,14 @@ from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.models import ContactModel, contact_model, traction_share
 from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.slip import pole_split
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.stress import von_mises
+from trackroller.parameters import CONTACT_MODELS
 from trackroller.requirements import Mirror, distinct_rows, is_frictionless, is_mirror_symmetric, normalised_patches
 from trackroller.stop import holds, parse_condition
 
@@ -84,9 +86,14 @@ class Results:
                     two(balance.shift))  # fmt: skip
         if isinstance(scene.model, stages_grid.GRID_MODELS):
             ellipse = scene.model.patch(ellipse, slip, np.tile(np.arange(scene.n), 2))
-        out = cls(scene, balance, balance.regime, balance.converged, ellipse, slip, two(scene.loads.friction),
+        friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
+        # the friction law of each patch has to hold beside the balance of the roller
+        unmet, met = scene.model.state(scene.n)
+        rolls = balance.regime == eq.ROLLING
+        converged = balance.converged & (met | ~rolls)
+        out = cls(scene, balance, balance.regime, converged, ellipse, slip, two(friction),
                   np.isfinite(normal), np.zeros(scene.n, np.int32), np.zeros(scene.n, bool))  # fmt: skip
-        out.values["residual"] = balance.residual
+        out.values["residual"] = np.where(rolls, np.fmax(balance.residual, unmet), balance.residual)
         return out
 
     def by_contact(self, flat: np.ndarray) -> np.ndarray:
@@ -128,7 +135,8 @@ def prepare(table: CaseTable, options: Options) -> Scene:
         model = contact_model(options.contact_model, options.settings, Elastic.of_pair(*bodies), options.spin_model,
                               law, travel)  # fmt: skip
     loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
-                     table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual)  # fmt: skip
+                     table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual,
+                     falling=not law.is_constant, at_high_speed=law.at_high_speed)  # fmt: skip
     bare = options.shortcuts and bool(is_frictionless(table).all())
     twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
     return Scene(table, loads, model, Mirror(twins), bare, len(table))
@@ -441,6 +449,9 @@ def validity(table: CaseTable, block: Block) -> None:
         # ASSUME: the database holds no yield strength, so R_m stands for it
         warn("yield", np.max(v["max_pressure"], axis=1) > 1.6 * strength)
         warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
+        split = [pole_split(v["semi_axis_lateral"][:, k], sign * np.sin(alpha), np.cos(alpha), r_g,
+                                    v["rolling_radius_shift"]) for k, sign in ((0, 1.0), (1, -1.0))]  # fmt: skip
+        warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & (np.maximum(*split) > 0.1))
         grip = np.abs(v["lateral_force"]) >= v["normal_force"] * np.tan(alpha)[:, None]
         warn("jamming", np.any(grip, axis=1))
         warn("large_slip", np.abs(v["slip"]) > 0.1)

@@ -68,10 +68,8 @@ def load_sizes(path: Path | str) -> Sizes:
 def settings_of(model: str) -> list[settings.Setting]:
     """Everything that is measured with complete solutions of one contact model."""
     if model == "sliding":
-        own = [*settings.quadratures(), *settings.searches(), *settings.ellipses()]
-    else:
-        own = settings.elements(model)
-    return [*own, *settings.presets(model)]
+        return [*settings.quadratures(), *settings.searches(), *settings.ellipses(), *settings.presets(model)]
+    return settings.elements(model)  # the presets are among them
 
 
 def measure_part(name: str, sizes: Sizes) -> xr.Dataset:

@@ -35,9 +35,10 @@ def blocks(summary: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[B
         ("p", f"Sample: a scrambled Sobol sequence (seed {sample['seed']}) of designs that roll or slide on both "
               f"contacts: {counts}. It is wider than what anybody builds: loads over three decades, contact angles "
               "from 10 to 80 deg, friction from 0 to 1, narrow to flat grooves and convex rollers, straight, outer and "
-              "inner curves, driven, free and braked, stiffness 2 to 250 GPa, Poisson's ratio 0 to 0.5. Patches that "
-              "reach the middle of the guide (bit `conformal`) are left out: there the stress of the sliding model is "
-              "infinite, and no setting has an error."),
+              "inner curves, driven, free and braked, stiffness 2 to 250 GPa, Poisson's ratio 0 to 0.5. Left out are "
+              "patches that reach the middle of the guide or have their spin pole apart from where the slip vanishes "
+              "(bits `conformal` and `split_pole`): there the stress of the sliding model is itself infinite, as a "
+              "logarithm, and no setting has an error."),
         ("p", "Errors are the largest over both contacts and bodies of a design. The reference is the same model with "
               "far finer settings (of several searches for the peak the highest counts: a search only finds too "
               "little). The error of a *model* against another is a different matter, see [accuracy.md](accuracy.md)."),

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.accuracy import FORCE_QUANTITIES
+from trackroller.accuracy import FORCE_QUANTITIES, PRESETS
 from trackroller.study.pareto import pareto_mask
 from trackroller.study.tradeoff_errors import QUANTITIES, observed_order, percentiles, tolerance_bound
+from trackroller.study.tradeoff_settings import REFERENCE_ELEMENTS
 
 MOST_RUNGS = 10
 LADDERS = {("equilibrium", "sliding"): "forces", ("peak", "sliding"): "peak", ("elements", "fastsim"): "fastsim",
@@ -22,6 +23,7 @@ _JUDGED_BY = {
     "fastsim": (FORCE_QUANTITIES, ("peak_stress",)),
     "kalker": (FORCE_QUANTITIES, ("peak_stress",)),
 }
+REFERENCE_ORDER = 1.5  # ASSUME: of element models towards their reference, whose own error is then known
 _FLOOR = 1e-15  # rounding: no bound is promised below
 Record = dict[str, Any]
 
@@ -29,6 +31,9 @@ Record = dict[str, Any]
 def summary(ds: xr.Dataset) -> dict[str, Any]:
     """Everything that page, figures and ladders are made of, ready for JSON."""
     records = [_record(ds.isel(setting=i)) for i in range(ds.sizes["setting"])]
+    records += [{**r, "stage": "preset", "method": "preset", "label": name, "points": None} for r in records
+                for name, preset in PRESETS.items()
+                if r["stage"] == "elements" and r["points"] == preset.elements]  # fmt: skip
     whole = {k: ds.attrs[k] for k in sorted(ds.attrs) if k.startswith(("designs_", "reference_cost_"))}
     return {
         "sample": {"seed": int(ds.attrs["seed"]), **{k: _plain(v) for k, v in whole.items()}},
@@ -51,8 +56,11 @@ def _record(one: xr.Dataset) -> Record:
     out["cost"] = float(f"{float(one['cost']):.4g}")
     out["ladder"] = json.loads(str(one["ladder"].values))
     out["errors"] = {}
+    finest = REFERENCE_ELEMENTS.get(out["model"]) if out["stage"] == "elements" else None
+    # the reference errs in the same direction: its own share, by the order that is seen, is added
+    scale = 1.0 / (1.0 - (out["points"] / finest) ** REFERENCE_ORDER) if finest else 1.0
     for name in QUANTITIES:
-        errors = one["error"].sel(quantity=name).values.astype(float)
+        errors = scale * one["error"].sel(quantity=name).values.astype(float)
         if not np.isnan(errors).all():
             known = errors[~np.isnan(errors)]
             levels = [*percentiles(errors), tolerance_bound(errors), known.max()]
