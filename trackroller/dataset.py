@@ -97,8 +97,8 @@ VALIDITY_BITS = {
     "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, the wedge may lock",
     "large_slip": "longitudinal slip above 10 %: friction heat and wear decide",
     "deep_life": "peak stress below the fatigue limit: life rests on the rule chosen beyond the knee",
-    "split_pole": "the slip of the sliding model vanishes apart from its spin pole, or twice in a patch: the stress of the "
-                  "model is infinite there, as a logarithm; use kalker",
+    "split_pole": "the slip of the sliding model vanishes apart from its spin pole, or twice in a patch: the stress of "
+    "the model is infinite there, as a logarithm; use kalker",
 }
 
 

@@ -55,7 +55,7 @@ def accuracy_of(nodes: int = 24, coarse: int = 6, peak: PeakSettings = FINE, ele
 
 def floor_of(step: float) -> float:
     """Share of the error estimate for what no search sees: it shrinks with the smallest step of the search."""
-    return min(2e-3, 0.02 * step)
+    return 2e-3 if step > 0.02 else 0.02 * step
 
 
 def searches() -> list[Setting]:
