@@ -16,6 +16,7 @@ import numpy as np
 from trackroller.contact.common import Ellipse, Resultants, Slip
 from trackroller.contact.hertz import HertzShape
 from trackroller.contact.sliding import tractions_full_slip
+from trackroller.equilibrium_falling import first_balance
 
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
 LAST_SLIP = 1.0 - 2.0**-53  # largest |w|; beyond, the friction is that of complete slip to the last digit
@@ -39,6 +40,8 @@ class Loads:
     shape: HertzShape
     difference_step: float = 1e-5  # for derivatives of the contact law; above the noise of iterative laws
     converged: float = 1e-10  # largest relative residual of a solution
+    falling: bool = False  # friction depends on the slip speed
+    at_high_speed: float = 1.0  # friction in complete slip over the coefficient `friction`
 
 
 @dataclass(frozen=True)
@@ -308,7 +311,10 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
     beyond = roller.motor_force > friction * np.sum(roller.normal_forces(np.zeros((2, rows.size))), axis=0)
     drives = np.flatnonzero(roller.motor_force < 0)
     spins = _Roller(rolled, law, rows[drives])
-    beyond[drives] = spins.torque(_forces_at(spins, w_low[drives])) < 0
+    if loads.falling:
+        w_low, w_high, beyond = first_balance(roller, w_low, w_high)
+    else:
+        beyond[drives] = spins.torque(_forces_at(spins, w_low[drives])) < 0
     go = np.flatnonzero(~beyond)
     if go.size == 0:
         return rows
@@ -380,6 +386,8 @@ def _forces_at(roller: _Roller, w) -> np.ndarray:
 
 
 def _solve_full_slip(loads, law, rows, regime, residual, shift, normal, forces) -> None:
+    # ASSUME: in complete slip the speed is beyond what the friction law tells of
+    loads = replace(loads, friction=loads.friction * loads.at_high_speed)
     roller = _Roller(loads, law, rows)
     n = roller.normal_forces(np.zeros((2, rows.size)))
     lift = np.any(n <= 0, axis=0)
