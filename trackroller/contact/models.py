@@ -185,6 +185,10 @@ def contact_model(
     if name == "sliding":
         return SlidingModel(settings, spin_model, law, travel)
     if name == "kalker":
+        if settings.name == "preview" and law.is_constant:
+            from trackroller.contact.table_model import TableModel
+
+            return TableModel(elastic, lambda: KalkerModel(settings, elastic, law, travel))
         return KalkerModel(settings, elastic, law, travel)
     if name == "fastsim":
         return FastsimModel(settings, elastic, law, travel)

@@ -1,0 +1,66 @@
+"""The exact theory by its table, for `contact_model="kalker"` at `preview`.
+
+Forces, spin moment, stick and dissipation come from the table. Tractions, which stresses need, are those of the exact
+solver on a coarse grid at the slip that the table found. Rollers outside the table's range are solved exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from trackroller.contact import table
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+
+
+class TableModel:
+    """Contact model of n rollers with combined constants `elastic` (n,); `exact` makes the model behind it.
+
+    The step of derivatives and the residual are those of the exact model: a block may hold rollers of both kinds.
+    """
+
+    full_sliding = False
+    difference_step = 1e-3
+    residual = 1e-7
+
+    def __init__(self, elastic: Elastic, exact: Callable[[], object]) -> None:
+        self.elastic, self._make, self._exact = elastic, exact, None
+
+    @property
+    def exact(self):
+        """The exact model, made when first needed."""
+        if self._exact is None:
+            self._exact = self._make()
+        return self._exact
+
+    def _table(self, ellipse: Ellipse, slip: Slip, friction, rows) -> table.TableSolution:
+        return table.solve_patch(ellipse, slip.longitudinal, slip.spin, friction, self.elastic.take(rows))
+
+    def law(self, ellipse: Ellipse, slip: Slip, friction, rows, fine: bool) -> Resultants:
+        """Resultants on the roller, shape (n,)."""
+        found = self._table(ellipse, slip, friction, rows)
+        rest = np.flatnonzero(~found.known)
+        if not rest.size:
+            return found.resultants
+        r = found.resultants
+        forces = np.stack([r.lateral_force, r.driving_force, r.spin_moment])
+        other = self.exact.law(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
+        forces[:, rest] = other.lateral_force, other.driving_force, other.spin_moment
+        return Resultants(*forces)
+
+    def surface(self, ellipse: Ellipse, slip: Slip, friction, rows) -> SurfaceTractions:
+        """Tractions of the exact solver on a grid over each patch."""
+        return self.exact.surface(ellipse, slip, friction, rows)
+
+    def power(self, ellipse: Ellipse, slip: Slip, friction, rows) -> np.ndarray:
+        """Dissipation per distance travelled [N], the work of the creepages, shape (n,)."""
+        found = self._table(ellipse, slip, friction, rows)
+        work, rest = found.friction_energy_per_distance, np.flatnonzero(~found.known)
+        if rest.size:
+            work[rest] = self.exact.power(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
+        return work
+
+    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Residual of the friction law in the patches at the last fine call, and if it is met, (n,); 0 by the table."""
+        return (np.zeros(n), np.ones(n, bool)) if self._exact is None else self.exact.state(n)
