@@ -8,6 +8,7 @@ smooth whatever eps. Both use Gauss-Legendre points clustered at the ends, where
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any
 
@@ -17,6 +18,7 @@ from numba import njit
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.errors import unknown_name
+from trackroller.halfspace.vectors import exp, inner
 from trackroller.parameters import SPIN_MODELS
 from trackroller.threads import share_rows
 
@@ -30,6 +32,7 @@ def spin_model_index(name: str) -> int:
     return SPIN_MODELS.index(name)
 
 
+@functools.lru_cache(maxsize=128)
 def clustered_rule(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Nodes and weights on (0, 1): Gauss-Legendre under v -> 3v^2 - 2v^3, smooth for end-point roots."""
     v, w = np.polynomial.legendre.leggauss(n)
@@ -47,7 +50,7 @@ def rolling_slip(x, sine, cosine, radius, shift):
     return shift - x * cosine * (2.0 * radius * sine + x * cosine) / (root + radius * cosine)
 
 
-@njit(cache=True)
+@inner
 def pole_offset(x, pole_x, pole_y, a, model):
     """y_C where v_x vanishes at lateral position x [mm], eqs (22) and (25)."""
     if model == 0 or abs(pole_x) >= a:
@@ -59,7 +62,7 @@ def pole_offset(x, pole_x, pole_y, a, model):
     return pole_y * (x - a) / (pole_x - a)
 
 
-@njit(cache=True)
+@inner
 def _breakpoints(a, sine, cosine, radius, shift, model, out):
     """Sorted ends of the smooth pieces of the slip field along x_C, in `out`; returns their number."""
     out[0], count = -a, 1
@@ -87,7 +90,7 @@ def _breakpoints(a, sine, cosine, radius, shift, model, out):
     return count + 1
 
 
-@njit(cache=True)
+@inner
 def _column(d, eps, nodes, weights):
     """Integrals over t in (-1, 1) of sqrt(1-t^2) times (t-d)/rho, t (t-d)/rho, eps/rho and rho.
 
@@ -103,7 +106,7 @@ def _column(d, eps, nodes, weights):
         if span <= 0.0:
             continue
         for j in range(nodes.size):
-            q = math.exp(low + span * nodes[j])
+            q = exp(low + span * nodes[j])
             q_inverse = 1.0 / q
             half_rho = 0.5 * (q + q_inverse)
             offset = 0.5 * (q - q_inverse)
@@ -116,7 +119,7 @@ def _column(d, eps, nodes, weights):
     return phi, phi_t, psi, work
 
 
-@njit(cache=True)
+@inner
 def _one_patch(a, b, sine, cosine, radius, shift, model, nodes, weights):
     """F_T, F_A, M_R and power over mu p_max [mm^2, mm^2, mm^3, mm^3 times omega] of one patch."""
     ends = np.empty(6)

@@ -24,15 +24,12 @@ def inner(function: Callable[..., Any]) -> Any:
 
 @inner
 def exp(x):
-    """e^x for 0 <= x < 12: Taylor's series of x/32, squared five times."""
-    y = x * 0.03125
-    e = 1.0 + y * (1.0 + y * (0.5 + y * (1 / 6 + y * (1 / 24 + y * (1 / 120 + y * (1 / 720 + y * (1 / 5040
-            + y * (1 / 40320 + y * (1 / 362880)))))))))  # fmt: skip
-    e *= e
-    e *= e
-    e *= e
-    e *= e
-    return e * e
+    """e^x for |x| < 700: a power of two by its bits, the rest by Taylor's series."""
+    k = math.floor(x * 1.4426950408889634 + 0.5)
+    r = (x - k * 0.693147180369123816490) - k * 1.90821492927058770002e-10
+    e = 1.0 + r * (1.0 + r * (0.5 + r * (1 / 6 + r * (1 / 24 + r * (1 / 120 + r * (1 / 720 + r * (1 / 5040
+            + r * (1 / 40320 + r * (1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800)))))))))))  # fmt: skip
+    return e * np.int64((np.int64(k) + 1023) << 52).view(np.float64)
 
 
 @inner
