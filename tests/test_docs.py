@@ -70,6 +70,8 @@ def test_every_code_block_runs(page, tmp_path, monkeypatch):
             path.write_text(small(code) if page.name == "README.md" else code, encoding="utf-8")
             if path.name == "study.yaml":
                 assert load_study(path).design().sizes["case"] <= LARGEST_STUDY
+        elif language == "csv":
+            (tmp_path / text).write_text(code, encoding="utf-8")
         elif language == "python":
             exec(compile(code, f"{page.name}", "exec"), {"__name__": "__docs__"})
         elif language == "bash":

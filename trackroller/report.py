@@ -13,6 +13,7 @@ import numpy as np
 from trackroller.plots import style
 from trackroller.plots.study_loads import surface_share
 from trackroller.plots.study_view import StudyView, study_settings
+from trackroller.report_decisions import decisions
 from trackroller.report_papers import conventions, papers
 from trackroller.report_tables import (
     base_table,
@@ -72,9 +73,8 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
         undefined=jinja2.StrictUndefined,
     )
     with xr.open_dataset(study_nc) as ds:
-        content = contents(ds)
+        content = contents(ds) | decisions(ds, sensitivity_nc)
     content["figures"] = figures(Path(figures_dir))
-    content["sensitivity"] = sensitivity(sensitivity_nc)
     text = environment.get_template("report.html.j2").render(content)
     out_html = Path(out_html)
     out_html.parent.mkdir(parents=True, exist_ok=True)
@@ -195,32 +195,3 @@ def _data_uri(folder: Path, name: str) -> str:
     if png.is_file():
         return f"data:image/png;base64,{base64.b64encode(png.read_bytes()).decode('ascii')}"
     return ""
-
-
-def sensitivity(path: Path | None) -> dict[str, Any]:
-    """Ranking of the factors for each analysed output, in words and as a table."""
-    if path is None or not Path(path).is_file():
-        return {}
-    import xarray as xr
-
-    from trackroller.study import words
-
-    with xr.open_dataset(path) as sens:
-        sens = sens.load()
-    try:
-        rows = []
-        for output in map(str, sens["output"].values):
-            ranks = words.order(sens, output)[:4]
-            if ranks:
-                title = str(sens["output_name"].sel(output=output).item()) if "output_name" in sens.coords else output
-                rows.append((style.capital(style.plain(title)), [(r.name, style.rounded(r.value, 2)) for r in ranks]))
-        index = sens[words.headline(sens)].attrs.get("long_name", words.headline(sens))
-        return {
-            "method": str(sens.attrs.get("method", "")),
-            "index": str(index),
-            "rows": rows,
-            "sentence": words.overview(sens),
-        }
-    except (KeyError, ValueError, AttributeError) as problem:
-        log.warning("the sensitivities in %s are left out of the report: %s", path, problem)
-        return {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -94,7 +94,7 @@ def percentiles(column: np.ndarray, factor: Factor, shown: Output) -> tuple[np.n
         else:
             masks = [np.array([value == level for value in column]) for level in order]
         at = np.array(order, dtype=float) if factor.ordered else np.arange(len(order), dtype=float)
-        labels = [label(level) if factor.discrete else words.number(level) for level in order]
+        labels = [_level(factor.name, level) if factor.discrete else words.number(level) for level in order]
     else:
         edges = np.unique(np.quantile(column.astype(float), np.linspace(0, 1, BINS + 1)))
         index = np.clip(np.searchsorted(edges, column.astype(float), side="right") - 1, 0, len(edges) - 2)
@@ -109,6 +109,10 @@ def percentiles(column: np.ndarray, factor: Factor, shown: Output) -> tuple[np.n
     return at, labels, table
 
 
+def _level(name: str, level: Any) -> str:
+    return style.level_text(name, level) if isinstance(level, (int, float)) else label(level)
+
+
 def _draw(axes, at: np.ndarray, table: np.ndarray, factor: Factor, labels: list[str]) -> None:  # type: ignore[no-untyped-def]
     colour = style.palette(1)[0]
     if factor.ordered:
@@ -119,7 +123,7 @@ def _draw(axes, at: np.ndarray, table: np.ndarray, factor: Factor, labels: list[
     axes.vlines(at, table[0], table[4], color=colour, alpha=0.35, linewidth=6)
     axes.vlines(at, table[1], table[3], color=colour, alpha=0.9, linewidth=6)
     axes.plot(at, table[2], color="0.1", marker="_", markersize=9, markeredgewidth=1.5, linestyle="none")
-    short = [text if len(text) <= 14 else text[:13] + "…" for text in labels]
-    axes.set_xticks(at, short, rotation=25 if max(map(len, short)) > 6 else 0, ha="right" if max(map(len, short)) > 6
-                    else "center")  # fmt: skip
+    short = [text if len(text) <= 20 else text[:19] + "…" for text in style.short_levels(labels)]
+    long = max(map(len, short)) > 6
+    axes.set_xticks(at, short, rotation=25 if long else 0, ha="right" if long else "center", rotation_mode="anchor")
     axes.set_xlim(-0.6, len(at) - 0.4)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -37,39 +37,56 @@ def _label(front: xr.Dataset, name: str) -> str:
 
 
 def pareto_front(front: xr.Dataset) -> Drawn:
-    """All allowed designs, those that no other beats marked and joined.
+    """All allowed designs, those that no other beats marked: a panel for the first goal over each other one.
 
     Parameters
     ----------
-    front : dataset of `trackroller.study.pareto.pareto`; its first two objectives are drawn
+    front : dataset of `trackroller.study.pareto.pareto`
     """
-    (x, up_x), (y, up_y) = _objectives(front)[:2]
-    best = front["optimal"].values == 1
-    if not best.any():
+    goals = _objectives(front)
+    if not (front["optimal"].values == 1).any():
         return None
-    figure = style.new_figure(70)
-    axes = figure.add_subplot()
-    xs, ys = front[x].values, front[y].values
-    colours = style.palette(4)
-    axes.scatter(xs[~best], ys[~best], s=5, color="0.65", marker=".", rasterized=True, label="beaten by another")
-    order = np.argsort(xs[best])
-    step = {"max": "steps-pre", "min": "steps-post"}[up_x] if len(_objectives(front)) == 2 else ""
-    axes.plot(xs[best][order], ys[best][order], color=colours[3], linewidth=0.8, drawstyle=step or "default")
-    axes.scatter(xs[best], ys[best], s=16, color=colours[3], marker="D", edgecolor="0.1", linewidth=0.5, zorder=3,
-                 label="Pareto set")  # fmt: skip
-    for name, set_scale, values in ((x, axes.set_xscale, xs), (y, axes.set_yscale, ys)):
-        good = values[np.isfinite(values)]
-        if "life" in name and (good > 0).all() and good.max() > 20 * good.min():
-            set_scale("log")
-            style.log_ticks(axes.xaxis if name == x else axes.yaxis, good.min(), good.max())
-    axes.set_xlabel(_label(front, x) + (" →" if up_x == "max" else " ←"))
-    axes.set_ylabel(_label(front, y) + (" →" if up_y == "max" else " ←"))
-    figure.legend(loc="outside lower center", ncols=2)
+    others = goals[1:4]
+    figure = style.new_figure(22 + 48 * len(others))
+    panels = figure.subplots(len(others), 1, squeeze=False)[:, 0]
+    for axes, (x, up_x) in zip(panels, others, strict=True):
+        _trade(axes, front, (x, up_x), goals[0], joined=len(goals) == 2)
+    handles, texts = panels[0].get_legend_handles_labels()
+    figure.legend(handles, texts, loc="outside lower center", ncols=2)
     style.head(figure, "Designs that no other beats", "Arrows on the axes: the wanted direction.")
     style.finish(figure)
-    caption = (f"Pareto set for {front.attrs['objectives'].replace('_', ' ')}; {front.sizes['row']} allowed designs of "
-               f"{front.attrs['rows']}. Left out: {front.attrs['excluded']}.{_given(front)}")  # fmt: skip
+    wanted = words.listing([f"{front[n].attrs.get('long_name') or style.long_name(n)} {_WAYS[w]}" for n, w in goals])
+    limits = f" where {front.attrs['constraints']}" if front.attrs.get("constraints") else ""
+    caption = (f"Pareto set for {wanted}; {front.sizes['row']} allowed designs of {front.attrs['rows']}{limits}. Left "
+               f"out: {front.attrs['excluded']}.{_given(front)}")  # fmt: skip
     return figure, style.FigureInfo("pareto-front", caption, words.pareto(front))
+
+
+_WAYS = {"max": "up", "min": "down"}
+
+
+def _trade(axes: Any, front: xr.Dataset, across: tuple[str, str], upwards: tuple[str, str], joined: bool) -> None:
+    """One panel: a goal over another; of two goals the set is joined by the steps that bound it."""
+    (x, up_x), (y, up_y) = across, upwards
+    best = front["optimal"].values == 1
+    xs, ys = front[x].values.astype(float), front[y].values.astype(float)
+    colours = style.palette(4)
+    finite = np.isfinite(xs) & np.isfinite(ys)
+    rest = ~best & finite
+    axes.scatter(xs[rest], ys[rest], s=5, color="0.65", marker=".", rasterized=True, label="beaten by another")
+    shown = best & finite
+    if joined:
+        order = np.argsort(xs[shown])
+        step = {"max": "steps-pre", "min": "steps-post"}[up_x]
+        axes.plot(xs[shown][order], ys[shown][order], color=colours[3], linewidth=0.8, drawstyle=step)
+    axes.scatter(xs[shown], ys[shown], s=14, color=colours[3], marker="D", edgecolor="0.1", linewidth=0.5, zorder=3,
+                 label="Pareto set")  # fmt: skip
+    for name, set_scale, values in ((x, axes.set_xscale, xs[finite]), (y, axes.set_yscale, ys[finite])):
+        if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
+            set_scale("log")
+            style.log_ticks(axes.xaxis if name == x else axes.yaxis, values.min(), values.max())
+    axes.set_xlabel(_label(front, x) + (" →" if up_x == "max" else " ←"))
+    axes.set_ylabel(_label(front, y) + (" →" if up_y == "max" else " ←"))
 
 
 def parallel(front: xr.Dataset) -> Drawn:
@@ -123,13 +140,13 @@ def _common(front: xr.Dataset, factors: list[str], best: np.ndarray) -> str:
         if values.dtype.kind not in "fiu" or not np.isfinite(values).all():
             kinds = sorted({str(v) for v in values[best]})
             if len(kinds) == 1 and len({str(v) for v in values}) > 1:
-                said.append((0.0, f"{name.replace('_', ' ')} {kinds[0]}"))
+                said.append((0.0, f"{style.long_name(name)} {style.level_text(name, kinds[0])}"))
             continue
         low, high = np.percentile(values[best], [10, 90])
         wide = (high - low) / max(np.ptp(values), 1e-300)
         if wide < 0.5:
-            span = words.number(low) if low == high else f"{words.number(low)} to {words.number(high)}"
-            said.append((wide, f"{name.replace('_', ' ')} {span}"))
+            span = "" if low == high else f"{words.number(low)} to "
+            said.append((wide, f"{style.long_name(name)} {span}{style.level_text(name, float(f'{high:.3g}'))}"))
     said.sort()
     if not said:
         return "The best designs share no narrow range of any factor."
@@ -139,9 +156,10 @@ def _common(front: xr.Dataset, factors: list[str], best: np.ndarray) -> str:
 def _scaled(values: np.ndarray, log: bool) -> tuple[np.ndarray, tuple[str, str]]:
     """Values on 0 to 1 with the labels of the ends; categories by their order of appearance."""
     if values.dtype.kind not in "fiu":
-        kinds = list(dict.fromkeys(map(str, values)))
+        kinds = list(dict.fromkeys(style.short_levels([str(v) for v in values])))
+        values = np.array(style.short_levels([str(v) for v in values]), dtype=object)
         place = np.array([kinds.index(str(v)) for v in values]) / max(1, len(kinds) - 1)
-        return place, (kinds[0][:12], kinds[-1][:12])
+        return place, (_cut(kinds[0]), _cut(kinds[-1]))
     values = values.astype(float)
     good = values[np.isfinite(values)]
     low, high = (good.min(), good.max()) if good.size else (0.0, 1.0)
@@ -149,8 +167,12 @@ def _scaled(values: np.ndarray, log: bool) -> tuple[np.ndarray, tuple[str, str]]
         part = np.log(np.clip(values, low, high) / low) / max(np.log(high / low), 1e-300)
     else:
         part = (np.clip(values, low, high) - low) / max(high - low, 1e-300)
-    more = words.number(np.inf) if np.isposinf(values).any() else style.number(float(high))
+    more = ("unlimited" if log else "∞") if np.isposinf(values).any() else style.number(float(high))
     return part, (style.number(float(low)), more)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= 11 else text[:10] + "…"
 
 
 def robust_points(table: xr.Dataset, output: str) -> Drawn:
@@ -179,11 +201,13 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
                   elinewidth=0.8, markeredgecolor="0.1", markeredgewidth=0.4, label="B10")  # fmt: skip
     left.set_xscale("log")
     style.log_ticks(left.xaxis, *left.get_xlim())
-    left.set_yticks(place, [words.point_words(table, int(p)) for p in rank])
+    left.set_yticks(place, [words.upper(words.point_words(table, int(p))) for p in rank])
     left.set_xlabel(style.with_unit(words.upper(str(part["output_name"].item())), str(part["output_units"].item())))
     start = np.zeros(len(rank))
     for i, regime in ((1, "full_slip"), (2, "lift_off"), (3, "failed")):
         share = 100 * table["probability"].sel(regime=regime).values[rank]
+        if not share.any():
+            continue
         right.barh(place, share, 0.62, left=start, color=style.REGIME_COLOURS[i], hatch=style.REGIME_HATCHES[i],
                    edgecolor="0.15", linewidth=0.5, label=style.REGIME_LABELS[i])  # fmt: skip
         start = start + share
@@ -195,7 +219,9 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
     figure.legend(loc="outside lower center", ncols=6, columnspacing=1.0, handletextpad=0.4)
     style.head(figure, f"{words.upper(str(part['output_name'].item()))} where conditions scatter")
     style.finish(figure)
-    caption = (f"Design points by falling B10 over {table.attrs['inner_samples']} samples of "
-               f"{table.attrs['inner_factors'].replace('_', ' ')} each, the same for all. Whiskers: 95 % intervals. "
-               f"Lives over rolling cases; the others on the right.")  # fmt: skip
+    inner = words.listing([style.long_name(n) for n in table.attrs["inner_factors"].split(", ")])
+    own = float(table.attrs.get("log_life_scatter", 0.0))
+    caption = (f"Design points by falling B10, each with the same {table.attrs['inner_samples']} samples of {inner}. "
+               "Whiskers: 95 % intervals. Lives of the rolling cases; the share of the others on the right."
+               + (" B10 holds the material's own scatter of life as well." if own > 0 else ""))  # fmt: skip
     return figure, style.FigureInfo(f"robustness-{output}", caption, words.robustness(table, output))

@@ -75,7 +75,7 @@ def tornado(sens: xr.Dataset, output: str) -> Drawn:
     axes.axvline(0, color="0.2", linewidth=0.7)
     unit = f" [{effect_unit(sens, output)}]" if index in ("mu_star", "effect") else " [–]"
     axes.set_xlabel(AXIS[index] + unit)
-    style.head(figure, title(sens, output))
+    style.head(figure, f"{title(sens, output)}: what decides it")
     style.finish(figure)
     caption = (f"{AXIS[index].capitalize()} of each factor on {words.of_output(sens, output)}; whiskers: 95 % "
                f"intervals. {sens.attrs.get('treatment', '')}.")  # fmt: skip

@@ -249,6 +249,16 @@ def level_text(name: str, value: Any, unit: bool = True) -> str:
     return f"{number(value)} {unit_text(PARAMETERS[name].unit)}".replace(" °", "°")
 
 
+def short_levels(names: Sequence[str]) -> list[str]:
+    """Names of categories without the part of a pair that all of them share: only what differs tells them apart."""
+    parts = [name.split(" / ") for name in names]
+    if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
+        for keep in (0, 1):
+            if len({p[1 - keep] for p in parts}) == 1:
+                return [p[keep] for p in parts]
+    return list(names)
+
+
 def _pair(label: str) -> str:
     parts = label.split(" / ")
     return f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)

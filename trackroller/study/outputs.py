@@ -30,8 +30,8 @@ FIELDS = {"x", "y", "z", "grid"}
 DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
     "roller_life_hours": ("roller_life_hours", {}, "min", "log10", "life of the roller"),
     "guide_life_hours": ("guide_life_hours", {}, "min", "log10", "life of the guide"),
-    "roller_life_cycles": ("life_cycles", {"body": "roller"}, "min", "log10", "life of the roller in cycles"),
-    "guide_life_cycles": ("life_cycles", {"body": "guide"}, "min", "log10", "life of the guide in cycles"),
+    "roller_life_cycles": ("life_cycles", {"body": "roller"}, "min", "log10", "life of the roller in overrollings"),
+    "guide_life_cycles": ("life_cycles", {"body": "guide"}, "min", "log10", "life of the guide in overrollings"),
     "roller_peak_stress": ("peak_stress", {"body": "roller"}, "max", "natural", "peak stress in the roller"),
     "guide_peak_stress": ("peak_stress", {"body": "guide"}, "max", "natural", "peak stress in the guide"),
     "max_pressure": ("max_pressure", {}, "max", "natural", "highest contact pressure"),
@@ -42,6 +42,7 @@ DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
     "drilling_torque": ("drilling_torque", {}, "sum", "natural", "drilling torque"),
     "slip": ("slip", {}, "sum", "natural", "longitudinal slip"),
 }
+_REGIME_WORDS = {"rolling": "rolling", "full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 _JOIN: dict[str, Any] = {"min": np.nanmin, "max": np.nanmax, "sum": np.nansum}
 
 
@@ -198,12 +199,13 @@ def outputs(
             raise unknown_name("analysis.keep", name, REGIMES)
     regime = regimes(ds, dims)
     usable = np.isin(regime, [REGIMES.index(name) for name in keep])
-    lost = {n.replace("_", " "): int((regime == i).sum()) for i, n in enumerate(REGIMES)
+    lost = {_REGIME_WORDS[n]: int((regime == i).sum()) for i, n in enumerate(REGIMES)
             if n not in keep and (regime == i).any()}  # fmt: skip
     converged = flat(ds, "converged", dims) != 0 if "converged" in ds else np.ones(len(regime), dtype=bool)
     if count := int((usable & ~converged).sum()):
         lost["not converged"] = count
     usable &= converged
+    stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
     options, natural = _available(ds, factors, dims), set(natural)
     found = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
@@ -213,7 +215,10 @@ def outputs(
         values = np.where(usable, values, np.nan)
         if not unlimited and (count := int((usable & np.isinf(values)).sum())):
             excluded["unlimited"] = count
-        if count := int((usable & np.isnan(values)).sum()):
+        empty = usable & np.isnan(values)
+        if count := int((empty & stopped).sum()):
+            excluded["stopped by stop_if"] = count
+        if count := int((empty & ~stopped).sum()):
             excluded["undefined"] = count
         values = np.where(np.isfinite(values) | (unlimited & np.isposinf(values)), values, np.nan)
         if on == "log10":
@@ -223,6 +228,6 @@ def outputs(
         found.append(Output(name, values, units, words, on, excluded))
     for i, name in enumerate(REGIMES):
         if i and (regime == i).any() and not unlimited:
-            words = f"occurrence of {name.replace('_', ' ')}"
+            words = f"occurrence of {_REGIME_WORDS[name]}"
             found.append(Output(name, (regime == i).astype(float), "1", words, "natural"))
     return found

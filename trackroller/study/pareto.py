@@ -93,7 +93,7 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     excluded = {"regime": int((~allowed).sum())}
     table = np.stack([np.asarray(columns[n][0], dtype=float) for n in objectives], axis=1)
     defined = ~np.isnan(table).any(axis=1)
-    excluded["undefined objectives"] = int((allowed & ~defined).sum())
+    excluded["an undefined goal"] = int((allowed & ~defined).sum())
     allowed &= defined
     for text in constraints:
         good = np.broadcast_to(_meets(text, columns), allowed.shape)

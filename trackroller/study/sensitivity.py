@@ -208,8 +208,9 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
 def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
     """How the regimes of a study were treated, in words."""
     counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
-    text = ", ".join(f"{n} {name.replace('_', ' ')}" for name, n in counts.items() if n)
-    left = [name.replace("_", " ") for name, n in counts.items() if n and name not in tuple(keep)]
+    words = {name: name.replace("_", " ").replace("lift off", "lift-off") for name in REGIMES}
+    text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
+    left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
     if not left:
         return f"{text}; no row left out for its regime"
     return (f"{text}; {' and '.join(left)} rows left out of every index and never filled in; "

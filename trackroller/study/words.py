@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from trackroller.parameters import PARAMETERS
 from trackroller.study.convergence import advice
 
 SMALL = 0.02  # share of variance below which a factor is called negligible
@@ -58,9 +59,26 @@ def number(value: float) -> str:
     """A number in three figures."""
     if not np.isfinite(value):
         return "unlimited" if value > 0 else "unknown"
-    if value != 0 and not 1e-3 <= abs(value) < 1e5:
-        return f"{value:.2e}".replace("e+0", "e").replace("e-0", "e-").replace("e+", "e")
-    return f"{float(f'{value:.3g}'):g}"
+    short = float(f"{value:.3g}")
+    if value != 0 and not 1e-3 <= abs(value) < 1e7:
+        mantissa, exponent = f"{value:.2e}".split("e")
+        text = f"{float(mantissa):g}·10{str(int(exponent)).translate(_RAISED)}"
+    else:
+        text = f"{short:,.0f}".replace(",", "\u00a0") if abs(short) >= 1e4 else f"{short:g}"
+    return text.replace("-", "−")
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def within(value: float, half: float) -> str:
+    """A number with half its interval, both to the half's two figures: '2.04 ± 0.19'."""
+    if not np.isfinite(half) or half <= 0:
+        return number(value)
+    digits = 1 - int(np.floor(np.log10(half)))
+    if digits <= 0 or digits > 4:
+        return f"{number(value)} ± {number(float(f'{half:.2g}'))}"
+    return f"{value:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
 
 
 def upper(text: str) -> str:
@@ -98,8 +116,15 @@ def caveat(sens: xr.Dataset, output: str) -> str:
         said.append(f"Only {float(part['used_share']) * 100:.0f} % of the design could be used: {part['note'].item()}.")
     times = float(part["take_times"]) if "take_times" in part else np.nan
     if np.isfinite(times):
-        said.append(f"Indices {advice(times)}.".replace("Indices not", "Not"))
+        said.append("The indices have converged." if times <= 1 else f"{upper(advice(times))}.")
     return " ".join(said)
+
+
+def advice_of(sens: xr.Dataset, output: str) -> str:
+    """Convergence of an output's indices in words; empty where the method has no course."""
+    part = sens.sel(output=output)
+    times = float(part["take_times"]) if "take_times" in part else np.nan
+    return advice(times) if np.isfinite(times) else ""
 
 
 def tornado(sens: xr.Dataset, output: str) -> str:
@@ -142,9 +167,7 @@ def _range_words(sens: xr.Dataset, output: str, ranks: list[Rank], what: str, in
     part = sens.sel(output=output)
     unit = "decades" if str(part["scale"].item()) == "log10" else unit_words(str(part["output_units"].item()))
     first = ranks[0]
-    half = (first.high - first.low) / 2
-    sure = f" ± {number(half)}" if np.isfinite(half) else ""
-    by = f"{number(first.value)}{sure} {unit}".strip()
+    by = f"{within(first.value, (first.high - first.low) / 2)} {unit}".strip()
     text = f"Over its whole range {first.name} changes {what} most, by {by}"
     text += " on average" if index == "mu_star" else ""
     more = [f"{r.name} ({number(r.value)})" for r in ranks[1:4] if abs(r.value) >= 0.1 * abs(first.value)]
@@ -166,7 +189,7 @@ def convergence(sens: xr.Dataset, output: str) -> str:
     widest = max(ranks, key=lambda r: r.high - r.low)
     half = (widest.high - widest.low) / 2
     size = int(sens["sample_size"].values[-1])
-    wide = number(half) if headline(sens) == "mu_star" else f"{half * 100:.1f} % of the variance"
+    wide = number(float(f"{half:.2g}")) if headline(sens) == "mu_star" else f"{half * 100:.1f} % of the variance"
     return f"With {size} samples the widest 95 % interval, of {widest.name}, is ± {wide}: {advice(times)}."
 
 
@@ -222,7 +245,7 @@ def overview(sens: xr.Dataset) -> str:
             lead.setdefault(ranks[0].name, []).append(str(sens.sel(output=output)["output_name"].item()))
     if not lead:
         return "No index can be given for any output."
-    return "; ".join(f"{upper(name)} leads for {listing(what)}" for name, what in lead.items()) + "."
+    return upper("; ".join(f"{name} leads for {listing(what)}" for name, what in lead.items())) + "."
 
 
 def band(factor: str, levels: Sequence[str], median: np.ndarray, what: str, unit: str, ordered: bool = True) -> str:
@@ -287,14 +310,24 @@ def robustness(table: xr.Dataset, output: str) -> str:
     lift = table["probability"].sel(regime="lift_off").values
     best = int(np.argmax(np.where(safe > 0, safe, np.nan_to_num(part["b10"].values, nan=0.0) * 1e-9)))
     b10, low, high = (float(part[n].values[best]) for n in ("b10", "b10_low", "b10_high"))
-    where = point_words(table, best)
-    text = (f"At {where} nine of ten reach {with_unit(b10, str(part['output_units'].item()))} "
-            f"({number(low)} to {number(high)}), the best B10 of {part['output_name'].item()}")  # fmt: skip
-    text += f"; full slip there in {percent(slip[best])} and lift-off in {percent(lift[best])} of cases"
+    where, unit = point_words(table, best), str(part["output_units"].item())
+    still = float(table["probability"].sel(regime="rolling").values[best]) == 1.0
+    text = (f"At {where} nine of ten {'cases' if still else 'of the rolling cases'} reach {with_unit(b10, unit)} "
+            f"({number(low)} to {number(high)}), the best B10 of the {part['output_name'].item()}")  # fmt: skip
+    if not still:
+        all_in = float(part["b10_safe"].values[best])
+        text += (f"; with every other regime counted as life 0 it is {with_unit(all_in, unit)}" if all_in > 0 else
+                 "; one in ten or more do not roll, so that counting these no B10 is left")  # fmt: skip
+    text += f"; full slip there in {percent(slip[best])} and lift-off in {percent(lift[best])} of the cases"
     worst = int(np.argmax(slip + lift))
     if worst != best and slip[worst] + lift[worst] > slip[best] + lift[best]:
         text += f", at worst in {percent(slip[worst] + lift[worst])} ({point_words(table, worst)})"
     return text + "."
+
+
+def _unit_of(name: str) -> str:
+    unit = PARAMETERS[name].unit if name in PARAMETERS else "-"
+    return "°" if unit == "deg" else unit
 
 
 def point_words(table: xr.Dataset, point: int) -> str:
@@ -303,5 +336,6 @@ def point_words(table: xr.Dataset, point: int) -> str:
     said = []
     for name in names:
         value = table[name].values[point]
-        said.append(f"{name.replace('_', ' ')} {value if isinstance(value, str) else format(float(value), 'g')}")
+        text = value if isinstance(value, str) else with_unit(float(value), _unit_of(name)).replace(" °", "°")
+        said.append(f"{name.replace('_', ' ')} {text}")
     return ", ".join(said) or "the one design point"

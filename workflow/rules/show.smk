@@ -1,8 +1,31 @@
-# What is drawn and written from the gathered file.
+# What is drawn and written from the gathered file. A change of this code does the results anew; `study/draws.py` and the
+# like are part of it because an analysis draws its design again.
+ANALYSIS = [
+    "fatigue.py",
+    "study/convergence.py",
+    "study/delta.py",
+    "study/designs.py",
+    "study/draws.py",
+    "study/expressions.py",
+    "study/factors.py",
+    "study/givendata.py",
+    "study/goals.py",
+    "study/indices.py",
+    "study/outputs.py",
+    "study/pareto.py",
+    "study/restore.py",
+    "study/robustness.py",
+    "study/sampling.py",
+    "study/sensitivity.py",
+    "study/sobol.py",
+    "study/words.py",
+]
+
+
 rule sensitivity:
     input:
         study=f"{RESULTS}/study.nc",
-        code=sources("study/sensitivity.py", "study/indices.py", "study/outputs.py"),
+        code=sources(*ANALYSIS),
     output:
         f"{RESULTS}/sensitivity.nc",
     log:
@@ -17,7 +40,7 @@ rule figures:
     input:
         study=f"{RESULTS}/study.nc",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=sources("plots"),
+        code=sources("plots", *ANALYSIS),
     output:
         directory(f"{RESULTS}/figures"),
     log:
@@ -33,7 +56,16 @@ rule report:
         study=f"{RESULTS}/study.nc",
         figures=f"{RESULTS}/figures",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=sources("report.py", "templates"),
+        code=sources(
+            "report.py",
+            "report_decisions.py",
+            "report_papers.py",
+            "report_tables.py",
+            "templates",
+            "plots/style.py",
+            "plots/study_view.py",
+            *ANALYSIS,
+        ),
     output:
         f"{RESULTS}/report.html",
     log:
