@@ -20,6 +20,7 @@ from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.models import ContactModel, contact_model, traction_share
 from trackroller.contact.normal_patch import GridPatch
 from trackroller.contact.slip import pole_split
+from trackroller.contact.table_model import TableModel
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
 from trackroller.halfspace.bounds import lower_bounds
@@ -183,8 +184,19 @@ def contact(results: Results, options: Options) -> None:
     if results.scene.model.full_sliding or results.scene.frictionless:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
     elif "contact" in options.outputs:
+        v["stick_area_fraction"] = results.full(_stick_share(results))
+
+
+def _stick_share(results: Results) -> np.ndarray:
+    """Share of each existing patch that sticks; a table of the contact model knows it without tractions."""
+    model, good = results.scene.model, results.good
+    if not isinstance(model, TableModel):
         t = surface_tractions(results)
-        v["stick_area_fraction"] = results.full(t.stick.sum(axis=(1, 2)) / (t.pressure > 0).sum(axis=(1, 2)))
+        return t.stick.sum(axis=(1, 2)) / (t.pressure > 0).sum(axis=(1, 2))
+    rolls = results.slides_along[good] == 0
+    slip = replace(results.slip, shift=np.where(np.isfinite(results.slip.shift), results.slip.shift, 0.0)).take(good)
+    share = model.stick(results.ellipse.take(good), slip, results.friction[good], results.rows[good])
+    return np.where(rolls, share, 0.0)
 
 
 def friction_work(results: Results, options: Options) -> None:

@@ -80,8 +80,9 @@ def _basis(knots, x, out):
 
 
 @njit(cache=True, nogil=True)
-def _evaluate(first, last, k0, k1, k2, k3, values, points, out):
+def _evaluate(first, last, knots, values, points, out):
     """Rows first..last of the tensor product at points (n, 4) into out (n, fields)."""
+    k0, k1, k2, k3 = knots
     basis, start = np.empty((4, 4)), np.empty(4, np.int64)
     for row in range(first, last):
         start[0], start[1] = _basis(k0, points[row, 0], basis[0]), _basis(k1, points[row, 1], basis[1])
@@ -103,7 +104,7 @@ def evaluate(spline: Spline, points: np.ndarray) -> np.ndarray:
     """Values (n, fields) of `spline` at `points` (n, 4), which must lie between the outer knots."""
     points = np.ascontiguousarray(points, dtype=float)
     out = np.empty((len(points), spline.values.shape[4]))
-    share_rows(lambda a, b: _evaluate(a, b, *spline.knots, spline.values, points, out), len(points), 512)
+    share_rows(lambda a, b: _evaluate(a, b, spline.knots, spline.values, points, out), len(points), 512)
     return out
 
 

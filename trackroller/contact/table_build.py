@@ -105,11 +105,15 @@ def _mirrored(angles, values, axis=1):
             np.concatenate([first, values, last], axis=axis))  # fmt: skip
 
 
+def _log_ratios(count: int) -> np.ndarray:
+    return np.linspace(np.log(table.RATIOS[0]), np.log(table.RATIOS[1]), count)
+
+
 def like_table(tell=print):
     """Nodes and values of bodies of one kind (K = 0) over (rho, theta, ln g, nu)."""
     rho = np.arange(RHO + 1) / RHO
     theta = (np.arange(THETA) + 0.5) * np.pi / (2 * THETA)
-    log_g = np.linspace(*np.log(table.RATIOS), RATIO)
+    log_g = _log_ratios(RATIO)
     nu = np.linspace(0.0, 0.5, POISSON)
     th, g, v = (m.ravel() for m in np.meshgrid(theta, np.exp(log_g), nu, indexing="ij"))
     values = np.empty((RHO + 1, th.size, 4))
@@ -155,7 +159,7 @@ def unlike_table(like: table.Spline, tell=print):
     """Coefficients of the shift, and nodes and values of what K adds beyond it, over (rho, theta, ln g, kappa)."""
     rho = np.arange(RHO_UNLIKE + 1) / RHO_UNLIKE
     theta = (np.arange(THETA_UNLIKE) + 0.5) * np.pi / THETA_UNLIKE - np.pi / 2
-    log_g = np.linspace(*np.log(table.RATIOS), RATIO_UNLIKE)
+    log_g = _log_ratios(RATIO_UNLIKE)
     th, g, kappa = (m.ravel() for m in np.meshgrid(theta, np.exp(log_g), COUPLINGS, indexing="ij"))
     exact = np.zeros((RHO_UNLIKE + 1, th.size, 4))
     start = None

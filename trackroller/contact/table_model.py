@@ -7,6 +7,7 @@ solver on a coarse grid at the slip that the table found. Rollers outside the ta
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -24,11 +25,12 @@ class TableModel:
     difference_step = 1e-3
     residual = 1e-7
 
-    def __init__(self, elastic: Elastic, exact: Callable[[], object]) -> None:
-        self.elastic, self._make, self._exact = elastic, exact, None
+    def __init__(self, elastic: Elastic, exact: Callable[[], Any]) -> None:
+        self.elastic, self._make = elastic, exact
+        self._exact: Any = None
 
     @property
-    def exact(self):
+    def exact(self) -> Any:
         """The exact model, made when first needed."""
         if self._exact is None:
             self._exact = self._make()
@@ -52,6 +54,15 @@ class TableModel:
     def surface(self, ellipse: Ellipse, slip: Slip, friction, rows) -> SurfaceTractions:
         """Tractions of the exact solver on a grid over each patch."""
         return self.exact.surface(ellipse, slip, friction, rows)
+
+    def stick(self, ellipse: Ellipse, slip: Slip, friction, rows) -> np.ndarray:
+        """Share of each patch that sticks, shape (n,)."""
+        found = self._table(ellipse, slip, friction, rows)
+        share, rest = found.stick_fraction, np.flatnonzero(~found.known)
+        if rest.size:
+            t = self.exact.surface(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
+            share[rest] = t.stick.sum(axis=(1, 2)) / (t.pressure > 0).sum(axis=(1, 2))
+        return share
 
     def power(self, ellipse: Ellipse, slip: Slip, friction, rows) -> np.ndarray:
         """Dissipation per distance travelled [N], the work of the creepages, shape (n,)."""
