@@ -17,8 +17,12 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keep
 
 
 def inner(function: Callable[..., Any]) -> Any:
-    """Compiles a function that only compiled ones call: without the wrappers for callers in Python."""
-    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    """Compiles a function that only compiled ones call: without the wrappers for callers in Python.
+
+    Always inlined: a callee with a body of its own is linked from wherever it was compiled first, and as fast
+    arithmetic rounds differently there, the process that compiles would find other last digits than later ones.
+    """
+    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
     return njit(cache=True, fastmath=FAST, error_model="numpy", **options)(function)
 
 
