@@ -58,3 +58,12 @@ def test_little_friction_rolls_at_the_slip_of_the_limit(friction):
     near = solved(tr.Case(friction_coefficient=friction, motor_force=0))
     limit = solved(tr.Case(friction_coefficient=0.0, motor_force=0))
     assert near.slip.item() == pytest.approx(limit.slip.item(), rel=1e-5)
+
+
+def test_fastsim_draws_patches_too_slender_for_it_in_full_slip_and_fails_those_that_roll():
+    slender = {"guide_profile_radius": 6, "roller_profile_radius": -6.0001, "friction_coefficient": 0.1}
+    ds = tr.solve([tr.Case(**slender, motor_force=m) for m in (0, -190)], ("contact", "tractions"),
+                  contact_model="fastsim", accuracy="preview")  # fmt: skip
+    assert ds.regime.values.tolist() == [FAILED, FULL_SLIP]
+    assert np.isfinite(ds.shear_rolling.values[1]).all() and np.isnan(ds.slip_rolling.values[1]).all()
+    assert ds.patch_x.values[1].max() < ds.semi_axis_lateral.values[1].max()

@@ -308,13 +308,16 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
     roller = _Roller(rolled, law, rows)
     w_low, w_high = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
     # locked, the friction along the track is complete and there is no other, as in full slip
-    beyond = roller.motor_force > friction * np.sum(roller.normal_forces(np.zeros((2, rows.size))), axis=0)
+    complete = friction * np.sum(roller.normal_forces(np.zeros((2, rows.size))), axis=0)
+    beyond = roller.motor_force > complete
     drives = np.flatnonzero(roller.motor_force < 0)
     spins = _Roller(rolled, law, rows[drives])
     if loads.falling:
         w_low, w_high, beyond = first_balance(roller, w_low, w_high)
     else:
-        beyond[drives] = spins.torque(_forces_at(spins, w_low[drives])) < 0
+        torque = spins.torque(_forces_at(spins, w_low[drives]))
+        # a law without an answer for this patch leaves what friction can give at most
+        beyond[drives] = np.where(np.isnan(torque), -spins.motor_force > complete[drives], torque < 0)
     go = np.flatnonzero(~beyond)
     if go.size == 0:
         return rows

@@ -5,6 +5,7 @@ A model gives the contact law of the equilibrium, and the tractions of given pat
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -134,8 +135,8 @@ class FastsimModel:
     def _solution(self, ellipse, slip, friction, rows):
         from trackroller.contact.linear import LARGEST_RATIO
 
-        ratio = ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
-        known = np.flatnonzero((ratio > 1 / LARGEST_RATIO) & (ratio < LARGEST_RATIO))
+        a, b, most = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, 0.99 * LARGEST_RATIO
+        known = np.flatnonzero(np.maximum(a, b) <= most * np.minimum(a, b))
         part = slip.take(known)
         solution = self._fastsim.solve_patch(
             ellipse.take(known), part.longitudinal, 0.0, part.spin, friction[known], self.elastic.take(rows[known]),
@@ -155,8 +156,19 @@ class FastsimModel:
         return Resultants(*(spread(v) for v in (r.lateral_force, r.driving_force, r.spin_moment)))
 
     def surface(self, ellipse, slip, friction, rows):
-        travel = self.travel[rows]
-        return self._fastsim.tractions(ellipse, slip, friction, self.elastic.take(rows), self.settings, travel)
+        from trackroller.contact.linear import LARGEST_RATIO
+
+        # patches too slender for the theory exist in full slip only, which needs no more of it than grid and pressure
+        a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+        most = 0.99 * LARGEST_RATIO
+        known = np.maximum(a, b) <= most * np.minimum(a, b)
+        rounder = dataclasses.replace(ellipse, semi_axis_lateral=np.where(known, a, np.clip(a, b / most, b * most)))
+        t = self._fastsim.tractions(rounder, slip, friction, self.elastic.take(rows), self.settings, self.travel[rows])
+        wrong = ~known[:, None, None]
+        fields = {name: np.where(wrong, np.nan, getattr(t, name))
+                  for name in ("shear_lateral", "shear_rolling", "slip_lateral", "slip_rolling")}  # fmt: skip
+        widened = t.x * (a / rounder.semi_axis_lateral)[:, None]
+        return dataclasses.replace(t, x=widened, stick=t.stick & ~wrong, **fields)
 
     def power(self, ellipse, slip, friction, rows):
         solution, spread = self._solution(ellipse, slip, friction, rows)
