@@ -1,0 +1,160 @@
+"""Measures how far the cheaper contact models lie from the exact theory; makes the map behind `contact_model="auto"`.
+
+    python benchmarks/contact_choice.py sample --cases 800 --seed 1 --output designs.npz     0.1 s a case
+    python benchmarks/contact_choice.py map designs.npz [more.npz]   writes trackroller/data/contact_choice.npz
+    python benchmarks/contact_choice.py check fresh.npz              its coverage on another sample, stored beside it
+
+A random sample of designs over friction, angles, radii, curves, loads, materials and drive, wider than what anybody
+builds, is solved with all three models; with `--exact standard` the exact theory takes ten times as long.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import trackroller as tr
+from trackroller.case import to_table
+from trackroller.contact import choice
+from trackroller.solver import Options
+
+sys.path.insert(0, str(Path(__file__).parent))
+from peak_coverage import random_case
+
+COVERAGE, SMALLEST = 0.98, 1e-5
+TOLERANCES = (0.01, 0.02, 0.05, 0.1, 0.2)
+MODELS = ("sliding", "fastsim", "kalker")
+KEPT = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral", "semi_axis_rolling",
+        "rolling_radius_shift", "stick_area_fraction", "peak_stress", "regime", "converged", "residual")  # fmt: skip
+BATCH = 20
+
+
+def sample(n: int, seed: int) -> list[tr.Case]:
+    """`n` designs; friction log-uniform from 0.01 to 1, everything else as in peak_coverage.py."""
+    rng = np.random.default_rng(seed)
+    cases: list[tr.Case] = []
+    while len(cases) < n:
+        friction = 10 ** rng.uniform(-2, 0)
+        try:
+            cases.append(dataclasses.replace(random_case(rng), friction_coefficient=friction))
+        except tr.InputError:
+            continue
+    return cases
+
+
+def solve_all(cases: list[tr.Case], exact: str = "preview") -> dict[str, np.ndarray]:
+    """Quantities of all models, arrays (model, n, ...); the exact theory at the accuracy `exact`."""
+    accuracy = {"sliding": "standard", "fastsim": "preview", "kalker": exact}
+    parts: dict[str, list[Any]] = {name: [] for name in KEPT}
+    for i in range(0, len(cases), BATCH):
+        found = [tr.solve(cases[i : i + BATCH], outputs=("forces", "contact", "peak_stress"), contact_model=m,
+                          accuracy=accuracy[m]) for m in MODELS]  # fmt: skip
+        for name in KEPT:
+            parts[name].append(np.stack([ds[name].values for ds in found]))
+        print(f"{min(i + BATCH, len(cases))} of {len(cases)}", file=sys.stderr, flush=True)
+    return {name: np.concatenate(p, axis=1) for name, p in parts.items()}
+
+
+def errors(found: dict[str, np.ndarray]) -> np.ndarray:
+    """Errors of the cheaper models as `contact.choice` counts them, shape (model, n); inf for another regime.
+
+    Cases that do not roll by the exact theory, or where it did not converge, are NaN.
+    """
+    f = {name: value.astype(float) for name, value in found.items() if name in KEPT}
+    normal, square = f["normal_force"][-1], f["semi_axis_lateral"][-1] * f["semi_axis_rolling"][-1]
+    out = []
+    for k in range(len(MODELS) - 1):
+        with np.errstate(invalid="ignore"):
+            parts = [np.abs(f["normal_force"][k] / normal - 1.0)]
+            parts += [np.abs(f[n][k] - f[n][-1]) / normal for n in ("lateral_force", "driving_force")]
+            parts.append(np.abs(f["spin_moment"][k] - f["spin_moment"][-1]) / (normal * np.sqrt(square)))
+            parts.append(np.abs(f["peak_stress"][k] / f["peak_stress"][-1] - 1.0).max(axis=2))
+            worst = np.max(np.stack(parts), axis=(0, 2))
+        same = (f["regime"][k] == f["regime"][-1]) & np.isfinite(worst)
+        worst = np.where(same, worst, np.inf)
+        rolls = (f["regime"][-1] == 0) & (f["converged"][-1] == 1)
+        out.append(np.where(rolls, worst, np.where((f["regime"][-1] == f["regime"][k]), np.nan, np.inf)))
+    return np.stack(out)
+
+
+def fit(x: np.ndarray, log_error: np.ndarray, weight: float = 1e-2) -> np.ndarray:
+    """Least squares with a slight preference for small coefficients."""
+    m = choice.monomials(x)
+    return np.linalg.solve(m.T @ m + weight * np.eye(m.shape[1]), m.T @ log_error)
+
+
+def make_map(cases: list[tr.Case], found: dict[str, np.ndarray], folds: int = 8) -> dict[str, np.ndarray]:
+    """Scales, range, coefficients by model, and margins from residuals of designs that a fit has not seen."""
+    table = to_table(cases, None)
+    x, error = choice.features(table), errors(found)
+    good = np.all(np.isfinite(x), axis=1) & ~np.any(np.isnan(error), axis=0)
+    x, log_error = x[good], np.log(np.clip(error[:, good], SMALLEST, 1.0))
+    centre, width = x.mean(axis=0), x.std(axis=0)
+    scaled = choice.scaled(x, centre, width)
+    fold = np.arange(len(x)) % folds
+    coefficients, margin, spread = [], [], []
+    for row in log_error:
+        left = np.empty(len(x))
+        for k in range(folds):
+            out = fold == k
+            left[out] = row[out] - choice.monomials(scaled[out]) @ fit(scaled[~out], row[~out])
+        coefficients.append(fit(scaled, row))
+        margin.append(np.quantile(left, COVERAGE, method="higher"))
+        spread.append(left.std())
+    print("designs", len(x), "margin factor", np.exp(margin).round(2), "spread", np.round(spread, 2))
+    return {"centre": centre, "width": width, "lower": x.min(axis=0), "upper": x.max(axis=0),
+            "coefficients": np.array(coefficients).T, "margin": np.array(margin), "coverage": np.array(COVERAGE),
+            "designs": np.array(len(x))}  # fmt: skip
+
+
+def check(cases: list[tr.Case], found: dict[str, np.ndarray], tolerances=TOLERANCES) -> dict[str, np.ndarray]:
+    """By tolerance: share of each model, share of designs within it, and among those with a cheaper model."""
+    table, error = to_table(cases, None), errors(found)
+    rolls = ~np.any(np.isnan(error), axis=0)
+    shares, met, met_cheaper = [], [], []
+    for tolerance in tolerances:
+        chosen = choice.choose(table, Options(contact_model="auto", contact_tolerance=tolerance))[rolls]
+        own = np.select([chosen == m for m in choice.CHEAPER], error[:, rolls], 0.0)
+        shares.append([np.mean(chosen == m) for m in MODELS])
+        met.append(np.mean(own <= tolerance))
+        cheap = chosen != MODELS[-1]
+        met_cheaper.append(np.mean(own[cheap] <= tolerance) if cheap.any() else np.nan)
+    return {"tolerances": np.array(tolerances), "shares": np.array(shares), "met": np.array(met),
+            "met_cheaper": np.array(met_cheaper), "checked": np.array(int(rolls.sum()))}  # fmt: skip
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=("sample", "map", "check"))
+    parser.add_argument("files", nargs="*", type=Path, help="samples")
+    parser.add_argument("--cases", type=int, default=800)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--exact", default="preview", help="accuracy of the exact theory")
+    parser.add_argument("--output", type=Path, default=Path("designs.npz"))
+    options = parser.parse_args()
+    if options.what == "sample":
+        found = solve_all(sample(options.cases, options.seed), options.exact)
+        np.savez_compressed(options.output, n=options.cases, seed=options.seed, **found)  # type: ignore[arg-type]
+        return 0
+    target = Path(choice.__file__).parents[1] / "data" / choice.MAP
+    found = {p: dict(np.load(p, allow_pickle=False)) for p in options.files}
+    cases = {p: sample(int(f["n"]), int(f["seed"])) for p, f in found.items()}
+    every = [c for p in options.files for c in cases[p]]
+    joined = {name: np.concatenate([f[name] for f in found.values()], axis=1) for name in KEPT}
+    arrays = make_map(every, joined) if options.what == "map" else dict(choice.stored())
+    if options.what == "check":
+        arrays.update(check(every, joined))
+        for name in ("tolerances", "shares", "met", "met_cheaper", "checked"):
+            print(name, arrays[name].round(4).tolist())
+    np.savez_compressed(target, **arrays)  # type: ignore[arg-type]
+    choice.stored.cache_clear()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
