@@ -39,7 +39,7 @@ def test_full_sliding_and_pure_drilling():
 
 @pytest.mark.parametrize(
     ("creep", "tolerance"),
-    [((1e-3, 0.0, 0.0), 0.05), ((3e-4, 3e-4, 0.0), 0.06), ((-0.0035, 0.0, 0.03), 0.14), ((0.0, 0.0, 0.03), 0.15)],
+    [((1e-3, 0.0, 0.0), 0.05), ((3e-4, 3e-4, 0.0), 0.06), ((-0.0035, 0.0, 0.03), 0.08), ((0.0, 0.0, 0.03), 0.08)],
 )
 def test_forces_near_the_exact_theory(creep, tolerance):
     fast = values(fastsim.solve_patch(patch(), *creep, 0.3, STEEL).resultants)[0]
@@ -69,10 +69,49 @@ def test_steps_and_strips_are_fine_enough():
         np.testing.assert_allclose(f, g, rtol=1e-2)
 
 
-def test_falling_friction_lowers_the_forces_and_converges():
+def test_forces_over_creepages_and_shapes():
+    """Against the exact theory from stick to sliding with the pole in and outside the patch: few per cent of mu F_N."""
+    rng = np.random.default_rng(5)
+    n, c, p, mu = 60, 0.2, 800.0, 0.2
+    root = np.exp(rng.uniform(np.log(0.2), np.log(5), n) / 2)
+    elastic = Elastic(np.full(n, 8e4), rng.uniform(0.2, 0.45, n), np.zeros(n))
+    size, angle = 10 ** rng.uniform(-0.5, 1.5, n) * mu * p / 8e4, rng.uniform(-0.5, 0.5, n) * np.pi
+    xi, phi = size * np.sin(angle), size * np.cos(angle) / c
+    ellipse = Ellipse(c / root, c * root, np.full(n, p))
+    exact = kalker.solve_patch(
+        ellipse, kalker.Creepage(xi, 0 * xi, phi), mu, elastic, kalker.KalkerSettings(elements=24)
+    )
+    fast = fastsim.solve_patch(ellipse, xi, 0.0, phi, mu, elastic)
+    scale = (mu * ellipse.normal_force)[:, None] * [1, 1, c]
+    error = (values(fast.resultants) - values(exact.resultants)) / scale
+    assert np.all(np.sqrt(np.mean(error**2, axis=0)) < [0.027, 0.017, 0.015])
+    assert np.all(np.max(np.abs(error), axis=0) < [0.09, 0.06, 0.07])
+
+
+def test_lateral_force_of_far_sliding_is_exact():
+    """Slip along y with some spin: both theories have the same lateral force, which is of the order of spin/slip^2."""
+    ellipse = patch([0.3, 0.3, 0.1], [0.3, 0.1, 0.4], [700.0] * 3)
+    fast, exact = (
+        values(s.resultants)[:, 0]
+        for s in (
+            fastsim.solve_patch(ellipse, 0.05, 0.0, 0.02, 0.1, STEEL),
+            kalker.solve_patch(ellipse, kalker.Creepage(*(np.full(3, v) for v in (0.05, 0.0, 0.02))), 0.1, STEEL),
+        )
+    )
+    np.testing.assert_allclose(fast, exact, rtol=0.025)
+
+
+def test_work_of_the_slip_is_that_of_the_creepages():
+    xi, phi = np.array([-0.0035, 1e-4, 0.01]), np.array([0.03, 0.003, -0.1])
+    s = fastsim.solve_patch(patch([0.3] * 3, [0.18] * 3, [700.0] * 3), xi, 0.0, phi, 0.3, STEEL)
+    f = values(s.resultants)
+    np.testing.assert_allclose(s.friction_energy_per_distance, -(xi * f[:, 1] + phi * f[:, 2]), rtol=1e-9)
+
+
+def test_falling_friction_lowers_the_forces():
     s = fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.3, STEEL,
                             FastsimSettings(law=exponential_falling(30.0, 0.4), travel_speed=2000.0))  # fmt: skip
-    assert s.friction_change[0] < 1e-5
+    assert s.friction_change[0] < 0.02
     constant = fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.3, STEEL)
     assert abs(s.resultants.spin_moment[0]) < abs(constant.resultants.spin_moment[0])
 

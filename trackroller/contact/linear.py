@@ -97,3 +97,36 @@ def resultants(ellipse: Ellipse, longitudinal, lateral, spin, elastic: Elastic) 
         -g * square * c.c11 * longitudinal,
         -g * (square**1.5 * c.c23 * lateral + square**2 * c.c33 * spin),
     )
+
+
+@lru_cache(maxsize=1)
+def _sliding_integrals() -> np.ndarray:
+    """Chebyshev coefficients in ln(ratio) of the logarithms of the three integrals of `sliding_flexibility`."""
+    ratio, _ = _nodes()
+    a, b = 1.0 / ratio[:, None], 1.0
+    t = np.pi * (np.arange(8192) + 0.5) / 8192
+    cos, sin = np.cos(t), np.sin(t)
+    # directions phi with tan(phi) = (b/a) tan(t), which are dense where the integrand is steep
+    size = np.hypot(a * cos, b * sin)
+    c, s, step = a * cos / size, b * sin / size, a * b / size**2 * np.pi / t.size
+    cube = step * size**3
+    parts = (c**2 / a**2, c**4 / a**2, s**2 * c**2 * (1 / a**2 + 1 / b**2))
+    values = np.stack([(part * cube).sum(axis=1) for part in parts], axis=1)
+    return np.linalg.inv(chebvander(chebpts1(NODES[0]), NODES[0] - 1)) @ np.log(values)
+
+
+def sliding_flexibility(axis_ratio, poisson_ratio) -> np.ndarray:
+    """Flexibilities of x and y that full sliding with its pole far away asks of a simplified theory, over b/G: (n, 2).
+
+    There the traction is mu p along y and turns across it as the rigid slip does, q_x ~ y mu p. The displacements of
+    both are polynomials (Galin), and the flexibility L follows from equal lateral force, to the first order in the
+    elasticity, of u and of u = L tau:
+
+        L_x = 8/(15 G) int_0^pi (1 - nu + nu cos^2) cos^2/(a^2 l^3)
+        L_y = 8/(15 G) int_0^pi [(1 - nu + nu sin^2) cos^2/a^2 + nu sin^2 cos^2/b^2]/l^3,  l^2 = cos^2/a^2 + sin^2/b^2
+
+    Arguments as in `creepage_coefficients`.
+    """
+    ratio, nu = np.broadcast_arrays(np.asarray(axis_ratio, float), np.asarray(poisson_ratio, float))
+    one, four, mixed = np.exp(chebval(np.log(ratio) / np.log(LARGEST_RATIO), _sliding_integrals()))
+    return 8.0 / 15.0 * np.stack([(1 - nu) * one + nu * four, (1 - nu) * one + nu * mixed], axis=-1)
