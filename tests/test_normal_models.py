@@ -114,8 +114,8 @@ def test_peak_below_a_grid_matches_the_peak_below_the_ellipse(shift):
     slip, mu, nu = slip_of(shift), np.array([0.3]), np.array([[0.33, 0.3]])
     exact = find_peaks(patch_rows(e, slip, mu, 2, np.zeros(1)), nu, PRESETS["reference"].peak)
     t = normal_sliding.tractions(grid, slip, mu)
-    fields = np.stack([t.shear_lateral, t.shear_rolling, t.pressure], axis=-1)
-    found = find_grid_peaks(t.x, t.y, fields, nu)
+    fields = np.stack([t.shear_lateral[0], t.shear_rolling[0], t.pressure[0]], axis=-1)
+    found = find_grid_peaks([GridLoad(t.x[0], t.y[0], fields)], nu)
     error = np.abs(found.stress / (exact.stress * e.max_pressure[0]) - 1)
     assert np.all(error < 2e-3) and np.all(error <= found.error)
 

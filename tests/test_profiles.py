@@ -153,6 +153,9 @@ def test_a_curve_without_the_contacts_inclination_is_refused():
     flat = [[float(x), 5.0 - 0.001 * x * x] for x in np.linspace(-4, 4, 41)]
     with pytest.raises(tr.InputError, match=r"guide_profile.*30 deg"):
         tr.solve(tr.Case(guide_profile={"points": flat}), normal="halfspace", outputs="forces")
+    rows = tr.solve([tr.Case(contact_angle=a, guide_profile={"points": circle_points(6.0, high=3.5)})
+                     for a in (50.0, 30.0)], normal="halfspace", outputs="forces", accuracy="preview")  # fmt: skip
+    assert rows.regime.values.tolist() == [3, 0] and np.isnan(rows.normal_force[0]).all()  # one of many: a failed row
     with pytest.raises(tr.InputError, match="distance of the contacts"):
         tr.solve(tr.Case(roller_profile={"arc": -7, "width": 5}), normal="halfspace", outputs="forces")
 

@@ -263,9 +263,10 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
     """Where the curve is parallel to the tangent plane; the place nearest to the apex of a parabola through it."""
     from trackroller.contact.cross_sections import smoothed
 
-    problem = InputError(body, f"inclinations met between {u[0]:.4g} and {u[-1]:.4g} mm across",
-                         f"a curve that is somewhere inclined by the contact angle of {math.degrees(alpha):.4g} deg",
-                         "Draw more of it, or use `frame: contact`.")  # fmt: skip
+    lean = math.degrees(alpha) - np.degrees(np.arctan(np.diff(w) / np.diff(u))) if u.size > 1 else np.zeros(1)
+    problem = InputError(body, f"a curve inclined by {lean.min():.4g} to {lean.max():.4g} deg",
+                         f"one that is somewhere inclined by the contact angle of {math.degrees(alpha):.4g} deg",
+                         "Draw more of it, or use frame: contact.")  # fmt: skip
     if u.size < FEWEST:
         raise problem
     spline = smoothed(u, w, noise)

@@ -79,11 +79,7 @@ def _load(results: Results, row: int) -> GridLoad:
 def peaks(results: Results, asked: np.ndarray, poisson_ratio: np.ndarray, options: Options) -> Peak:
     """Peaks of the patches `asked` (2 n,) in MPa; poisson_ratio (2 n, 2)."""
     loads = [_load(results, row) for row in np.flatnonzero(asked[results.good]).tolist()]
-    effort = options.settings.peak
-    if not loads:
-        return find_grid_peaks(np.empty((0, 2)), np.empty((0, 2)), np.empty((0, 2, 2, 3)), poisson_ratio[asked])
-    x, y, tractions = (np.stack([getattr(load, name) for load in loads]) for name in ("x", "y", "tractions"))
-    return find_grid_peaks(x, y, tractions, poisson_ratio[asked], seeds=max(2, effort.finalists))
+    return find_grid_peaks(loads, poisson_ratio[asked], seeds=max(2, options.settings.peak.finalists))
 
 
 def lower_bounds(results: Results, wanted: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:

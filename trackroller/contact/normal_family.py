@@ -237,6 +237,7 @@ class Family:
             return np.inf, -np.inf
         distance = np.hypot(places[:, None, None] - x, y[:, None])
         sink = (hx * hy / np.pi) * (solution.pressure / distance).sum(axis=(1, 2))
-        overlap = places[self._lateral[beyond] + sink < solution.approach - OVERLAP * (solution.approach - self._lateral.min())]
+        deep = solution.approach - OVERLAP * (solution.approach - self._lateral.min())
+        overlap = places[self._lateral[beyond] + sink < deep]
         left, right = overlap[overlap < box.low], overlap[overlap > box.high]
         return (float(left.min()) if left.size else np.inf), (float(right.max()) if right.size else -np.inf)

@@ -30,18 +30,26 @@ class Patches:
     gaps : for roller `row` and contact `side` (1 or 2), a key that equal gaps share, and what makes the gap
     modulus : contact modulus E* of the rollers [MPa], (n,)
     elements : along each axis of the box around a patch
+
+    A roller whose gap cannot be made (`InputError`) has patches of NaN; if there is no other, the error is raised.
     """
 
     def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int) -> None:
         self.modulus, self.elements = modulus, elements
-        self._families: dict[tuple, Family] = {}
-        self._places: dict[tuple[int, int], Family] = {}
+        families: dict[tuple, Family | None] = {}
+        self._places: dict[tuple[int, int], Family | None] = {}
+        problem: InputError | None = None
         for row in range(len(modulus)):
             for side in (1, 2):
                 key, make = gaps(row, side)
-                if key not in self._families:
-                    self._families[key] = Family(make(), elements)
-                self._places[row, side] = self._families[key]
+                if key not in families:
+                    try:
+                        families[key] = Family(make(), elements)
+                    except InputError as error:
+                        families[key], problem = None, error
+                self._places[row, side] = families[key]
+        if problem is not None and not any(families.values()):
+            raise problem
 
     def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True) -> GridPatch:
         """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`."""
@@ -50,6 +58,8 @@ class Patches:
         for i in np.flatnonzero(np.isfinite(load) & (load > 0)):
             side, modulus = (1 if sine[i] > 0 else 2), self.modulus[rows[i]]
             family = self._places[int(rows[i]), side]
+            if family is None:
+                continue
             if fine:
                 node = family.at(load[i] / modulus)
                 box, shares, rest = node.box, node.shares, (*node.scalars, node.reaches, node.residual)
@@ -66,6 +76,12 @@ class Patches:
 
 def _cell(box, m: int) -> float:
     return 2.0 * box.half * (box.high - box.low) / (m * m)
+
+
+def _known(resultants: Resultants, patch: GridPatch) -> Resultants:
+    """NaN where there is no patch."""
+    parts = (resultants.lateral_force, resultants.driving_force, resultants.spin_moment)
+    return Resultants(*(np.where(np.isfinite(patch.load), part, np.nan) for part in parts))
 
 
 class _OnGrid:
@@ -114,7 +130,7 @@ class GridSlidingModel(_OnGrid):
         patch = self.patch(ellipse, slip, rows, fine)
         if fine:
             self._remember(patch, slip, rows)
-        return self._solved(patch, slip, friction, rows).resultants
+        return _known(self._solved(patch, slip, friction, rows).resultants, patch)
 
     def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
         """Tractions on the grid of elements."""
@@ -143,7 +159,7 @@ class GridKalkerModel(_OnGrid):
         patch = self.patch(ellipse, slip, rows, fine)
         if fine:
             self._remember(patch, slip, rows)
-        return self._law(patch, slip, friction, rows, fine)
+        return _known(self._law(patch, slip, friction, rows, fine), patch)
 
     def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
         """Tractions on the grid of elements."""

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
-from trackroller.halfspace.influence import corner_loads, corner_table
+from trackroller.halfspace.influence import CornerLoads, corner_loads, corner_table
 from trackroller.halfspace.kernels import bilinear_corner
 from trackroller.halfspace.peak import Peak
 from trackroller.threads import share_rows
@@ -37,7 +38,12 @@ class GridLoad:
     y: np.ndarray
     tractions: np.ndarray
 
-    @property
+    @functools.cached_property
+    def corners(self) -> CornerLoads:
+        """The loads as the sums of stresses take them."""
+        return corner_loads(self.x, self.y, self.tractions)
+
+    @functools.cached_property
     def coarse(self) -> GridLoad:
         """Means over 2 x 2 elements."""
         ny, nx, _ = self.tractions.shape
@@ -70,7 +76,7 @@ def stress_parts(load: GridLoad, points: np.ndarray) -> np.ndarray:
 
     sigma = A_p + nu B_p + sign (A_t + nu B_t), sign +1 for the roller, -1 for the guide.
     """
-    loads = corner_loads(load.x, load.y, load.tractions)
+    loads = load.corners
     out = np.zeros((len(points), 4, 6))
     _parts(np.ascontiguousarray(points) / loads.length, loads.corners, loads.near, out)
     return out
@@ -190,29 +196,26 @@ def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, smallest: f
 
 
 def find_grid_peaks(
-    x: np.ndarray, y: np.ndarray, tractions: np.ndarray, poisson_ratio: np.ndarray, seeds: int = 2,
-    smallest: float = 0.1,
-) -> Peak:  # fmt: skip
+    loads: Sequence[GridLoad], poisson_ratio: np.ndarray, seeds: int = 2, smallest: float = 0.1
+) -> Peak:
     """Peak von Mises stress of roller and guide under n patches with tractions on grids.
 
     Parameters
     ----------
-    x, y : element centres, (n, nx), (n, ny), an even number [mm]
-    tractions : on the roller, (n, ny, nx, 3) of q_x, q_y, p [MPa]; the guide feels (-q_x, -q_y, p)
+    loads : tractions of n patches on the roller, with even numbers of elements; the guide feels (-q_x, -q_y, p)
     poisson_ratio : of roller and guide, (n, 2)
-    seeds : number of places on the surface, and below, from which the search climbs; smallest : last step, over half an element of the scan
+    seeds : number of places on the surface, and below, from which the search climbs; smallest : last step, over half
+        an element of twice the size
 
     Returns stresses in MPa (not over p_max). The estimated relative error is a share of the change on elements of twice
     the size. Where the pressure is singular (a sharp edge), so is the stress, and the estimate says so.
     """
-    n = len(x)
-    out = np.full((n, 2, 5), np.nan)
+    out = np.full((len(loads), 2, 5), np.nan)
 
     def work(first: int, last: int) -> None:
         for i in range(first, last):
-            load = GridLoad(x[i], y[i], tractions[i])
-            if np.all(np.isfinite(tractions[i])):
-                out[i] = _one_peak(load, poisson_ratio[i], seeds, smallest)
+            if np.all(np.isfinite(loads[i].tractions)):
+                out[i] = _one_peak(loads[i], poisson_ratio[i], seeds, smallest)
 
-    share_rows(functools.partial(work), n, 1)
+    share_rows(work, len(loads), 1)
     return Peak(*np.moveaxis(out, 2, 0))
