@@ -4,8 +4,9 @@
 
 Every row is measured in a process of its own, so that memory is that of this row alone: the peak of the whole process
 with interpreter, libraries and the list of cases. `grown by` is what came on top of the warmed-up process before the
-cases were made. Loading or compiling the kernels and making the cases are not in the time. Friction, loads and material
-vary, the curvatures are fixed (`load_study` of speed.py). Run it on a quiet machine.
+cases were made. `CPU` is processor time over all threads, which other work on the machine disturbs least; the figure
+and the exponents show it. Loading or compiling the kernels and making the cases are not in the time. Friction, loads
+and material vary, the curvatures are fixed (`load_study` of speed.py).
 """
 
 from __future__ import annotations
@@ -50,12 +51,15 @@ def measure_here(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
     warm = peak_memory()
     cases = load_study(n)
     times: list[float] = []
+    cpu: list[float] = []
     while not times or (sum(times) < 1.0 and len(times) < 5):
-        start = time.perf_counter()
+        start, start_cpu = time.perf_counter(), time.process_time()
         ds = tr.solve(cases, outputs=OUTPUTS[outputs], accuracy=accuracy)
         times.append(time.perf_counter() - start)
+        cpu.append(time.process_time() - start_cpu)
     peak = peak_memory()
-    return {"outputs": outputs, "accuracy": accuracy, "cases": n, "seconds": min(times), "runs": len(times),
+    return {"outputs": outputs, "accuracy": accuracy, "cases": n, "seconds": min(times),
+            "cpu_seconds": min(cpu), "runs": len(times),
             "peak_megabytes": peak, "grown_by_megabytes": peak - warm, "result_megabytes": ds.nbytes / 1e6,
             "failed": int((ds.regime == 3).sum()), "threads": thread_count()}  # fmt: skip
 
@@ -75,8 +79,8 @@ def sizes(largest: int) -> list[int]:
 
 
 def exponent(rows: list[dict[str, Any]]) -> float:
-    """Slope of log time over log cases by least squares, from 100 cases on; 1 is linear, NaN for too few sizes."""
-    points = [(math.log(r["cases"]), math.log(r["seconds"])) for r in rows if r["cases"] >= 100]
+    """Slope of log CPU time over log cases by least squares, from 100 cases on; 1 is linear, NaN for too few sizes."""
+    points = [(math.log(r["cases"]), math.log(r["cpu_seconds"])) for r in rows if r["cases"] >= 100]
     if len(points) < 2:
         return math.nan
     x0, y0 = (sum(c) / len(points) for c in zip(*points, strict=True))
@@ -86,16 +90,17 @@ def exponent(rows: list[dict[str, Any]]) -> float:
 def show(rows: list[dict[str, Any]]) -> None:
     """Header for an empty list, else one line a row."""
     if not rows:
-        print(f"{'outputs':<20}{'accuracy':<11}{'cases':>8}{'time [s]':>11}{'cases/s':>9}"
+        print(f"{'outputs':<20}{'accuracy':<11}{'cases':>8}{'time [s]':>11}{'CPU [s]':>10}{'CPU/case':>10}"
               f"{'peak [MB]':>11}{'grown by':>10}{'failed':>8}")  # fmt: skip
     for r in rows:
         print(f"{r['outputs']:<20}{r['accuracy']:<11}{r['cases']:>8}{r['seconds']:>11.4f}"
-              f"{r['cases'] / r['seconds']:>9.0f}{r['peak_megabytes']:>11.0f}{r['grown_by_megabytes']:>10.1f}"
+              f"{r['cpu_seconds']:>10.4f}{1e3 * r['cpu_seconds'] / r['cases']:>7.3f} ms"
+              f"{r['peak_megabytes']:>11.0f}{r['grown_by_megabytes']:>10.1f}"
               f"{r['failed']:>8}", flush=True)  # fmt: skip
 
 
 def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folder: Path) -> tuple[Path, Path]:
-    """scaling.svg and scaling.png: time and memory over cases, cases per second over accuracy."""
+    """scaling.svg and scaling.png: CPU time and memory over cases, CPU time of a case over accuracy."""
     from trackroller.plots import style
 
     with style.look():
@@ -104,17 +109,17 @@ def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folde
         for outputs, colour, mark, line in zip(OUTPUTS, style.palette(2), style.MARKERS, style.LINES, strict=False):
             rows = [r for r in by_size if r["outputs"] == outputs]
             n, look = [r["cases"] for r in rows], {"color": colour, "marker": mark, "linestyle": line, "label": outputs}
-            left.loglog(n, [r["seconds"] for r in rows], **look)
+            left.loglog(n, [r["cpu_seconds"] for r in rows], **look)
             middle.semilogx(n, [r["peak_megabytes"] for r in rows], **look)
             rows = [r for r in by_accuracy if r["outputs"] == outputs]
-            right.semilogy([r["accuracy"] for r in rows], [r["cases"] / r["seconds"] for r in rows], **look)
+            right.semilogy([r["accuracy"] for r in rows], [1e3 * r["cpu_seconds"] / r["cases"] for r in rows], **look)
         last = [r for r in by_size if r["outputs"] == "complete"][-1]
         ends = [by_size[0]["cases"], last["cases"]]
-        left.loglog(ends, [last["seconds"] * n / ends[1] for n in ends], color="0.6", linewidth=0.7, label="linear")
-        left.set(xlabel="Cases [–]", ylabel="Time [s]")
+        left.loglog(ends, [last["cpu_seconds"] * n / ends[1] for n in ends], color="0.6", linewidth=0.7, label="linear")
+        left.set(xlabel="Cases [–]", ylabel="CPU time [s]")
         middle.set(xlabel="Cases [–]", ylabel="Peak memory of the process [MB]")
         middle.set_ylim(0, 1.15 * max(r["peak_megabytes"] for r in by_size))
-        right.set(xlabel="Accuracy", ylabel="Cases per second [1/s]")
+        right.set(xlabel="Accuracy", ylabel="CPU time of a case [ms]")
         right.margins(x=0.15)
         left.legend()
         style.head(figure, "Time grows linearly with the number of cases" if linear(by_size) else "Time and memory",

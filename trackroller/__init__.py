@@ -1,6 +1,7 @@
 """Parameter studies of locating-bearing track rollers: forces, tractions, stresses, fatigue life.
 
-`Case`, `solve` and `load_study` are the way in. Heavy parts are imported when they are first used.
+`Case`, `solve` and `load_study` are the way in; `stress_from_tractions` serves any other contact. Heavy parts are
+imported when they are first used.
 """
 
 from __future__ import annotations
@@ -16,12 +17,36 @@ _WHERE = {
     "solve": "trackroller.solver",
     "load_study": "trackroller.study.config",
     "load_database": "trackroller.materials",
+    "stress_from_tractions": "trackroller.halfspace.stress",
+    "stress_on_grid": "trackroller.halfspace.stress",
+    "von_mises": "trackroller.halfspace.stress",
+    "principal_stresses": "trackroller.halfspace.stress",
+    "max_shear": "trackroller.halfspace.stress",
 }
-__all__ = ["Case", "InputError", "__version__", "load_database", "load_study", "solve"]
+__all__ = [
+    "Case",
+    "InputError",
+    "__version__",
+    "load_database",
+    "load_study",
+    "max_shear",
+    "principal_stresses",
+    "solve",
+    "stress_from_tractions",
+    "stress_on_grid",
+    "von_mises",
+]
 
 if TYPE_CHECKING:
     from trackroller.case import Case
     from trackroller.errors import InputError
+    from trackroller.halfspace.stress import (
+        max_shear,
+        principal_stresses,
+        stress_from_tractions,
+        stress_on_grid,
+        von_mises,
+    )
     from trackroller.materials import load_database
     from trackroller.solver import solve
     from trackroller.study.config import load_study
