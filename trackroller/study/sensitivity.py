@@ -277,7 +277,7 @@ def analyse(study_nc: str | Path, out_nc: str | Path, names: Iterable[str] | Non
     """
     from trackroller.study.files import write_whole
 
-    with xr.open_dataset(study_nc) as opened:
-        result = analyse_dataset(opened.load(), names, keep, natural)
+    with xr.open_dataset(study_nc, cache=False) as opened:  # variables one by one: a study may be large
+        result = analyse_dataset(opened, names, keep, natural)
     write_whole(Path(out_nc), lambda part: result.to_netcdf(part))
     return result

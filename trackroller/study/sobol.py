@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from trackroller.study.indices import Estimates, constant, percentile_bounds
@@ -44,14 +46,22 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
             out |= {name + end: np.full(shape[name], np.nan) for end in ("", "_low", "_high")}
         return out
     terms = _pair_terms((used - used.mean()) / used.std(), count, second_order)
-    picks = np.random.default_rng(seed).integers(0, len(used), (resamples, len(used)))
-    weights = np.stack([np.bincount(pick, minlength=len(used)) for pick in picks]) / len(used)
     beta = _control(*terms)
-    best, drawn = (_sobol_from(w, terms, beta, count) for w in (np.full((1, len(used)), 1 / len(used)), weights))
+    best = _sobol_from(np.full((1, len(used)), 1 / len(used)), terms, beta, count)
+    drawn = [_sobol_from(weights, terms, beta, count) for weights in _resampled(len(used), resamples, seed)]
     for name in names:
-        low, high = percentile_bounds(drawn[name])
+        low, high = percentile_bounds(np.concatenate([part[name] for part in drawn]))
         out |= {name: best[name][0], f"{name}_low": low, f"{name}_high": high}
     return out
+
+
+def _resampled(rows: int, resamples: int, seed: int) -> Iterator[np.ndarray]:
+    """Weights of the rows in each resample, as many resamples at once as memory bears, shape (some, rows)."""
+    rng = np.random.default_rng(seed)
+    some = max(1, 4_000_000 // rows)
+    for start in range(0, resamples, some):
+        picks = rng.integers(0, rows, (min(some, resamples - start), rows))
+        yield np.stack([np.bincount(pick, minlength=rows) for pick in picks]) / rows
 
 
 def _pair_terms(block: np.ndarray, count: int, second_order: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
