@@ -5,7 +5,12 @@ import json
 import numpy as np
 import pytest
 
+import trackroller as tr
+from trackroller.accuracy import PRESETS
+from trackroller.contact.common import Elastic, Ellipse, Slip
 from trackroller.contact.friction_laws import constant, exponential_falling, law_of, linear_falling, table
+from trackroller.contact.models import contact_model
+from trackroller.contact.sliding_law import integrals
 from trackroller.errors import InputError
 
 MAPPINGS = [
@@ -58,3 +63,144 @@ def test_wrong_laws_are_refused_by_name(mapping, names):
     with pytest.raises(InputError) as caught:
         law_of(mapping)
     assert all(name in str(caught.value) for name in names), str(caught.value)
+
+
+STEEL = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
+ONE = np.ones(1)
+PATCH = Ellipse(0.3 * ONE, 0.18 * ONE, 700.0 * ONE)
+LAWS = {
+    "linear": linear_falling(60.0, 0.3),
+    "exponential": exponential_falling(20.0, 0.4),
+    "table": table([0, 5, 20, 80], [0.3, 0.33, 0.2, 0.1]),
+}
+TRAVEL = 1000.0  # mm/s
+
+
+def slip_of(angle: float, shift: float) -> Slip:
+    return Slip(np.sin(angle) * ONE, np.cos(angle) * ONE, 6.0 * ONE, 16.5 * ONE, shift * ONE)
+
+
+def models(law, names=("sliding", "fastsim", "kalker")):
+    elastic = Elastic(*(np.atleast_1d(v) for v in (STEEL.shear_modulus, STEEL.poisson_ratio, STEEL.coupling)))
+    return {name: contact_model(name, PRESETS["standard"], elastic, law=law, travel_speed=TRAVEL) for name in names}
+
+
+def resultants_of(model, slip, mu=0.3):
+    r = model.law(PATCH, slip, np.array([mu]), np.zeros(1, int), True)
+    return np.array([r.lateral_force[0], r.driving_force[0], r.spin_moment[0]])
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_uniform_slip_has_the_friction_of_its_speed(name):
+    """No spin, all slides at v = V r_Delta0/r_A: F_A = -mu f(v) F_N for every model."""
+    law = LAWS[name]
+    slip = slip_of(1e-6, 0.6)
+    expected = -0.3 * law(TRAVEL * 0.6 / 16.5) * PATCH.normal_force[0]
+    for kind, model in models(law).items():
+        # the profile's curvature adds slip to the sliding model, elasticity to the others
+        assert resultants_of(model, slip)[1] == pytest.approx(expected, rel=5e-3), kind
+
+
+def test_drilling_under_a_linear_law_is_a_closed_integral():
+    """Spin alone on a circle: M = mu p_max int sqrt(1-r^2) (1 - c r) r dA = mu p_max a^3 2 pi (pi/16 - 2 c/15)."""
+    circle = Ellipse(0.2 * ONE, 0.2 * ONE, 700.0 * ONE)
+    sine, radius = np.sin(0.5), 16.5
+    fastest = TRAVEL * sine / radius * 0.2
+    law = linear_falling(4.0 * fastest, 0.2)
+    slope = 0.8 / 4.0
+    # a flat guide, so that the slip is a plain rotation
+    slip = Slip(sine * ONE, np.cos(0.5) * ONE, 1e9 * ONE, radius * ONE, 0.0 * ONE)
+    found, _ = integrals(circle, slip, 0.3 * ONE, law, TRAVEL, spin_model="concentric", nodes=12)
+    expected = 0.3 * 700 * 0.2**3 * 2 * np.pi * (np.pi / 16 - slope * 2 / 15)
+    assert abs(found.spin_moment[0]) == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_sliding_integrals_converge(name):
+    """12 nodes against 48, pole inside and outside the patch: 3e-5 of mu F_N."""
+    rng = np.random.default_rng(2)
+    n = 40
+    a, b, angle = np.exp(rng.uniform(-2.5, 0, n)), np.exp(rng.uniform(-2.5, 0, n)), rng.uniform(0.2, 1.3, n)
+    ellipse = Ellipse(a, b, np.ones(n))
+    slip = Slip(np.sin(angle), np.cos(angle), np.full(n, 6.0), np.full(n, 16.0), rng.uniform(-0.6, 0.6, n) * a)
+    (low, power_low), (high, power_high) = (
+        integrals(ellipse, slip, np.full(n, 0.3), LAWS[name], TRAVEL, nodes=k) for k in (12, 48)
+    )
+    for part in ("lateral_force", "driving_force", "spin_moment"):
+        scale = 0.3 * ellipse.normal_force * (np.maximum(a, b) if part == "spin_moment" else 1.0)
+        assert np.max(np.abs(getattr(low, part) - getattr(high, part)) / scale) < 3e-5
+    np.testing.assert_allclose(power_low, power_high, rtol=1e-4)
+
+
+def test_constant_laws_are_the_same_to_the_last_bit():
+    """No law, kind constant and a fall to 1.0 give identical numbers with every model."""
+    slip = slip_of(0.5, -0.06)
+    for kind in ("sliding", "fastsim", "kalker"):
+        laws = (None, constant(), linear_falling(9.0, 1.0))
+        found = [resultants_of(models(law, (kind,))[kind], slip) for law in laws]
+        assert np.array_equal(found[0], found[1]) and np.array_equal(found[0], found[2]), kind
+
+
+def test_a_law_that_hardly_falls_is_nearly_constant():
+    """Continuity at lowest = 1, where sliding changes its quadrature."""
+    slip = slip_of(0.5, -0.06)
+    for kind in ("sliding", "fastsim", "kalker"):
+        a, b = (resultants_of(models(linear_falling(50.0, low), (kind,))[kind], slip) for low in (1.0, 1.0 - 1e-7))
+        np.testing.assert_allclose(b, a, rtol=1e-5)
+
+
+def test_the_deeper_friction_falls_the_smaller_the_spin_moment():
+    slip = slip_of(0.5, -0.03)
+    for kind in ("sliding", "fastsim", "kalker"):
+        moments = [abs(resultants_of(models(exponential_falling(20.0, low), (kind,))[kind], slip)[2])
+                   for low in (1.0, 0.8, 0.5, 0.2)]  # fmt: skip
+        assert np.all(np.diff(moments) < 0), (kind, moments)
+
+
+@pytest.mark.parametrize("kind", ["sliding", "kalker"])
+def test_tractions_have_the_friction_of_their_slip(kind):
+    law = LAWS["exponential"]
+    t = models(law, (kind,))[kind].surface(PATCH, slip_of(0.5, -0.06), np.array([0.3]), np.zeros(1, int))
+    slides = ~t.stick & (t.pressure > 0.2 * 700)
+    speed = TRAVEL * np.hypot(t.slip_lateral, t.slip_rolling)[slides]
+    share = np.hypot(t.shear_lateral, t.shear_rolling)[slides] / (0.3 * t.pressure[slides])
+    np.testing.assert_allclose(share, law(speed), rtol=1e-5)
+
+
+OUTPUTS = ("forces", "contact", "friction_work", "peak_stress")
+
+
+@pytest.fixture(scope="module")
+def roller():
+    falling = {"kind": "exponential", "speed": 20, "lowest": 0.4}
+    cases = [tr.Case(), tr.Case(friction_law={"kind": "constant"}), tr.Case(friction_law=falling),
+             tr.Case(friction_law=falling, velocity=1e-3), tr.Case(friction_law=falling, motor_force=-60)]  # fmt: skip
+    return {kind: tr.solve(cases, outputs=OUTPUTS, contact_model=kind) for kind in ("sliding", "kalker")}
+
+
+@pytest.mark.parametrize("kind", ["sliding", "kalker"])
+def test_laws_in_the_roller(roller, kind):
+    """Constant is as without; slow travel is nearly constant; falling friction needs more slip and drills less."""
+    ds = roller[kind]
+    assert np.all(ds.converged == 1)
+    for name in ("lateral_force", "spin_moment", "rolling_radius_shift", "peak_stress"):
+        assert np.array_equal(ds[name][0], ds[name][1])
+        # the peak of sliding is found on a grid under a law
+        np.testing.assert_allclose(ds[name][3], ds[name][0], rtol=1.5e-2 if name == "peak_stress" else 2e-3)
+    assert ds.rolling_radius_shift[2] < ds.rolling_radius_shift[0] < 0
+    assert np.all(np.abs(ds.spin_moment[2]) < np.abs(ds.spin_moment[0]))
+    if kind == "kalker":
+        assert np.all(ds.energy_residual[:4] < 1e-2)
+
+
+def test_a_motor_force_that_only_slow_slip_can_transmit_is_rolling(roller):
+    """30 N lie beyond 0.4 mu F_N, the friction of fast slip, but below mu F_N: a balance at small slip exists."""
+    for ds in roller.values():
+        assert ds.regime[2] == 0
+        np.testing.assert_allclose(ds.driving_force[2].sum(), 30.0, atol=1.5)
+
+
+def test_complete_slip_has_the_friction_of_high_speed(roller):
+    for ds in roller.values():
+        assert ds.regime[4] == 1
+        np.testing.assert_allclose(ds.driving_force[4], 0.4 * 0.3 * ds.normal_force[4], rtol=1e-4)

@@ -44,7 +44,7 @@ def first_balance(roller, w_low: np.ndarray, w_high: np.ndarray):
         if open_.size == 0:
             return low, high, beyond
     summit = np.stack([points[np.clip(place[open_] + step, 1, POINTS + 1), open_] for step in (-1, 0, 1)])
-    beyond[open_] = ~_climb(excess, open_, summit[:, open_], way, low, high)
+    beyond[open_] = ~_climb(excess, open_, summit, way, low, high)
     return low, high, beyond
 
 
