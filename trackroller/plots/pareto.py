@@ -146,7 +146,9 @@ def _common(front: xr.Dataset, factors: list[str], best: np.ndarray) -> str:
         wide = (high - low) / max(np.ptp(values), 1e-300)
         if wide < 0.5:
             span = "" if low == high else f"{words.number(low)} to "
-            said.append((wide, f"{style.long_name(name)} {span}{style.level_text(name, float(f'{high:.3g}'))}"))
+            bare = name in ("motor_force", "guide_curve_radius")  # 'driven 30 N' says alone which it is
+            text = style.level_text(name, float(f"{high:.3g}"), unit=not (bare and span))
+            said.append((wide, text if bare and not span else f"{style.long_name(name)} {span}{text}"))
     said.sort()
     if not said:
         return "The best designs share no narrow range of any factor."

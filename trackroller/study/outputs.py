@@ -22,6 +22,7 @@ BOOKKEEPING = {
     "error_estimate",
     "life_error_estimate",
     "reason",
+    "stopped",
     "material_pair",
 }
 FIELDS = {"x", "y", "z", "grid"}
@@ -42,7 +43,7 @@ DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
     "drilling_torque": ("drilling_torque", {}, "sum", "natural", "drilling torque"),
     "slip": ("slip", {}, "sum", "natural", "longitudinal slip"),
 }
-_REGIME_WORDS = {"rolling": "rolling", "full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
+_REGIME_WORDS = {"rolling": "rolling", "full_slip": "full slip", "lift_off": "lift-off", "failed": "failed"}
 _JOIN: dict[str, Any] = {"min": np.nanmin, "max": np.nanmax, "sum": np.nansum}
 
 
@@ -228,6 +229,6 @@ def outputs(
         found.append(Output(name, values, units, words, on, excluded))
     for i, name in enumerate(REGIMES):
         if i and (regime == i).any() and not unlimited:
-            words = f"occurrence of {_REGIME_WORDS[name]}"
+            words = f"occurrence of {_REGIME_WORDS[name].replace('failed', 'failure')}"
             found.append(Output(name, (regime == i).astype(float), "1", words, "natural"))
     return found

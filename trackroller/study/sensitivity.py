@@ -34,6 +34,7 @@ NEEDS = {
     "sobol": "independent factors; any usable rows",
     "table": "independent factors (correlated columns share their influence); any usable rows",
 }
+CORRELATED = 0.5  # rank correlation of two columns of a table from which on it is told
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
 Fields = dict[str, np.ndarray]
 
@@ -176,7 +177,7 @@ def analyse_dataset(
     result.attrs = {
         "method": design.method, "needs": NEEDS[design.method], "rows": design.size,
         "kept_regimes": ", ".join(keep), "bootstrap_seed": seed, "resamples": how.resamples, "interval": "95 %",
-        "treatment": treatment(regimes(ds, dims), keep), "study": ds.attrs.get("study", ""),
+        "treatment": treatment(regimes(ds, dims), keep) + correlated(design), "study": ds.attrs.get("study", ""),
     }  # fmt: skip
     return result
 
@@ -215,6 +216,22 @@ def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
         return f"{text}; no row left out for its regime"
     return (f"{text}; {' and '.join(left)} rows left out of every index and never filled in; "
             "their occurrence is analysed as an output of its own")  # fmt: skip
+
+
+def correlated(design: SampledDesign) -> str:
+    """Warning of columns of a table that go together, in words; empty for designs whose factors are independent."""
+    if design.method != "table" or len(design.factors) < 2:
+        return ""
+    from scipy.stats import rankdata
+
+    names = list(design.factors)
+    table = np.abs(np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False)))
+    pairs = [(float(table[i, j]), names[i], names[j]) for i in range(len(names)) for j in range(i)]
+    size, one, other = max(pairs)
+    if size < CORRELATED:
+        return ""
+    both = f"{factor_name(other)} and {factor_name(one)}"
+    return f"; {both} go together (rank correlation {size:.2f}): each is given the influence of both"
 
 
 _DIMS = {1: ("output", "factor"), 2: ("output", "factor", "factor_2"), 0: ("output",)}

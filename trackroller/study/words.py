@@ -227,6 +227,8 @@ def interactions(sens: xr.Dataset, output: str) -> str:
     if name == "interaction":
         return f"The strongest interaction on {of_output(sens, output)} is {names[i]} with {names[j]}: {number(value)}."
     low, high = (float(part[f"{name}{e}"].values[i, j]) if f"{name}{e}" in part else np.nan for e in ("_low", "_high"))
+    if not np.isfinite(low) and value < 0.01:
+        return f"No interaction of two factors makes 1 % of the variance of {of_output(sens, output)}."
     if np.isfinite(low) and low <= 0:
         return (f"No interaction of two factors on {of_output(sens, output)} is beyond doubt; the largest, {names[i]} "
                 f"with {names[j]}, is {percent(value, low, high)} of the variance.")  # fmt: skip
