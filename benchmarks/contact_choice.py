@@ -107,7 +107,10 @@ def make_map(cases: list[tr.Case], found: dict[str, np.ndarray], folds: int = 8)
         margin.append(np.quantile(left, COVERAGE, method="higher"))
         spread.append(left.std())
     print("designs", len(x), "margin factor", np.exp(margin).round(2), "spread", np.round(spread, 2))
-    return {"centre": centre, "width": width, "lower": x.min(axis=0), "upper": x.max(axis=0),
+    lower, upper, names = x.min(axis=0), x.max(axis=0), list(choice.FEATURES)
+    upper[names.index("lift")] = 0.0  # no axial force, which a random draw never gives
+    lower[names.index("drive")] = 0.0
+    return {"centre": centre, "width": width, "lower": lower, "upper": upper,
             "coefficients": np.array(coefficients).T, "margin": np.array(margin), "coverage": np.array(COVERAGE),
             "designs": np.array(len(x))}  # fmt: skip
 

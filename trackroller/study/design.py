@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.case import geometry_problem
-from trackroller.errors import InputError
+from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.study import expressions
+from trackroller.study.entries import OPTION_FACTORS
 from trackroller.study.factors import label, parse
 from trackroller.study.goals import check_scatter
 from trackroller.study.sampling import OPTIONS, SampledDesign, sample
@@ -44,9 +46,21 @@ def draw(study: Study) -> SampledDesign:
         options["table"] = table_path(study)
     base = {k: v for k, v in config.base.items() if isinstance(v, float)}
     design = sample(study.factors, config.design, config.samples, config.seed, base=base, **options)
+    if config.design == "table":
+        _check_columns(study, design)
     if design.size > MAX_CASES:
         raise InputError("design", f"{design.size} cases", f"at most {MAX_CASES} cases")
     return design
+
+
+def _check_columns(study: Study, design: SampledDesign) -> None:
+    """A table may have columns of its own, but none that looks like a misspelt name, nor only such."""
+    known = [*PARAMETERS, *MATERIAL_FIELDS, "material_pair", *OPTION_FACTORS]
+    used = {name for spec in study.factors.values() for name in expressions.names(spec.get("expression", "0"))}
+    own = [name for name in design.columns if name not in known and name not in used]
+    for name in own:
+        if nearest(name, known) or len(own) == len(design.columns):
+            raise unknown_name("table column", name, known)
 
 
 def table_path(study: Study) -> str:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from trackroller.study.config import Study
 
-CHUNK_SECONDS = 8.0  # of solving, so that starting a job (2-3 s) stays a small part; bounded by the two below
+SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: starting a job (1-2 s) must stay a small part
 MOST_CHUNKS = 400
 SMALLEST_CHUNK = 100
 LARGEST_CHUNK = 20_000
@@ -102,7 +102,8 @@ def chunk_size(study: Study, cases: int) -> int:
         return study.config.chunk_size
     from trackroller.study.cost import rate
 
-    wanted = math.ceil(CHUNK_SECONDS * rate(study.options))
+    speed = rate(study.options)
+    wanted = math.ceil(speed * min(max(cases / speed / 16, SHORTEST), LONGEST))
     wanted = max(min(wanted, math.ceil(cases / 2)), SMALLEST_CHUNK, math.ceil(cases / MOST_CHUNKS))
     return min(wanted, LARGEST_CHUNK)
 
