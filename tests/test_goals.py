@@ -144,7 +144,7 @@ def test_delta_agrees_with_salib_knows_categories_and_keeps_the_inert_in_the_noi
     own = [delta(y, bins(x[:, j], classes(600)), 1, 200) for j in range(3)]
     problem = {"num_vars": 3, "names": ["a", "b", "c"], "bounds": [[-np.pi, np.pi]] * 3}
     theirs = oracle.analyze(problem, x, y, num_resamples=3, seed=1, method="delta")["delta_raw"]
-    np.testing.assert_allclose([d[0] for d in own[:2]], theirs[:2], atol=0.06)
+    np.testing.assert_allclose([d[0] for d in own[:2]], theirs[:2], atol=0.08)
     assert own[2][0] <= own[2][3] and own[1][1] < own[1][0] < own[1][2]
     group = np.arange(1200) % 3
     exact, low, high, _ = delta((group == 1).astype(float), group)
