@@ -91,7 +91,7 @@ def test_surfaces_touch_inside_and_are_apart_outside():
     """The conditions of contact, checked with a displacement that is summed anew."""
     family = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), arcs([-7.0], [])), 30)
     node = family.at(1e-3)
-    x, y, hx, hy = node.box.grid(30)
+    x, y, hx, hy = node.box.grid(30, 30)
     pressure = node.shares * 1e-3 / (hx * hy)
     distance = displacement(pressure, hx, hy) + family.gap.field(x, y) - node.scalars[0]
     depth = node.scalars[0] - family.gap.field(x, y).min()

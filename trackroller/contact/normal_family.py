@@ -18,6 +18,7 @@ from trackroller.contact.hertz import exact_shape
 from trackroller.contact.normal import NormalSolution, displacement, solve_normal
 
 LATTICE = 1.6  # ratio of neighbouring loads
+FINER = 4  # times the elements across, where an edge is rounded
 KEPT = 8  # solutions at asked loads that are remembered
 OVERLAP = 1e-3  # of the approach, that counts as contact outside the box
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
@@ -33,11 +34,11 @@ class Box:
     high: float
     half: float
 
-    def grid(self, n: int) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """Element centres x, y and element sides for n x n elements."""
-        unit = (np.arange(n) + 0.5) / n
-        hx, hy = (self.high - self.low) / n, 2 * self.half / n
-        return self.low + (self.high - self.low) * unit, self.half * (2 * unit - 1), hx, hy
+    def grid(self, rows: int, columns: int) -> tuple[np.ndarray, np.ndarray, float, float]:
+        """Element centres x (columns,), y (rows,) and element sides."""
+        x, y = (np.arange(columns) + 0.5) / columns, (np.arange(rows) + 0.5) / rows
+        wide = self.high - self.low
+        return self.low + wide * x, self.half * (2 * y - 1), wide / columns, 2 * self.half / rows
 
 
 @dataclass(frozen=True)
@@ -74,9 +75,8 @@ def _vanishing(sums: np.ndarray) -> float:
 
 def patch_box(pressure: np.ndarray, box: Box) -> Box:
     """The box that the patch fills, to a part of an element."""
-    n = pressure.shape[1]
     across, along = pressure.sum(axis=0), pressure.sum(axis=1)
-    hx, hy = (box.high - box.low) / n, 2 * box.half / n
+    hx, hy = (box.high - box.low) / across.size, 2 * box.half / along.size
     right, left = _vanishing(across) + 0.5, _vanishing(across[::-1]) + 0.5
     half = (_vanishing(along) + 0.5) * hy - box.half
     return Box(box.high - left * hx, box.low + right * hx, half)
@@ -108,10 +108,14 @@ def largest_pressure(pressure: np.ndarray) -> float:
 
 
 class Family:
-    """All patches of one gap; `elements` along each axis of the box."""
+    """All patches of one gap; `elements` along the rolling direction of the box, and across it.
+
+    Rounded edges are narrow: they ask for FINER times as many across.
+    """
 
     def __init__(self, gap: Gap, elements: int) -> None:
-        self.gap, self.elements = gap, elements
+        self.gap = gap
+        self.shape = elements, elements * (FINER if gap.is_rounded else 1)
         self.limits = gap.limits
         self._nodes: dict[int, Node] = {}
         self._asked: dict[float, Node] = {}
@@ -134,7 +138,7 @@ class Family:
         """The solution under load/E* [mm^2], on a box that changes continuously with the load."""
         if load not in self._asked:
             box, shares = self.between(load)
-            solution = self._pressure(box, load, self.elements, shares)
+            solution = self._pressure(box, load, self.shape, shares)
             self._asked = dict(list(self._asked.items())[-KEPT:])
             self._asked[load] = self._told(solution, box, load)
         return self._asked[load]
@@ -163,14 +167,16 @@ class Family:
     def _clipped(self, low: float, high: float, half: float) -> Box:
         return Box(max(low, self.limits[0]), min(high, self.limits[1]), half)
 
-    def _pressure(self, box: Box, load: float, n: int, start: np.ndarray | None = None) -> NormalSolution:
-        x, y, hx, hy = box.grid(n)
+    def _pressure(
+        self, box: Box, load: float, shape: tuple[int, int], start: np.ndarray | None = None
+    ) -> NormalSolution:
+        x, y, hx, hy = box.grid(*shape)
         return solve_normal(self.gap.field(x, y), hx, hy, load, start=start)
 
     def _solve(self, load: float) -> Node:
         box, solution = self._around(load), None
         for attempt in range(6):
-            solution = self._pressure(box, load, self.elements, None if solution is None else solution.pressure)
+            solution = self._pressure(box, load, self.shape, None if solution is None else solution.pressure)
             filled = patch_box(solution.pressure, box)
             wider = self._beyond(solution, box)
             if wider != box:
@@ -185,7 +191,7 @@ class Family:
         return self._told(solution, box, load)
 
     def _told(self, solution, box: Box, load: float) -> Node:
-        _, _, hx, hy = box.grid(self.elements)
+        _, _, hx, hy = box.grid(*self.shape)
         p = solution.pressure
         at_low, at_high = box.low <= self.limits[0], box.high >= self.limits[1]
         reaches = bool((at_low and p[:, 0].any()) or (at_high and p[:, -1].any()))
@@ -194,9 +200,9 @@ class Family:
 
     def _beyond(self, solution, box: Box) -> Box:
         """The box, a good element wider on each side where the bodies would overlap just outside it."""
-        n = self.elements
-        x, y, hx, hy = box.grid(n)
-        around = np.zeros((n + 2, n + 2))
+        rows, columns = self.shape
+        x, y, hx, hy = box.grid(rows, columns)
+        around = np.zeros((rows + 2, columns + 2))
         around[1:-1, 1:-1] = solution.pressure
         x, y = np.concatenate([[x[0] - hx], x, [x[-1] + hx]]), np.concatenate([[y[0] - hy], y, [y[-1] + hy]])
         total = displacement(around, hx, hy) + self.gap.field(x, y)
@@ -209,7 +215,7 @@ class Family:
         """A box that the patch fills, by coarse solutions."""
         box = self._start(load)
         for _ in range(20):
-            solution = self._pressure(box, load, COARSE)
+            solution = self._pressure(box, load, (COARSE, COARSE))
             filled = patch_box(solution.pressure, box)
             low, high, half = filled.low, filled.high, filled.half
             width = high - low
@@ -230,7 +236,7 @@ class Family:
 
     def _outside(self, solution, box: Box) -> tuple[float, float]:
         """Furthest places left and right of the box where the bodies would overlap; (inf, -inf) for none."""
-        x, y, hx, hy = box.grid(COARSE)
+        x, y, hx, hy = box.grid(COARSE, COARSE)
         beyond = (self._samples < box.low - 0.5 * hx) | (self._samples > box.high + 0.5 * hx)
         places = self._samples[beyond]
         if places.size == 0:

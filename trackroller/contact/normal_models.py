@@ -29,7 +29,7 @@ class Patches:
     ----------
     gaps : for roller `row` and contact `side` (1 or 2), a key that equal gaps share, and what makes the gap
     modulus : contact modulus E* of the rollers [MPa], (n,)
-    elements : along each axis of the box around a patch
+    elements : along the rolling direction of the box around a patch
 
     A roller whose gap cannot be made (`InputError`) has patches of NaN; if there is no other, the error is raised.
     """
@@ -53,9 +53,10 @@ class Patches:
 
     def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True) -> GridPatch:
         """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`."""
-        n, m = len(load), self.elements
-        numbers, pressure = np.full((n, 9), np.nan), np.full((n, m, m), np.nan)
-        for i in np.flatnonzero(np.isfinite(load) & (load > 0)):
+        n = len(load)
+        found: dict[int, np.ndarray] = {}
+        numbers = np.full((n, 9), np.nan)
+        for i in np.flatnonzero(np.isfinite(load) & (load > 0)).tolist():
             side, modulus = (1 if sine[i] > 0 else 2), self.modulus[rows[i]]
             family = self._places[int(rows[i]), side]
             if family is None:
@@ -65,17 +66,21 @@ class Patches:
                 box, shares, rest = node.box, node.shares, (*node.scalars, node.reaches, node.residual)
             else:
                 box, shares = family.between(load[i] / modulus)
-                rest = (math.nan, shares.max() / _cell(box, m) * load[i] / modulus, math.nan, False, math.nan)
+                rest = (math.nan, shares.max() / _cell(box, shares) * load[i] / modulus, math.nan, False, math.nan)
             outward = 1.0 if side == 1 else -1.0  # x counts outward in the family, along x_R here
             wide, middle = 0.5 * (box.high - box.low), 0.5 * (box.high + box.low)
             numbers[i] = (wide, box.half, rest[1] * modulus, load[i], outward * middle, rest[0], rest[2], *rest[3:])
-            pressure[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / _cell(box, m))
+            found[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / _cell(box, shares))
+        shape = next((p.shape for p in found.values()), (self.elements, self.elements))
+        pressure = np.full((n, *shape), np.nan)
+        for i, mean in found.items():
+            pressure[i] = mean
         a, b, p, force, centre, approach, area, reaches, residual = np.ascontiguousarray(numbers.T)
         return GridPatch(a, b, p, force, centre, pressure, approach, area, reaches == 1.0, residual)
 
 
-def _cell(box, m: int) -> float:
-    return 2.0 * box.half * (box.high - box.low) / (m * m)
+def _cell(box, shares: np.ndarray) -> float:
+    return 2.0 * box.half * (box.high - box.low) / shares.size
 
 
 def _known(resultants: Resultants, patch: GridPatch) -> Resultants:

@@ -60,18 +60,18 @@ def solve_sliding(
 
     Error against `contact.sliding` on Hertz's ellipse with 40 elements: 1e-3 of mu F_N (tests/test_normal_models.py).
     """
-    n, m = len(patch.load), patch.elements
+    n, rows, columns = patch.pressure.shape
     law, model = law or constant(), spin_model_index(spin_model)
     travel = np.broadcast_to(np.asarray(travel_speed, float), (n,))
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
-    total, shear = np.empty((n, 4)), np.empty((n, 2, m, m))
+    total, shear = np.empty((n, 4)), np.empty((n, 2, rows, columns))
     for i in range(n):
-        hx, hy = 2 * patch.semi_axis_lateral[i] / m, 2 * patch.semi_axis_rolling[i] / m
+        hx, hy = 2 * patch.semi_axis_lateral[i] / columns, 2 * patch.semi_axis_rolling[i] / rows
         x = (patch.x[i][:, None] + 0.5 * hx * nodes).reshape(-1)
         along, offset = _slip_of(x, patch, slip, i, model)
         per_omega = travel[i] / slip.rolling_radius[i]
-        means = _column_means(x, along, offset, slip.sine[i], patch.semi_axis_rolling[i], m, law, per_omega)
-        across = (means.reshape(4, m, POINTS, m) * (0.5 * weights)[:, None]).sum(axis=2).transpose(0, 2, 1)
+        means = _column_means(x, along, offset, slip.sine[i], patch.semi_axis_rolling[i], rows, law, per_omega)
+        across = (means.reshape(4, columns, POINTS, rows) * (0.5 * weights)[:, None]).sum(axis=2).transpose(0, 2, 1)
         bound = friction[i] * patch.pressure[i]
         shear[i] = across[:2] * bound
         total[i] = (across * bound).sum(axis=(1, 2)) * hx * hy
