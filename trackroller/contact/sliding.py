@@ -81,7 +81,11 @@ def _breakpoints(a, sine, cosine, radius, shift, model, out):
             if abs(zero) < a:
                 out[count] = zero
                 count += 1
-    for i in range(2, count):  # by insertion: at most three, and cheaper to compile than a library sort
+    equator = radius * (1.0 - abs(sine)) / cosine  # there the slip has a root, beyond it is constant
+    if equator < a:
+        out[count] = equator if sine > 0 else -equator
+        count += 1
+    for i in range(2, count):  # by insertion: at most four, and cheaper to compile than a library sort
         j = i
         while j > 1 and out[j - 1] > out[j]:
             out[j - 1], out[j] = out[j], out[j - 1]
@@ -122,7 +126,7 @@ def _column(d, eps, nodes, weights):
 @inner
 def _one_patch(a, b, sine, cosine, radius, shift, model, nodes, weights):
     """F_T, F_A, M_R and power over mu p_max [mm^2, mm^2, mm^3, mm^3 times omega] of one patch."""
-    ends = np.empty(6)
+    ends = np.empty(7)
     count = _breakpoints(a, sine, cosine, radius, shift, model, ends)
     pole_x = shift / sine
     inside = abs(pole_x) < a

@@ -107,7 +107,7 @@ def _ends_across(a, sine, cosine, radius, shift, speed, model, knots, ends):
     count = _breakpoints(a, sine, cosine, radius, shift, model, ends)
     if knots.size > FEW_KNOTS:
         return count
-    work = np.empty(6)
+    work = np.empty(7)
     for k in range(knots.size):
         for level in (-knots[k] / speed, knots[k] / speed):
             found = _breakpoints(a, sine, cosine, radius, shift - level, 0, work)
@@ -119,7 +119,7 @@ def _ends_across(a, sine, cosine, radius, shift, speed, model, knots, ends):
 @njit(cache=True)
 def _one_patch(a, b, sine, cosine, radius, shift, speed, model, knots, factors, nodes, weights, total):
     """F_T, F_A, M_R and power over mu p_max into `total`; `speed` is the angular speed omega [1/s]."""
-    ends, along, sums = np.empty(4 * FEW_KNOTS + 6), np.empty(2 * FEW_KNOTS + 2), np.empty(4)
+    ends, along, sums = np.empty(6 * FEW_KNOTS + 7), np.empty(2 * FEW_KNOTS + 2), np.empty(4)
     count = _ends_across(a, sine, cosine, radius, shift, speed, model, knots, ends)
     pole_x = shift / sine
     pole_y = -b * math.sqrt(1.0 - (pole_x / a) ** 2) if abs(pole_x) < a else 0.0
