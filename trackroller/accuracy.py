@@ -1,6 +1,6 @@
 """What an accuracy setting means for each stage, and what error it leaves.
 
-The settings are rungs of measured ladders (`data/accuracy.json`, written by `python docs/generate.py --adopt` from
+The settings are rungs of measured ladders (`data/accuracy.json`, written by `python docs/adopt_tradeoff.py` from
 `snakemake tradeoff`): one for the quadrature of forces, one for the search of the peak stress, one for the elements of
 each rolling contact model. A preset or a tolerance takes from each the cheapest rung that keeps its promise.
 """
@@ -65,12 +65,19 @@ class Rung:
         return all(self.errors[q].bound <= tolerance for q in quantities if q in self.errors)
 
 
+Ladders = Mapping[str, tuple[Rung, ...]]
+
+
 @functools.cache
-def ladders() -> dict[str, tuple[Rung, ...]]:
+def ladders() -> Ladders:
     """The measured ladders `forces`, `peak`, `fastsim`, `kalker`, each from cheap to dear."""
     text = resources.files("trackroller").joinpath("data/accuracy.json").read_text(encoding="utf-8")
-    return {name: tuple(sorted((_rung(r) for r in rungs), key=lambda r: r.cost))
-            for name, rungs in json.loads(text)["ladders"].items()}  # fmt: skip
+    return read_ladders(json.loads(text)["ladders"])
+
+
+def read_ladders(records: Mapping[str, Iterable[Mapping[str, Any]]]) -> Ladders:
+    """Ladders from the records that the measurement writes."""
+    return {name: tuple(sorted((_rung(r) for r in rungs), key=lambda r: r.cost)) for name, rungs in records.items()}
 
 
 def _rung(record: Mapping[str, Any]) -> Rung:
@@ -78,14 +85,14 @@ def _rung(record: Mapping[str, Any]) -> Rung:
     return Rung(record["settings"], float(record["cost"]), errors)
 
 
-def _cheapest(ladder: str, tolerance: float, quantities: Iterable[str]) -> Rung | None:
+def _cheapest(ladder: tuple[Rung, ...], tolerance: float, quantities: Iterable[str]) -> Rung | None:
     wanted = tuple(quantities)
-    return next((rung for rung in ladders()[ladder] if rung.keeps(tolerance, wanted)), None)
+    return next((rung for rung in ladder if rung.keeps(tolerance, wanted)), None)
 
 
-def _finest(ladder: str, quantities: Iterable[str]) -> Rung:
+def _finest(ladder: tuple[Rung, ...], quantities: Iterable[str]) -> Rung:
     wanted = tuple(quantities)
-    return min(ladders()[ladder], key=lambda rung: max(rung.errors[q].bound for q in wanted if q in rung.errors))
+    return min(ladder, key=lambda rung: max(rung.errors[q].bound for q in wanted if q in rung.errors))
 
 
 def _composed(name: str, tolerance: float, forces: Rung, peak: Rung, elements: int) -> Accuracy:
@@ -102,13 +109,19 @@ PROMISES: dict[str, tuple[float, float, float | None]] = {
 }  # fmt: skip
 
 
+def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung]:
+    """Rungs for forces, peak and elements that keep what a preset promises; the finest where none does."""
+    out = []
+    for ladder, promise in zip(("peak", "forces", "kalker"), PROMISES[name], strict=True):
+        wanted = ("peak_stress",) if ladder == "peak" else FORCE_QUANTITIES
+        found = None if promise is None else _cheapest(measured[ladder], promise, wanted)
+        out.append(found or _finest(measured[ladder], wanted))
+    return out[1], out[0], out[2]
+
+
 def _preset(name: str) -> Accuracy:
-    peak_error, force_error, element_error = PROMISES[name]
-    forces = _cheapest("forces", force_error, FORCE_QUANTITIES) or _finest("forces", FORCE_QUANTITIES)
-    peak = _cheapest("peak", peak_error, ("peak_stress",)) or _finest("peak", ("peak_stress",))
-    rung = None if element_error is None else _cheapest("kalker", element_error, FORCE_QUANTITIES)
-    rung = rung or _finest("kalker", FORCE_QUANTITIES)
-    return _composed(name, peak_error, forces, peak, rung.settings["elements"])
+    forces, peak, rolling = preset_rungs(name, ladders())
+    return _composed(name, PROMISES[name][0], forces, peak, rolling.settings["elements"])
 
 
 PRESETS = {name: _preset(name) for name in ACCURACIES}
@@ -152,22 +165,23 @@ def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]
     elements = PRESETS["standard"].elements
     if rolling:
         ladder = contact_model if contact_model in ladders() else "kalker"
-        rung = _cheapest(ladder, (1.0 - PEAK_SHARE) * tolerance if peaks else tolerance, wanted)
+        rung = _cheapest(ladders()[ladder], (1.0 - PEAK_SHARE) * tolerance if peaks else tolerance, wanted)
         if rung is None:
             raise _beyond(tolerance, contact_model, ladder, wanted, 1.0 - PEAK_SHARE if peaks else 1.0)
         elements = rung.settings["elements"]
     share = FORCE_SHARE if peaks and not rolling else 1.0
-    forces = _cheapest("forces", share * tolerance, wanted) or _cheapest("forces", tolerance, wanted)
-    peak = _cheapest("peak", PEAK_SHARE * tolerance if rolling else tolerance, ("peak_stress",) if peaks else ())
+    nodes, searches = ladders()["forces"], ladders()["peak"]
+    forces = _cheapest(nodes, share * tolerance, wanted) or _cheapest(nodes, tolerance, wanted)
+    peak = _cheapest(searches, PEAK_SHARE * tolerance if rolling else tolerance, ("peak_stress",) if peaks else ())
     if forces is None and not rolling:
         raise _beyond(tolerance, contact_model, "forces", wanted, 1.0)
     if peak is None:
         raise _beyond(tolerance, contact_model, "peak", wanted, 1.0)
-    return _composed(f"{tolerance:g}", tolerance, forces or _finest("forces", wanted), peak, elements)
+    return _composed(f"{tolerance:g}", tolerance, forces or _finest(nodes, FORCE_QUANTITIES), peak, elements)
 
 
 def _beyond(tolerance: float, model: str, ladder: str, wanted: Iterable[str], share: float) -> InputError:
-    rung = _finest(ladder, wanted)
+    rung = _finest(ladders()[ladder], [q for q in wanted if q in ladders()[ladder][0].errors])
     bounds = {q: rung.errors[q].bound / share for q in wanted if q in rung.errors}
     worst = max(bounds, key=lambda q: bounds[q])
     reached = rounded_up(bounds[worst])

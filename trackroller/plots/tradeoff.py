@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -57,7 +58,7 @@ def draw_all(summary: dict[str, Any], ds: xr.Dataset | None, out_dir: Path) -> l
         drawn = [pareto(summary, quantity) for quantity in PARETO]
         drawn.append(convergence(summary))
         if ds is not None:
-            drawn.append(spread(ds))
+            drawn.append(spread(summary, ds))
         for item in drawn:
             if item is not None:
                 figure, info = item
@@ -84,7 +85,7 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
     for key, found in series.items():
         k = list(SERIES).index(key)
         taken += _series(axes, found, quantity, colours[k], style.MARKERS[k], style.LINES[k], SERIES[key])
-    _presets(axes, [r for r in records if r["method"] == "preset"], quantity)
+    _presets(axes, records, summary["presets"], quantity)
     _names(axes, taken)
     axes.set_xlabel(style.with_unit("CPU time a case", "ms"))
     axes.set_ylabel(f"Relative error of the {words} [– {unit}]")
@@ -114,16 +115,20 @@ def _series(axes: Axes, found: list[Record], quantity: str, colour: Any, marker:
     return [(cost[i], high[i], found[i]["label"], colour) for i in np.flatnonzero(front)]
 
 
-def _presets(axes: Axes, records: list[Record], quantity: str) -> None:
-    label: str | None = "presets: preview, standard, reference"
-    for r in records:
-        high = levels(r, quantity)[2]
-        if math.isfinite(high) and high > 0:
-            axes.plot(1e3 * r["cost"], high, marker="o", markersize=8.5, markerfacecolor="none", linestyle="none",
-                      markeredgecolor="black", markeredgewidth=0.9, label=label, zorder=4)  # fmt: skip
-            axes.annotate(r["label"][0].upper(), (1e3 * r["cost"], high), xytext=(5.5, -7), fontsize=6.5,
-                          textcoords="offset points", fontweight="bold")  # fmt: skip
-            label = None
+def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quantity: str) -> None:
+    told = False
+    for name, parts in presets.items():
+        for r in (r for r in records if r["ladder"] and r["ladder"] in parts.values()):
+            high = levels(r, quantity)[2]
+            if (r["stage"] == "peak" and quantity not in ("peak_stress", "life")) or not 0 < high < math.inf:
+                continue
+            place = 1e3 * r["cost"], high
+            axes.plot(*place, marker="o", markersize=8.5, markerfacecolor="none", linestyle="none", zorder=4,
+                      markeredgecolor="black", markeredgewidth=0.9,
+                      label=None if told else "taken by P(review), S(tandard), R(eference)")  # fmt: skip
+            axes.annotate(name[0].upper(), place, xytext=(-9, -9), fontsize=6.5, textcoords="offset points",
+                          fontweight="bold")  # fmt: skip
+            told = True
 
 
 def _names(axes: Axes, points: list) -> None:
@@ -182,24 +187,22 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
                                     "than grids and elements, whose order lies between one and two.")  # fmt: skip
 
 
-def spread(ds: xr.Dataset) -> Drawn | None:
+def spread(summary: dict[str, Any], ds: xr.Dataset) -> Drawn | None:
     """Share of designs whose peak stress errs by more than x, for the presets."""
     figure = style.new_figure(72)
     axes = figure.add_subplot()
     axes.set_xscale("log")
     axes.set_yscale("log")
-    colours, drawn, smallest = style.palette(3), 0, 1.0
-    presets = ds.where((ds["method"] == "preset") & (ds["model"] == "sliding"), drop=True)
-    for k in range(presets.sizes["setting"]):
-        one = presets.isel(setting=k)
-        errors = one["error"].sel(quantity="peak_stress").values.astype(float)
-        errors = np.sort(np.maximum(errors[np.isfinite(errors)], 1e-8))[::-1]
-        share = 100.0 * np.arange(1, errors.size + 1) / errors.size
-        smallest = min(smallest, 100.0 / max(errors.size, 1))
-        axes.plot(errors, share, color=colours[k], linestyle=style.LINES[k], label=str(one["label"].values))
-        drawn += 1
-    if not drawn:
+    colours, smallest = style.palette(3), 100.0
+    if not summary["presets"]:
         return None
+    for k, (name, parts) in enumerate(summary["presets"].items()):
+        row = next(i for i, text in enumerate(ds["ladder"].values) if json.loads(str(text)) == parts["peak"])
+        errors = ds["error"].isel(setting=row).sel(quantity="peak_stress").values.astype(float)
+        errors = np.sort(np.maximum(errors[np.isfinite(errors)], 1e-8))[::-1]
+        smallest = min(smallest, 100.0 / errors.size)
+        axes.plot(errors, 100.0 * np.arange(1, errors.size + 1) / errors.size, color=colours[k],
+                  linestyle=style.LINES[k], label=name)  # fmt: skip
     axes.axhline(1.0, color=_GREY, linewidth=0.7, linestyle=(0, (1, 2)))
     axes.text(0.02, 1.12, "1 % of the designs", fontsize=6.5, color=_GREY, transform=axes.get_yaxis_transform())
     axes.set_ylim(0.7 * smallest, 130)

@@ -68,8 +68,8 @@ def load_sizes(path: Path | str) -> Sizes:
 def settings_of(model: str) -> list[settings.Setting]:
     """Everything that is measured with complete solutions of one contact model."""
     if model == "sliding":
-        return [*settings.quadratures(), *settings.searches(), *settings.ellipses(), *settings.presets(model)]
-    return settings.elements(model)  # the presets are among them
+        return [*settings.quadratures(), *settings.searches(), *settings.ellipses()]
+    return settings.elements(model)
 
 
 def measure_part(name: str, sizes: Sizes) -> xr.Dataset:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from trackroller.accuracy import PROMISES, accuracy_settings, rounded_up
+from trackroller.accuracy import PROMISES, accuracy_settings, preset_rungs, read_ladders, rounded_up
 from trackroller.errors import InputError
 from trackroller.study.tradeoff_errors import QUANTITIES
 
@@ -30,7 +30,7 @@ def blocks(summary: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[B
         ("h1", "What accuracy costs, measured"),
         ("p", "Error of every stage and contact model against a converged reference, and CPU time a case, over "
               "discretisation and method. `snakemake --cores all tradeoff` measures again; "
-              "`python docs/generate.py --adopt` takes the result over into this page and into the ladders that "
+              "`python docs/adopt_tradeoff.py` takes the result over into this page and into the ladders that "
               "`accuracy` chooses from."),
         ("p", f"Sample: a scrambled Sobol sequence (seed {sample['seed']}) of designs that roll or slide on both "
               f"contacts: {counts}. It is wider than what anybody builds: loads over three decades, contact angles "
@@ -45,7 +45,7 @@ def blocks(summary: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[B
         ("h2", "What a tolerance buys"),
         *_tolerance_blocks(),
         ("h2", "Presets"),
-        *_preset_blocks(summary["settings"]),
+        *_preset_blocks(summary),
         ("h2", "Error against cost"),
         *[("figure", f) for f in figures if "convergence" not in f["name"]],
         ("h2", "The ladders"),
@@ -98,21 +98,25 @@ def _reached(refusal: InputError) -> str:
     return f"reaches {hit[1]}" if hit else "out of reach"
 
 
-def _preset_blocks(records: list[Record]) -> list[Block]:
-    rows = []
-    for r in records:
-        if r["method"] == "preset":
-            peak, life = (r["errors"].get(q, [None] * 5) for q in ("peak_stress", "life"))
-            force = r["errors"].get("friction_force", [None] * 5)
-            rows.append((f"`{r['label']}`", f"`{r['model']}`", f"{1e3 * r['cost']:.3g}", *map(_error, peak[:3]),
-                         *map(_error, (force[0], force[2], life[2]))))  # fmt: skip
+def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
+    measured, rows = read_ladders(summary["ladders"]), []
+    for name in summary["presets"]:
+        forces, peak, rolling = preset_rungs(name, measured)
+        pairs = {"sliding": (peak, forces)}
+        for model in ("fastsim", "kalker"):
+            own = [r for r in measured[model] if r.settings == rolling.settings]
+            pairs |= {model: (own[0], own[0])} if own else {}
+        for model, (whole, part) in pairs.items():
+            p, f, n = whole.errors["peak_stress"], part.errors["friction_force"], whole.errors["life"]
+            rows.append((f"`{name}`", f"`{model}`", f"{1e3 * whole.cost:.3g}",
+                         *map(_error, (p.median, p.p95, p.p99, f.median, f.p99, n.p99))))  # fmt: skip
     promises = "; ".join(f"`{name}` {peak:g} of the peak and {force:g} of the forces in full sliding, "
                          + (f"{rolling:g} of the forces with elements" if rolling else "the finest elements measured")
                          for name, (peak, force, rolling) in PROMISES.items())  # fmt: skip
     heads = ("preset", "model", "ms a case", "peak: median", "95 %", "99 %", "friction force: median", "99 %",
              "life: 99 %")  # fmt: skip
-    return [("p", "A preset is a promise, kept in 99 % of the designs by the cheapest rung of each ladder: "
-                  f"{promises}. Measured (forces, contact, friction work, peaks and life; CPU time):"),
+    return [("p", "A preset is a promise, kept in 99 % of the cases by the cheapest rung of each ladder below (the "
+                  f"finest where none keeps it): {promises}. Measured, CPU time of complete cases:"),
             ("table", (heads, rows))]  # fmt: skip
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from trackroller.accuracy import PRESETS, Accuracy
+from trackroller.accuracy import Accuracy
 from trackroller.halfspace.peak import PeakSettings
 
 FORCES = ("forces", "contact", "friction_work")
@@ -85,12 +85,6 @@ def elements(model: str) -> list[Setting]:
     """Elements across the patch of a rolling contact model."""
     return [Setting("elements", model, "elements", str(n), n, accuracy_of(elements=n), outputs=ALL,
                     ladder={"elements": n}) for n in ELEMENTS[model]]  # fmt: skip
-
-
-def presets(model: str) -> list[Setting]:
-    """The presets as they are, for the figures."""
-    return [Setting("preset", model, "preset", name, float("nan"), preset, outputs=ALL)
-            for name, preset in PRESETS.items()]  # fmt: skip
 
 
 def references(model: str) -> list[Accuracy]:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.accuracy import FORCE_QUANTITIES, PRESETS
+from trackroller.accuracy import FORCE_QUANTITIES, preset_rungs, read_ladders
+from trackroller.parameters import ACCURACIES
 from trackroller.study.pareto import pareto_mask
 from trackroller.study.tradeoff_errors import QUANTITIES, observed_order, percentiles, tolerance_bound
 from trackroller.study.tradeoff_settings import REFERENCE_ELEMENTS
@@ -31,10 +32,8 @@ Record = dict[str, Any]
 def summary(ds: xr.Dataset) -> dict[str, Any]:
     """Everything that page, figures and ladders are made of, ready for JSON."""
     records = [_record(ds.isel(setting=i)) for i in range(ds.sizes["setting"])]
-    records += [{**r, "stage": "preset", "method": "preset", "label": name, "points": None} for r in records
-                for name, preset in PRESETS.items()
-                if r["stage"] == "elements" and r["points"] == preset.elements]  # fmt: skip
     whole = {k: ds.attrs[k] for k in sorted(ds.attrs) if k.startswith(("designs_", "reference_cost_"))}
+    chosen = {name: ladder(records, *key) for key, name in LADDERS.items()}
     return {
         "sample": {"seed": int(ds.attrs["seed"]), **{k: _plain(v) for k, v in whole.items()}},
         "versions": json.loads(ds.attrs["versions"]),
@@ -42,8 +41,18 @@ def summary(ds: xr.Dataset) -> dict[str, Any]:
         "orders": orders(records),
         "life": life_against_peak(ds),
         "paper_table": json.loads(ds.attrs["paper_table"]),
-        "ladders": {name: ladder(records, *key) for key, name in LADDERS.items()},
+        "ladders": chosen,
+        "presets": presets(chosen),
     }
+
+
+def presets(chosen: dict[str, list[Record]]) -> dict[str, Record]:
+    """Settings of the rungs that each preset takes from the ladders: `forces`, `peak` and `elements`."""
+    if not all(chosen.values()):
+        return {}
+    measured = read_ladders(chosen)
+    return {name: dict(zip(("forces", "peak", "elements"), (dict(r.settings) for r in preset_rungs(name, measured)),
+                           strict=True)) for name in ACCURACIES}  # fmt: skip
 
 
 def _plain(value: Any) -> Any:
