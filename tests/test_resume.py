@@ -127,7 +127,23 @@ def cut(path):
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
 
 
-@pytest.mark.parametrize("damage", [flip, cut])
+def empty(path):
+    path.write_bytes(b"")
+
+
+def spoil_the_middle(path):
+    data = np.frombuffer(path.read_bytes(), dtype=np.uint8).copy()
+    used = np.flatnonzero(data)  # a small file is mostly empty space
+    data[used[len(used) // 3 : 2 * len(used) // 3]] ^= 0x5A
+    path.write_bytes(data.tobytes())
+
+
+def put_another_in_its_place(path):
+    other = next(p for p in sorted(path.parent.glob(f"*{path.suffix}")) if p != path)
+    path.write_bytes(other.read_bytes())
+
+
+@pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle, put_another_in_its_place])
 @pytest.mark.parametrize("place", ["store", "chunks", "plan"])
 def test_damaged_file_is_found_named_and_mended(tmp_path, solved, damage, place):
     plan, whole, _ = run(DATA, tmp_path)

@@ -81,7 +81,7 @@ def gather(plan: Plan, out: Path | None = None, tell: Tell | None = None) -> Pat
 
 def _read_chunk(plan: Plan, name: str) -> store.Block:
     try:
-        return store.read(plan.folder.kept(name))
+        return store.read_chunk(plan.folder.kept(name))
     except FileNotFoundError:
         raise WorkError(f"chunk {name} is not solved yet: start the run again.") from None
     except store.CorruptFile as exc:

@@ -39,7 +39,7 @@ def drop_corrupt(folder: StudyFolder, tell: Tell) -> list[str]:
         name = path.stem
         linked = folder.chunk(name)
         try:
-            store.read(path)
+            store.read_chunk(path)
         except store.CorruptFile as exc:
             tell(f"corrupt chunk, its cases are solved again: {exc}")
             if linked.exists() and linked.samefile(path):
@@ -61,7 +61,7 @@ def drop_corrupt(folder: StudyFolder, tell: Tell) -> list[str]:
 def _adopt(folder: StudyFolder, path: Path, tell: Tell) -> bool:
     """A good chunk whose other name is missing (a copied folder) is taken into the store."""
     try:
-        store.read(path)
+        store.read_chunk(path)
     except store.CorruptFile as exc:
         tell(f"corrupt chunk, its cases are solved again: {exc}")
         return False

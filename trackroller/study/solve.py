@@ -90,7 +90,7 @@ def solved(folder: StudyFolder, name: str, tell: Tell) -> bool:
         return False
     if not shown.is_file():
         try:
-            store.read(kept)
+            store.read_chunk(kept)
         except store.CorruptFile as exc:
             tell(f"corrupt chunk, its cases are solved again: {exc}")
             kept.unlink(missing_ok=True)
@@ -155,7 +155,7 @@ def forget_failed(folder: StudyFolder, chunks: list[str], tell: Tell) -> int:
         if not folder.kept(name).is_file():
             continue
         with locked(folder.lock(name), tell):
-            block = store.read(folder.kept(name))
+            block = store.read_chunk(folder.kept(name))
             failed = block.failed
             if not failed.any():
                 continue

@@ -18,6 +18,7 @@ import numpy as np
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.files import write_whole
+from trackroller.study.identity import chunk_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -201,6 +202,14 @@ def write(path: Path, block: Block) -> None:
                             "digest": _digest(header, block.cases, block.values)})  # fmt: skip
 
     write_whole(path, save)
+
+
+def read_chunk(path: Path) -> Block:
+    """Read a finished chunk, whose name is the hash of its cases; raises `CorruptFile` as `read` does."""
+    block = read(path)
+    if chunk_name(block.cases) != path.stem:
+        raise CorruptFile(path, "it holds the cases of another chunk")
+    return block
 
 
 def read(path: Path) -> Block:
