@@ -1,0 +1,97 @@
+"""Folders that cannot be written and disks that fill up, for real: one clear line, exit code 1, and it goes on."""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+STUDY = """
+name: disk
+factors:
+  axial_force: {linspace: [0, 60, 40]}
+  friction_coefficient: {linspace: [0.05, 0.4, 10]}
+outputs: [forces]
+chunk_size: 100
+"""
+
+
+@pytest.fixture
+def study(tmp_path):
+    """A study file."""
+    path = tmp_path / "study.yaml"
+    path.write_text(STUDY)
+    return path
+
+
+@pytest.fixture
+def disk(tmp_path):
+    """A disk of its own: `disk(options)` mounts or changes it."""
+    place = tmp_path / "disk"
+    place.mkdir()
+
+    def change(options):
+        known = place.is_mount()
+        words = ["mount", "-o", f"remount,{options}", str(place)] if known else [
+            "mount", "-t", "tmpfs", "-o", options, "tmpfs", str(place)]  # fmt: skip
+        if subprocess.run(words, capture_output=True, check=False).returncode:
+            pytest.skip("no right to mount a disk here")
+        return place
+
+    yield change
+    subprocess.run(["umount", "-l", str(place)], capture_output=True, check=False)
+
+
+def run(study, results, **more):
+    words = [str(Path(sys.executable).parent / "trackroller"), "run", str(study), "--results", str(results), "-q"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=240, check=False, **more)
+    return done.returncode, done.stderr
+
+
+def refused(done, path, why):
+    code, told = done
+    assert code == 1 and "Traceback" not in told, told
+    line = told.strip().splitlines()[-1]
+    assert str(path) in line and why in line and "start again" in line
+
+
+def test_read_only_disk_is_named_and_the_run_goes_on_when_it_is_mended(study, disk):
+    place = disk("size=20m")
+    disk("ro")
+    refused(run(study, place), place / "disk", "cannot be written")
+    disk("rw")
+    assert run(study, place)[0] == 0
+    study.write_text(STUDY.replace("40]", "79]"))
+    disk("ro")
+    refused(run(study, place), place / "disk", "cannot be written")
+
+
+def test_full_disk_is_named_and_finished_cases_are_kept(study, disk):
+    place = disk("size=300k")
+    refused(run(study, place), place, "disk is full")
+    assert not list(place.rglob("*.tmp"))
+    kept = len(list(place.rglob("store/*.nc")))
+    disk("size=20m")
+    code, told = run(study, place)
+    assert code == 0 and told.count("already") + told.count("solved now") == 4 - kept
+    with xr.open_dataset(place / "disk" / "study.nc") as ds:
+        assert int(ds["converged"].sum()) == 400
+
+
+def test_file_size_limit_is_told(study, tmp_path):
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+
+    refused(run(study, tmp_path / "r", preexec_fn=limit), tmp_path / "r", "writing failed")
+    assert run(study, tmp_path / "r")[0] == 0
+
+
+def test_results_that_are_a_file_are_bad_input(study, tmp_path):
+    (tmp_path / "r").write_text("precious")
+    code, told = run(study, tmp_path / "r")
+    assert code == 2 and "Traceback" not in told and str(tmp_path / "r") in told
+    assert (tmp_path / "r").read_text() == "precious"
