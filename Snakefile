@@ -40,3 +40,5 @@ rule all:
 include: "workflow/rules/solve.smk"
 include: "workflow/rules/show.smk"
 include: "workflow/rules/tradeoff.smk"
+include: "workflow/rules/contact_models.smk"
+include: "workflow/rules/paper.smk"

@@ -75,6 +75,9 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     with xr.open_dataset(study_nc) as ds:
         content = contents(ds) | decisions(ds, sensitivity_nc)
     content["figures"] = figures(Path(figures_dir))
+    words = Path(figures_dir) / "words.txt"  # what a comparison has to say stands before what any study says
+    if words.is_file():
+        content["summary"] = words.read_text(encoding="utf-8").splitlines() + content["summary"]
     text = environment.get_template("report.html.j2").render(content)
     out_html = Path(out_html)
     out_html.parent.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,18 @@
+# The contact models side by side: snakemake --cores all contact_models
+COMPARED = f"{config.get('results', 'results')}/contact_models"
+
+
+rule contact_models:
+    input:
+        study="config/studies/contact-models.yaml",
+        code=sources("study/ladder.py", "plots/ladder.py", "contact"),
+    output:
+        report=f"{COMPARED}/report.html",
+        figures=directory(f"{COMPARED}/figures"),
+        words=f"{COMPARED}/words.txt",
+    log:
+        f"{COMPARED}/logs/contact_models.log",
+    conda:
+        "../envs/trackroller.yaml"
+    script:
+        "../scripts/contact_models.py"
