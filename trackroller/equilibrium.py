@@ -145,7 +145,7 @@ class _Roller:
     def floored(self, normal: np.ndarray, pick=slice(None)) -> np.ndarray:
         """Normal forces kept positive, for a contact about to lift still needs an ellipse, and finite."""
         load = self.load[pick]
-        return np.clip(np.where(np.isnan(normal), load, normal), 1e-9 * load, self.largest[pick])
+        return np.clip(np.where(np.isnan(normal), load, normal), 1e-13 * load, self.largest[pick])
 
 
 def _bracketed(roller: _Roller, w_low, w_high, fine: bool, sweeps: int, tolerance: float):
@@ -331,7 +331,7 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
         w2, n2 = _bracketed(again, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
         b2, w2, n2, f2 = _newton(again, w2, n2, low[bad], high[bad])
         best[bad], w[bad], n[:, bad], f[:, :, bad] = b2, w2, n2, f2
-    lift = np.any(n <= 1e-8 * roller.load, axis=0)
+    lift = np.any(n <= 1e-12 * roller.load, axis=0)
     bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift)
     if bad.size:
         b3, w3, n3, f3, lift[bad] = _follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
@@ -369,7 +369,7 @@ def _follow_friction(loads, law, rows, low, high):
         fine = best <= 1e-8
         lost, found = lost | ~fine, found | fine
         shrunk = np.any(normal < 0.15 * roller.load, axis=0)
-        lifted |= np.where(fine, np.any(n_new < 1e-6 * roller.load, axis=0), shrunk)
+        lifted |= np.where(fine, np.any(n_new < 1e-12 * roller.load, axis=0), shrunk)
         w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
         with np.errstate(invalid="ignore"):
             grip = np.where(fine, np.max(np.abs(f[0] / n_new), axis=0) / tangent, grip)

@@ -103,6 +103,16 @@ def _column(d, eps, nodes, weights):
     eps = max(eps, _TINY)
     middle = d if abs(d) < 1.0 else 0.0
     phi = phi_t = psi = work = 0.0
+    if eps > 30.0:  # far from the pole the substitution would cancel, and the kernel is smooth as it stands
+        for j in range(nodes.size):
+            t = 2.0 * nodes[j] - 1.0
+            rho = math.sqrt((t - d) * (t - d) + eps * eps)
+            w = 2.0 * weights[j] * math.sqrt((1.0 - t) * (1.0 + t))
+            phi += w * (t - d) / rho
+            phi_t += w * (t - d) / rho * t
+            psi += w * eps / rho
+            work += w * rho
+        return phi, phi_t, psi, work
     for side in range(2):
         low = math.asinh(((-1.0 if side == 0 else middle) - d) / eps)
         high = math.asinh(((middle if side == 0 else 1.0) - d) / eps)
