@@ -57,20 +57,16 @@ def series(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any],
     else:
         axes.plot(*binned_median(rows[x], rows[y]), color=colour, linestyle=look.get("linestyle", "-"), zorder=4)
     rolling = (rows["regime"] == 0) if "regime" in rows else np.ones(len(rows), dtype=bool)
-    size = 14 if line else 7
-    for chosen, face in ((rolling, colour), (~rolling, "white")):
+    marks(axes, rows, x, y, colour, marker, 14 if line else 7, rolling)
+
+
+def marks(axes: Axes, rows: pd.DataFrame, x: str, y: str, colour: Any, marker: str, size: float, filled: Any) -> None:
+    """Marks of `size` [pt^2], filled where `filled` (n,) says so and hollow elsewhere; many of them as pixels."""
+    filled = np.broadcast_to(np.asarray(filled, dtype=bool), len(rows))
+    for chosen, face in ((filled, colour), (~filled, "white")):
         part = rows[chosen]
-        axes.scatter(
-            part[x],
-            part[y],
-            s=size,
-            marker=marker,
-            facecolor=face,
-            edgecolor=colour,
-            linewidth=0.8,
-            zorder=3,
-            rasterized=len(part) > 500,
-        )
+        axes.scatter(part[x], part[y], s=size, marker=marker, facecolor=face, edgecolor=colour, linewidth=0.8, zorder=3,
+                     rasterized=len(part) > 500)  # fmt: skip
 
 
 def binned_median(x: pd.Series, y: pd.Series, bins: int = 6) -> tuple[np.ndarray, np.ndarray]:

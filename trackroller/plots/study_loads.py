@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
-from trackroller.plots.study_life import MAX_POINTS, legend
+from trackroller.plots.study_life import MAX_POINTS, legend, marks
 from trackroller.plots.study_view import StudyView
 
 if TYPE_CHECKING:
@@ -103,18 +103,7 @@ def _stress_series(axes, part, body: str, colour, marker: str, line, grid: bool)
         axes.plot(part["_fit"], part[y], color=colour, linestyle=line, zorder=2)
     flag = part.get(f"at_surface_{body}")
     surface = np.ones(len(part), dtype=bool) if flag is None else (flag == 1).to_numpy()
-    for chosen, face in ((surface, colour), (~surface, "white")):
-        axes.scatter(
-            part["_fit"][chosen],
-            part[y][chosen],
-            s=15 if grid else 8,
-            marker=marker,
-            facecolor=face,
-            edgecolor=colour,
-            linewidth=0.8,
-            zorder=3,
-            rasterized=len(part) > 500,
-        )
+    marks(axes, part, "_fit", y, colour, marker, 15 if grid else 8, surface)
 
 
 def _stress_info(view: StudyView, rows: pd.DataFrame, body: str, hue: str | None, held: str) -> style.FigureInfo:
@@ -201,18 +190,8 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
 def _force_series(axes, part, x: str, y: str, contact: int, colour, line, grid: bool) -> None:
     if grid:
         axes.plot(part[x], part[y], color=colour, linestyle=line, zorder=2)
-    size = (10, 20) if grid else (5, 9)
-    axes.scatter(
-        part[x],
-        part[y],
-        s=size[contact - 1],
-        marker="os"[contact - 1],
-        edgecolor=colour,
-        linewidth=0.8,
-        facecolor=colour if contact == 1 else "none",
-        zorder=3,
-        rasterized=len(part) > 500,
-    )
+    size = ((10, 20) if grid else (5, 9))[contact - 1]
+    marks(axes, part, x, y, colour, "os"[contact - 1], size, contact == 1)
 
 
 def _shade_lift_off(panels, rows: pd.DataFrame, x: str, grid: bool) -> None:

@@ -38,8 +38,9 @@ def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np
     material : its values, `scatter_in_cycles` or `scatter_in_stress` among them for probabilities other than 0.5
     rule : life rule beyond the knee
     """
-    scatter = {"scatter_cycles": material.get("scatter_in_cycles"), "scatter_stress": material.get("scatter_in_stress")}
-    return fatigue.allowable_stress(cycles, *line_of(material), rule, failure_probability=probability, **scatter)
+    t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
+    return fatigue.allowable_stress(cycles, *line_of(material), rule, failure_probability=probability,
+                                    scatter_cycles=t_n, scatter_stress=t_s)  # fmt: skip
 
 
 def scatters(material: Mapping[str, Any]) -> bool:
@@ -82,7 +83,7 @@ def _materials(view: StudyView) -> dict[str, dict[str, Any]]:
         found = json.loads(str(view.attrs.get("materials", "{}")))
     except ValueError:
         return {}
-    return {name: m for name, m in found.items() if isinstance(m, Mapping) and all(f in m for f in _FIELDS)}
+    return {name: dict(m) for name, m in found.items() if isinstance(m, Mapping) and all(f in m for f in _FIELDS)}
 
 
 def _points(view: StudyView, body: str, known: Mapping[str, Any], rule: str
