@@ -104,3 +104,8 @@ def test_links_between_pages_lead_to_files():
 def test_the_command_is_installed():
     """The pages call it `trackroller`."""
     assert shutil.which("trackroller") or (Path(sys.executable).parent / "trackroller").exists()
+
+
+def test_python_interface_is_that_of_the_code():
+    done = subprocess.run([sys.executable, str(ROOT / "docs" / "api.py"), "--check"], check=False)
+    assert done.returncode == 0, "run: python docs/api.py"
