@@ -247,7 +247,9 @@ def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int,
     products, iteration = 1, 0
     while largest > tolerance and iteration < limit:
         iteration += 1
-        step, used = work.step(traction, slip, min(0.1, max(1e-4, 0.3 * tolerance / largest)))
+        # far from the solution the step is rough anyway; near it the last ones converge quadratically
+        inner = max(0.3 * tolerance / largest, min(0.03, 0.1 * largest))
+        step, used = work.step(traction, slip, inner)
         change = work.multiply(step)
         products += used + 1
         length = 1.0
