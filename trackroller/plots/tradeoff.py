@@ -90,6 +90,7 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
     axes.set_xlabel(style.with_unit("CPU time a case", "ms"))
     axes.set_ylabel(f"Relative error of the {words} [– {unit}]")
     axes.margins(x=0.12, y=0.06)
+    style.log_ticks(axes.xaxis, *axes.get_xlim())
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)
     style.head(figure, f"What accuracy of the {words} costs",
                "filled: 99 % of the designs lie below; hollow: median")  # fmt: skip
@@ -177,7 +178,7 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
         return None
     low, high = axes.get_xlim()
     style.log_ticks(axes.xaxis, low, high)
-    axes.set_xlabel(style.with_unit("Points or elements across the patch, or Gauss points", "-"))
+    axes.set_xlabel(style.with_unit("Points across the patch, or of quadrature", "-"))
     axes.set_ylabel(style.with_unit("Relative error, median of the designs", "-"))
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)
     style.head(figure, "How fast the stages converge", "median error over the designs; order: slope of the line")

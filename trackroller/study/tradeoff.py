@@ -112,6 +112,8 @@ def _joined(group: Sequence[xr.Dataset], width: int) -> xr.Dataset:
         first = int(ds.attrs["first"])
         errors[:, :, first : first + ds.sizes["design"]] = ds["error"].values
     out = group[0].drop_vars(("error", "design")).assign_coords(design=np.arange(width))
+    for name in ("stage", "model", "method", "label", "ladder"):  # of any length, or joining would cut them
+        out[name] = ("setting", out[name].values.astype(object))
     out["error"] = (("setting", "quantity", "design"), errors, dict(group[0]["error"].attrs))
     out["cost"] = ("setting", _mean(group, lambda ds: ds["cost"].values), dict(group[0]["cost"].attrs))
     return out

@@ -67,10 +67,11 @@ def percentiles(errors: np.ndarray, levels: tuple[float, ...] = (50, 95, 99)) ->
 
 
 def tolerance_bound(errors: np.ndarray, share: float = 0.99, confidence: float = 0.95) -> float:
-    """Error that `share` of all cases keep, with `confidence` where the sample is large enough for that.
+    """Error that `share` of all cases keep, with `confidence`, where the sample is large enough for that.
 
     Distribution-free (Wilks 1941): the k-th largest with k as large as the binomial law allows. A sample below
-    log(1 - confidence)/log(share) (299 designs) cannot say so much: ASSUME then half as much again as its largest.
+    log(1 - confidence)/log(share) (299 designs) cannot say so much: ASSUME then half as much again as its 95th
+    percentile, which is a promise for about 95 % of the cases.
     """
     from scipy.stats import binom
 
@@ -80,7 +81,7 @@ def tolerance_bound(errors: np.ndarray, share: float = 0.99, confidence: float =
     beyond = int(binom.ppf(1 - confidence, known.size, 1 - share))  # P(count <= beyond) >= 1 - confidence
     while beyond >= 0 and binom.cdf(beyond, known.size, 1 - share) > 1 - confidence:
         beyond -= 1
-    return float(known[beyond]) if beyond >= 0 else 1.5 * float(known[0])
+    return float(known[beyond]) if beyond >= 0 else 1.5 * float(percentiles(errors, (95,))[0])
 
 
 def observed_order(points: np.ndarray, errors: np.ndarray) -> tuple[float, float]:
