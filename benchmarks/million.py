@@ -87,7 +87,7 @@ def prepare(place: Path, base_samples: int) -> None:
     """The workflow and the study in a folder."""
     import shutil
 
-    for part in ("workflow", "profiles"):
+    for part in ("workflow", "profiles", "config"):
         shutil.copytree(ROOT / part, place / part, dirs_exist_ok=True)
     shutil.copy(ROOT / "Snakefile", place)
     (place / "config").mkdir(exist_ok=True)

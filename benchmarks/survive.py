@@ -64,7 +64,8 @@ def start(place: Path, how: str) -> subprocess.Popen:
     """A run in a session of its own."""
     words = [TOOLS / "snakemake", "--cores", "2", "--nocolor"] if how == FLOW else [
         TOOLS / "trackroller", *how.replace("run", "run study.yaml -q", 1).split()]  # fmt: skip
-    env = os.environ | {"SURVIVE_LOG": str(place / "solved.log"), "PYTHONPATH": f"{place / 'spy'}:{os.environ.get('PYTHONPATH', '')}"}
+    paths = f"{place / 'spy'}:{os.environ.get('PYTHONPATH', '')}"
+    env = os.environ | {"SURVIVE_LOG": str(place / "solved.log"), "PYTHONPATH": paths}
     with open(place / "told.txt", "a") as told:
         return subprocess.Popen([str(w) for w in words], cwd=place, env=env, start_new_session=True, stdout=told,
                                 stderr=subprocess.STDOUT)  # fmt: skip
@@ -130,7 +131,7 @@ def solved_again(place: Path) -> int:
 def prepare(study: str = STUDY) -> Path:
     """A folder with the workflow and the study."""
     place = Path(tempfile.mkdtemp(prefix="survive-"))
-    for part in ("workflow", "profiles"):
+    for part in ("workflow", "profiles", "config"):
         shutil.copytree(ROOT / part, place / part)
     shutil.copy(ROOT / "Snakefile", place)
     for folder, name, text in (("config", "config.yaml", "study: study.yaml\nresults: results\n"),
