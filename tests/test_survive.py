@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
-import survive  # noqa: E402
+import survive
 
 
 def test_killed_while_solving_and_while_gathering_no_finished_case_is_solved_again():
