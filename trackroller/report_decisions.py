@@ -55,7 +55,7 @@ def _guarded(make: Any, ds: xr.Dataset) -> dict[str, Any]:
 
 def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
     """Ranking of the factors for each analysed output, with intervals, in words and as tables."""
-    from trackroller.plots.sensitivity import main_outputs
+    from trackroller.plots.sensitivity import effect_unit, main_outputs
     from trackroller.study import words
 
     rows = []
@@ -63,7 +63,8 @@ def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
         part = sens.sel(output=output)
         ranks = [f"{r.name} {_value(r.value, r.low, r.high)}" for r in words.order(sens, output)[:4]]
         advice = words.advice_of(sens, output)
-        rows.append((words.upper(words.of_output(sens, output)), ranks, str(part["note"].item()), advice))
+        unit = f" [{effect_unit(sens, output)}]" if words.headline(sens) in ("mu_star", "effect") else ""
+        rows.append((words.upper(words.of_output(sens, output)) + unit, ranks, str(part["note"].item()), advice))
     index = words.headline(sens)
     return {
         "method": str(sens.attrs.get("method", "")), "index": str(sens[index].attrs.get("long_name", index)),
@@ -101,7 +102,7 @@ def _value(value: float, low: float = np.nan, high: float = np.nan) -> str:
     if not np.isfinite(half):
         return style.rounded(value, 3)
     digits = max(0, 1 - int(np.floor(np.log10(half)))) if half > 0 else 3
-    return f"{value:.{min(digits, 3)}f} ± {half:.{min(digits, 3)}f}".replace("-", "−")
+    return f"{value:.{min(digits, 6)}f} ± {half:.{min(digits, 6)}f}".replace("-", "−")
 
 
 def robust_points(table: xr.Dataset) -> dict[str, Any]:
@@ -170,8 +171,8 @@ def pareto_designs(ds: xr.Dataset) -> dict[str, Any]:
         "columns": [_heading(front, n) + arrows.get(n, "") for n in columns],
         "rows": [(int(front["row"][i]), [_cell(n, front[n].values[i]) for n in columns]) for i in shown],
         "sentence": words.pareto(front), "count": len(best), "constraints": str(front.attrs.get("constraints", "")),
-        "goals": "; ".join(f"{words.upper(_words(front, n))} {'as high' if w == 'max' else 'as low'} as possible"
-                           for n, w in goals),
+        "goals": words.upper("; ".join(f"{_words(front, n)} as {'high' if w == 'max' else 'low'} as possible"
+                                       for n, w in goals)),
     }  # fmt: skip
 
 
@@ -186,4 +187,4 @@ def _heading(front: xr.Dataset, name: str) -> str:
 
 
 def _cell(name: str, value: Any) -> str:
-    return str(value) if isinstance(value, str) else style.level_text(name, float(value), unit=False)
+    return style.level_text(name, value if isinstance(value, str) else float(value) + 0.0, unit=False)  # -0 is 0
