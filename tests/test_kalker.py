@@ -76,9 +76,9 @@ def compare_with_contact(case, settings=None):
     np.testing.assert_allclose(lateral, exact["lateral_force"], rtol=6e-3)
     np.testing.assert_allclose(moment, exact["spin_moment"], rtol=6e-3)
     driven = case["case"]["motor_force"] != 0
-    # rolling freely, drive and shift are what is left of larger terms: CONTACT's own grids differ by 5 % there
+    # rolling freely, drive and shift are what is left of larger terms: CONTACT's own grids differ by 8 % there
     np.testing.assert_allclose(driving, exact["driving_force"], rtol=1e-2 if driven else 2.5e-2)
-    assert shift == pytest.approx(exact["rolling_radius_shift"], rel=1e-2, abs=8e-5)
+    assert shift == pytest.approx(exact["rolling_radius_shift"], rel=1e-2, abs=5e-5)
 
 
 QUICK = ("mu0.3_FM-30_rC220_Fax30", "mu0.1_FM0_rC220_Fax30", "ell_rCTR-6.3_FM-30", "mu0.4_FM-30_rCinf_Fax60")

@@ -23,6 +23,7 @@ BLOCK = 256  # patches whose tractions are held at once
 # Two grids h and 2h: F = F_h + weight (F_h - F_2h). The observed order is near 2 in sliding and 1 in full stick,
 # so the weight lies between 1/3 and 1; it grows with the stick fraction f as 0.5 (1 + f^2).
 SLIDING_WEIGHT = 0.5
+DRIVING_WEIGHT = 1.0  # of the driving force: of first order throughout, by where the slip vanishes in the patch
 
 
 @dataclass(frozen=True)
@@ -169,7 +170,8 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     if coarse is not None:
         error = np.abs(value - coarse[:, :3])
         weight = SLIDING_WEIGHT * (1.0 + fine[:, batch.STICK] ** 2)
-        value = value + weight[:, None] * (value - coarse[:, :3])
+        weights = np.stack([weight, np.full(n, DRIVING_WEIGHT), weight], axis=1)
+        value = value + weights * (value - coarse[:, :3])
         work = work + weight * (work - coarse[:, batch.WORK])
     with np.errstate(divide="ignore", invalid="ignore"):
         energy = np.where(fine[:, batch.WORK] != 0, fine[:, batch.POWER] / fine[:, batch.WORK] - 1.0, 0.0)

@@ -110,6 +110,11 @@ class Influence:
     own: float
     column: np.ndarray
 
+    @property
+    def own_displacement(self) -> float:
+        """Mean displacement that an element's unit traction causes at itself."""
+        return float(self.column[:, (self.column.shape[1] - HALO + 1) // 2].mean())
+
     def displacements(self, field: np.ndarray) -> np.ndarray:
         """Displacements (ny + HALO, nx), one row behind to two rows ahead, of the tractions `field` (ny, nx)."""
         ny, nx = field.shape
@@ -117,12 +122,6 @@ class Influence:
         spectrum = fft.fft(fft.fft(field, lx, axis=1), ly, axis=0, overwrite_x=True)
         product = fft.ifft(_combined(self.p, self.q, spectrum), axis=0, overwrite_x=True)[: ny + HALO]
         return fft.ifft(product, axis=1)[:, :nx]
-
-    def slip(self, field: np.ndarray, leading: np.ndarray) -> np.ndarray:
-        """Slip -du/dy (ny, nx) caused by the tractions `field`; see `differences`."""
-        out = np.empty(field.shape, complex)
-        differences(self.displacements(field), leading, self.hy, out)
-        return out
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)

@@ -25,6 +25,7 @@ class Problem:
     """A patch: influence functions, rigid slip (ny, nx), traction bounds at rest `height` and the friction law.
 
     scale : slip speed [mm/s] per scaled slip; knots, factors : friction over its value at rest by slip speed
+    rolling : B = -d/dy of the displacements; else the displacements themselves, for a shift from rest
     """
 
     influence: Influence
@@ -33,6 +34,7 @@ class Problem:
     scale: float
     knots: np.ndarray
     factors: np.ndarray
+    rolling: bool = True
 
 
 def reals(field: np.ndarray) -> np.ndarray:
@@ -188,10 +190,14 @@ class _Newton:
 
     def __init__(self, problem: Problem, krylov: int) -> None:
         ny, nx = problem.height.shape
-        self.problem, self.rho = problem, 1.0 / problem.influence.own
+        functions = problem.influence
+        self.problem, self.rho = problem, 1.0 / (functions.own if problem.rolling else functions.own_displacement)
         self.leading = leading_rows(problem.height)
         self.first, self.count = column_ranges(problem.height)
-        self.slips = column_slips(problem.influence.column, problem.influence.hy)
+        if problem.rolling:
+            self.slips = column_slips(functions.column, functions.hy)
+        else:
+            self.slips = np.ascontiguousarray(np.repeat(functions.column[:, None, 1:-2], 2, axis=1))
         self.factors = np.empty((nx, 2, ny, ny))
         self.basis = np.empty((krylov + 1, 2 * ny * nx))
         self.derivative, self.turn = np.empty((3, ny, nx)), np.empty((4, ny, nx))
@@ -200,7 +206,11 @@ class _Newton:
 
     def multiply(self, field: np.ndarray) -> np.ndarray:
         """B `field` into the kept array."""
-        differences(self.problem.influence.displacements(field), self.leading, self.problem.influence.hy, self.product)
+        halo = self.problem.influence.displacements(field)
+        if self.problem.rolling:
+            differences(halo, self.leading, self.problem.influence.hy, self.product)
+        else:
+            self.product[:] = halo[1 : 1 + field.shape[0]]
         return self.product
 
     def residual(self, traction: np.ndarray, slip: np.ndarray) -> tuple[float, float]:

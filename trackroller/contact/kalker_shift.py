@@ -1,0 +1,67 @@
+"""A patch at rest that is shifted: the static counterpart of rolling, on the same elements and by the same method.
+
+The slip of one step from the unloaded state is S = W + u, W the rigid shift of the roller against the guide and u the
+displacement difference; dry friction holds for S (Kalker 1990, section 4.1; Cattaneo 1938, Mindlin 1949).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from trackroller.contact.common import Elastic, Ellipse, Resultants
+from trackroller.contact.kalker_grid import unit_cells
+from trackroller.contact.kalker_influence import influence
+from trackroller.contact.kalker_newton import Problem, newton
+
+
+@dataclass(frozen=True)
+class ShiftSolution:
+    """resultants [N, N, N mm], arrays (1,); traction over mu p_max (2, ny, nx); stick (ny, nx) and its area share [-];
+
+    residual : of the friction law, over mu p_max
+    """
+
+    resultants: Resultants
+    traction: np.ndarray
+    stick: np.ndarray
+    stick_fraction: float
+    residual: float
+
+
+def shift_patch(
+    ellipse: Ellipse, lateral: float, rolling: float, turn: float, friction: float, elastic: Elastic,
+    elements: int = 40, tolerance: float = 1e-8,
+) -> ShiftSolution:  # fmt: skip
+    """Tractions of one patch after a rigid shift from rest under constant pressure.
+
+    Parameters
+    ----------
+    ellipse : one Hertzian patch, arrays (1,)
+    lateral, rolling : shift of the roller against the guide along x_C and y_C [mm]
+    turn : rotation about z_C [rad]
+    friction : coefficient mu > 0 [-]
+    elastic : combined constants, scalars or arrays (1,); the coupling constant is not used
+    elements : along each axis
+
+    Validity: one step from rest, so that slip never turns on its way; exact for shifts in one direction.
+    """
+    a, b, p, g, nu = (float(np.ravel(v)[0]) for v in (
+        ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure, elastic.shear_modulus,
+        elastic.poisson_ratio))  # fmt: skip
+    height, share = unit_cells(elements, elements)
+    unit = (2.0 * np.arange(elements) + 1.0) / elements - 1.0
+    x, y = a * unit[None, :], b * unit[:, None]
+    c = math.sqrt(a * b)
+    functions = influence(2.0 * a / (elements * c), 2.0 * b / (elements * c), nu, elements, elements)
+    rigid = ((lateral - turn * y) + 1j * (rolling + turn * x)) * g / (friction * p * c)
+    problem = Problem(functions, rigid, height, 0.0, np.zeros(1), np.ones(1), rolling=False)
+    traction, slip, bound, residual, _, _ = newton(problem, np.zeros_like(rigid), tolerance, 60, 80)
+    scale = friction * p * 4.0 * a * b / elements**2
+    sums = np.array([traction.real.sum(), traction.imag.sum(), (x * traction.imag - y * traction.real).sum()]) * scale
+    stick = (height > 0) & (np.abs(traction - slip / functions.own_displacement) <= bound)
+    fraction = float(share[stick].sum() / share.sum())
+    field = np.stack([traction.real, traction.imag])
+    return ShiftSolution(Resultants(*sums[:, None]), field, stick, fraction, residual)
