@@ -91,3 +91,17 @@ def test_gridded_tractions_give_the_stress_of_the_formula():
     exact = find_peaks(rows, nu, options.settings.peak).stress
     gridded = find_peaks(rows, nu, options.settings.peak, np.ascontiguousarray(share)).stress
     np.testing.assert_allclose(gridded, exact, rtol=5e-3)
+
+
+@pytest.mark.parametrize("model", ["fastsim", "kalker"])
+def test_no_number_depends_on_its_neighbours(model):
+    """Cases solved together and each alone agree to the last bit, friction laws included."""
+    falling = {"kind": "linear", "speed": 40.0, "lowest": 0.5}
+    cases = [tr.Case(), tr.Case(motor_force=0, friction_coefficient=0.1, friction_law=falling), tr.Case(axial_force=5),
+             tr.Case(friction_law=falling, motor_force=-10), tr.Case(contact_angle=40)]  # fmt: skip
+    names = ("lateral_force", "spin_moment", "rolling_radius_shift", "friction_energy_per_distance", "residual")
+    together = tr.solve(cases, outputs=("forces", "friction_work"), contact_model=model)
+    for i, case in enumerate(cases):
+        alone = tr.solve(case, outputs=("forces", "friction_work"), contact_model=model)
+        for name in names:
+            assert np.array_equal(together[name][i].values, alone[name].values), (name, i)
