@@ -173,3 +173,14 @@ def test_files_are_read_into_points(tmp_path, monkeypatch):
     (tmp_path / "bad.csv").write_text("1 2\n2 x\n", encoding="utf-8")
     with pytest.raises(tr.InputError, match="line 2"):
         tr.Case(guide_profile={"file": "bad.csv"})
+
+
+def test_steep_flanks_take_no_part_and_interlocking_shapes_are_refused():
+    """A groove that closes on the guide far from the contact does not carry; one that closes on it beside it cannot."""
+    mixed = gap(text({"parabola": 6}), text({"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.3}]}, "roller_profile"),
+                6.0, -7.0, ALPHA, 16.55, 220.0, 1)  # fmt: skip
+    assert mixed.limits[1] < 3.0
+    both = gap("", text({"parabola": -7}, "roller_profile"), 6.0, -7.0, ALPHA, 16.55, 220.0, 1)
+    assert both.guide.parabolic and both.roller.parabolic
+    with pytest.raises(tr.InputError, match=r"roller_profile.*overlap"):
+        gap("", text({"arcs": [{"radius": -7, "to": 0.2}, {"radius": -4}]}), 6.0, -7.0, ALPHA, 16.55, 220.0, 1)

@@ -35,6 +35,7 @@ FORMS = ("arc", "parabola", "arcs", "points", "file")
 KEYS = (*FORMS, "frame", "smooth", "edge", "width")
 EDGE_KEYS = ("inner", "outer", "chamfer")
 FRAMES = ("section", "contact")
+INTERLOCK = 0.01  # of the guide's profile radius, by which shapes may overlap beside the nominal contact
 FEWEST, MOST = 5, 20_000  # points of a drawn cross-section
 
 
@@ -287,10 +288,24 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
 
 def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alpha: float, rolling_radius: float,
         guide_curve_radius: float, side: int) -> Gap:  # fmt: skip
-    """The gap beside contact `side` of profiles in canonical JSON ('': the circle); lengths mm, angle rad."""
-    return Gap(cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
-               cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
-               alpha, rolling_radius, guide_curve_radius)  # fmt: skip
+    """The gap beside contact `side` of profiles in canonical JSON ('': the circle); lengths mm, angle rad.
+
+    Beside a parabola the other body, if not drawn, is a parabola too. Raises `InputError` for shapes that interlock.
+    """
+    if '"parabola"' in guide + roller:
+        guide = guide or json.dumps({"parabola": guide_radius})
+        roller = roller or json.dumps({"parabola": roller_radius})
+    found = Gap(cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
+                cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
+                alpha, rolling_radius, guide_curve_radius)  # fmt: skip
+    x = np.linspace(*found.limits, 801)
+    lateral = found.lateral(x)
+    if lateral.min() < -INTERLOCK * guide_radius:
+        raise InputError("roller_profile" if roller else "guide_profile",
+                         f"shapes that overlap by {-lateral.min():.3g} mm, {x[np.argmin(lateral)]:.3g} mm outward",
+                         "shapes that touch at the nominal contact, give or take what load and wear can close",
+                         "Compare both profiles (and the radii of those not drawn) beside that point.")  # fmt: skip
+    return found
 
 
 def treats_sides_alike(text: str) -> bool:

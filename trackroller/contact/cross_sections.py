@@ -12,10 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-STEEPEST = 0.999  # sine of the inclination to the tangent plane up to which a cross-section counts
+STEEPEST = 0.999  # sine of the inclination to the tangent plane up to which arcs are followed
+# Tangent of 25 degrees: ASSUME what is more inclined to the contact plane takes no part in this contact; a half-space
+# with one plane of contact could not tell what happens there.
+CONTACT_SLOPE = 0.4663
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -37,10 +41,18 @@ class CrossSection:
     chamfer: float = 0.0
     parabolic: bool = False
 
-    @property
+    @cached_property
     def limits(self) -> tuple[float, float]:
-        """Where there is no material any more, the rounding included [mm]."""
-        return self.inner - STEEPEST * self.chamfer, self.outer + STEEPEST * self.chamfer
+        """Where there is no material any more, the rounding included, or it is too steep to touch [mm]."""
+        return -self._reach(-1.0, -self.inner), self._reach(1.0, self.outer)
+
+    def _reach(self, sign: float, end: float) -> float:
+        far = min(end, 1e3)
+        # closely near the contact, however far the material goes
+        u = far * np.concatenate([np.geomspace(1e-4, 1.0, 400), np.linspace(0.0, 1.0, 400)[1:]])
+        u.sort()
+        steep = np.flatnonzero(np.abs(self.slope(sign * u)) > CONTACT_SLOPE)
+        return float(u[steep[0]]) if steep.size else end + STEEPEST * self.chamfer
 
     def full_height(self, u: np.ndarray) -> np.ndarray:
         """Height with the rounded edges, shape of u."""
@@ -174,7 +186,7 @@ class Gap:
     rolling_radius: float
     guide_curve_radius: float
 
-    @property
+    @cached_property
     def limits(self) -> tuple[float, float]:
         """Where either body ends [mm]."""
         (a, b), (c, d) = self.guide.limits, self.roller.limits

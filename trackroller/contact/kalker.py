@@ -63,10 +63,17 @@ class Creepage:
     slip: Slip | None = None
 
     @classmethod
-    def of_slip(cls, slip: Slip, profile: bool = False) -> Creepage:
-        """From the kinematics of the roller; with the circular guide profile if `profile`."""
-        longitudinal = np.asarray(slip.longitudinal, float)
-        return cls(longitudinal, np.zeros_like(longitudinal), np.asarray(slip.spin, float), slip if profile else None)
+    def of_slip(cls, slip: Slip, profile: bool = False, curve_radius: np.ndarray | None = None) -> Creepage:
+        """From the kinematics of the roller.
+
+        profile : rolling slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x
+        curve_radius : of the guide [mm], (n,), signed, inf if straight: the roller turns with the curve, so that the
+            spin is -sin(alpha)/r_A (1 + r_A/(r_Curve + r_C,G cos(alpha))); not given: as on a straight guide
+        """
+        longitudinal, spin = np.asarray(slip.longitudinal, float), np.asarray(slip.spin, float)
+        if curve_radius is not None:
+            spin = spin * (1.0 + slip.rolling_radius / (curve_radius + slip.guide_profile_radius * slip.cosine))
+        return cls(longitudinal, np.zeros_like(longitudinal), spin, slip if profile else None)
 
     def take(self, rows) -> Creepage:
         slip = None if self.slip is None else self.slip.take(rows)
@@ -80,7 +87,7 @@ class Creepage:
         rest = np.empty_like(x)
         for i in range(x.shape[0]):
             rest[i] = [rolling_slip(v, s.sine[i], s.cosine[i], s.guide_profile_radius[i], s.shift[i]) for v in x[i]]
-        return rest / s.rolling_radius[column]
+        return rest / s.rolling_radius[column] + (self.spin - s.spin)[:, None] * x
 
 
 @dataclass(frozen=True)
@@ -121,9 +128,8 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel
     n = friction.size
     height, share = cells(ellipse, elements)
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    centre = ellipse.centre if isinstance(ellipse, GridPatch) else np.zeros(n)
     scale = friction * ellipse.max_pressure
-    x = centre[:, None] + a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
+    x = _centre(ellipse)[:, None] + a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
     law = settings.law or constant()
     with np.errstate(divide="ignore", invalid="ignore"):
         coupling = elastic.coupling / friction
@@ -138,8 +144,12 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel
         arguments: Any = (*(v[rows] for v in given), own, share_own, law.speed, law.factor, control, traction[rows],
                           slip[rows], stick[rows], report[rows])  # fmt: skip
         batch.solve_batch(*arguments)
-    report[:, batch.M_R] += centre * report[:, batch.F_A]
     return slip, stick, report
+
+
+def _centre(ellipse: Ellipse) -> np.ndarray:
+    """x_C of the middle of the patches [mm], (n,)."""
+    return ellipse.centre if isinstance(ellipse, GridPatch) else np.zeros(len(ellipse.semi_axis_lateral))
 
 
 def _by_cells(height: np.ndarray, share: np.ndarray, n: int):
@@ -173,6 +183,8 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         weights = np.stack([weight, np.full(n, DRIVING_WEIGHT), weight], axis=1)
         value = value + weights * (value - coarse[:, :3])
         work = work + weight * (work - coarse[:, batch.WORK])
+    # the moment is about the nominal point, wherever the patch lies
+    value = np.stack([value[:, 0], value[:, 1], value[:, 2] + _centre(ellipse) * value[:, 1]], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         energy = np.where(fine[:, batch.WORK] != 0, fine[:, batch.POWER] / fine[:, batch.WORK] - 1.0, 0.0)
     good = fine[:, batch.RESIDUAL] <= settings.tolerance
