@@ -18,14 +18,17 @@ class KalkerLaw:
     elastic : combined constants of n rollers, arrays (n,)
     settings : discretisation of the fine law; the coarse one has half the elements and no extrapolation
     travel_speed : of n rollers [mm/s], (n,); that of the settings if not given
+    curve_radius : of the guide [mm], (n,), to count its turning in the spin, see `Creepage.of_slip`
 
     Contact 2 of a roller is told by its negative contact angle. Starts come from a patch's own past only, so that no
     number depends on what else is solved.
     """
 
-    def __init__(self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None) -> None:
+    def __init__(self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None,
+                 curve_radius=None) -> None:  # fmt: skip
         self.elastic, self.settings = elastic, settings or KalkerSettings()
         self.travel = None if travel_speed is None else np.asarray(travel_speed, float)
+        self.curve = None if curve_radius is None else np.asarray(curve_radius, float)
         self._starts: dict[tuple[int, int, bool], np.ndarray] = {}
         self._states: dict[tuple[int, int], tuple[float, bool]] = {}
         self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
@@ -40,7 +43,7 @@ class KalkerLaw:
             settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
         keys = [(int(row), int(sine < 0), fine) for row, sine in zip(rows, slip.sine, strict=True)]
         known = np.array([key in self._starts for key in keys], bool)
-        creep = Creepage.of_slip(slip, settings.profile_slip)
+        creep = Creepage.of_slip(slip, settings.profile_slip, None if self.curve is None else self.curve[rows])
         friction = np.broadcast_to(np.asarray(friction, float), len(rows))
 
         def part(pick, start):
