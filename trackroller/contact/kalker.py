@@ -283,12 +283,13 @@ def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> Surf
     """As `to_tractions`: means over the elements of a patch whose pressure was solved, perhaps with more of them."""
     elements = solution.traction.shape[-1]
     share = solution.traction / np.maximum(patch.heights(elements), 1e-300)[:, None]  # over mu p
-    share, slip = (np.repeat(v, patch.shape[1] // elements, axis=3) for v in (share, solution.slip))
+    share, slip, stick = (np.repeat(v, patch.shape[1] // elements, axis=-1)
+                          for v in (share, solution.slip, solution.stick))  # fmt: skip
     bound, loaded = friction[:, None, None] * patch.pressure, patch.pressure > 0
     shear = np.where(loaded[:, None], share * bound[:, None], 0.0)
     slip = np.where(loaded[:, None], slip, 0.0)
-    stick = loaded & (np.hypot(share[:, 0], share[:, 1]) < 1.0 - 1e-9) & (bound > 0)
-    return SurfaceTractions(patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], stick)
+    return SurfaceTractions(patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1],
+                            loaded & stick)  # fmt: skip
 
 
 def tractions(
