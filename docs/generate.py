@@ -1,10 +1,11 @@
-"""Writes docs/parameters.md and the presets in docs/accuracy.md from the tables of the package.
+"""Writes docs/parameters.md, docs/tradeoff.md and the presets in docs/accuracy.md from tables and measured data.
 
 `python docs/generate.py` writes; with `--check` it only compares and ends with 1 if a page is not up to date.
 """
 
 from __future__ import annotations
 
+import json
 import math
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 from trackroller import parameters as p
 from trackroller.accuracy import PRESETS
 from trackroller.dataset import VALIDITY_BITS, VARIABLES
+from trackroller.study import tradeoff_page
 
 FOLDER = Path(__file__).parent
 START, END = "<!-- presets: made by docs/generate.py -->\n", "<!-- end of presets -->"
@@ -115,12 +117,21 @@ def pages() -> dict[Path, str]:
     """Every page that is made, whole or in part, and its text."""
     accuracy = FOLDER / "accuracy.md"
     before, _, rest = accuracy.read_text(encoding="utf-8").partition(START)
-    return {FOLDER / "parameters.md": render(), accuracy: f"{before}{START}{presets()}{END}{rest.partition(END)[2]}"}
+    found = {FOLDER / "parameters.md": render(), accuracy: f"{before}{START}{presets()}{END}{rest.partition(END)[2]}"}
+    return found | {FOLDER / "tradeoff.md": tradeoff()}
+
+
+def tradeoff() -> str:
+    """The measured trade-off, from the data that docs/adopt_tradeoff.py took over."""
+    summary, figures = (json.loads((FOLDER / "data" / name).read_text(encoding="utf-8"))
+                        for name in ("tradeoff.json", "tradeoff_figures.json"))  # fmt: skip
+    return tradeoff_page.markdown(tradeoff_page.blocks(summary, figures))
 
 
 def main(check: bool) -> int:
     """Write the pages, or tell which are not up to date."""
-    stale = [page for page, text in pages().items() if page.read_text(encoding="utf-8") != text]
+    stale = [page for page, text in pages().items()
+             if not page.is_file() or page.read_text(encoding="utf-8") != text]  # fmt: skip
     for page in stale:
         if check:
             print(f"{page} is not up to date", file=sys.stderr)

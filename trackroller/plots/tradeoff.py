@@ -25,9 +25,9 @@ PARETO = {
     "normal_force": ("normal force", "of F_N"),
     "friction_force": ("friction force", "of μ F_N"),
     "spin_moment": ("spin moment", "of μ F_N √(ab)"),
-    "friction_energy": ("friction energy", "of itself"),
-    "peak_stress": ("peak stress", "of itself"),
-    "life": ("life", "of itself"),
+    "friction_energy": ("friction energy", "–"),
+    "peak_stress": ("peak stress", "–"),
+    "life": ("life", "–"),
 }
 # (stage, model, method) -> legend, in the order of the legend
 SERIES = {
@@ -88,7 +88,7 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
     _presets(axes, records, summary["presets"], quantity)
     _names(axes, taken)
     axes.set_xlabel(style.with_unit("CPU time a case", "ms"))
-    axes.set_ylabel(f"Relative error of the {words} [– {unit}]")
+    axes.set_ylabel(f"Relative error of the {words} [{unit}]")
     axes.margins(x=0.12, y=0.06)
     style.log_ticks(axes.xaxis, *axes.get_xlim())
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)

@@ -87,12 +87,10 @@ def tolerance_bound(errors: np.ndarray, share: float = 0.99, confidence: float =
 def observed_order(points: np.ndarray, errors: np.ndarray) -> tuple[float, float]:
     """Slope of log error over log 1/points by least squares, and R^2; NaN with fewer than three usable points.
 
-    Errors at the floor of rounding (below 1e-13), or below three times the smallest, are left out.
+    Errors at the floor of rounding (below 1e-12) are left out.
     """
     x, y = np.asarray(points, float), np.asarray(errors, float)
-    good = np.isfinite(y) & (y > 1e-13) & np.isfinite(x)
-    if good.sum() >= 4:
-        good &= y > 3.0 * np.min(y[good])
+    good = np.isfinite(y) & (y > 1e-12) & np.isfinite(x)
     if good.sum() < 3:
         return float("nan"), float("nan")
     u, v = np.log(x[good]), np.log(y[good])

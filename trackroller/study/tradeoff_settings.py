@@ -21,8 +21,8 @@ EFFORTS = {1: (3, 1), 2: (5, 3), 3: (8, 6), 4: (12, 8), 5: (16, 12), 6: (24, 16)
 SEARCHES = (("a", 1, 0.05), ("a", 2, 0.05), ("a", 3, 0.015), ("b", 1, 0.05), ("b", 2, 0.015), ("b", 3, 0.015),
             ("b", 4, 0.015), ("c", 2, 0.015), ("c", 3, 0.015), ("c", 3, 0.005), ("c", 4, 0.005), ("c", 5, 0.002),
             ("d", 3, 0.005), ("d", 4, 0.002), ("d", 5, 0.001), ("d", 6, 0.001), ("e", 5, 0.0005))  # fmt: skip
-ELEMENTS = {"kalker": (8, 12, 16, 20, 28, 40), "fastsim": (10, 14, 20, 28, 40, 56, 80, 112)}
-REFERENCE_ELEMENTS = {"kalker": 64, "fastsim": 320}
+ELEMENTS = {"kalker": (8, 12, 16, 20, 28, 40, 56), "fastsim": (10, 14, 20, 28, 40, 56, 80)}
+REFERENCE_ELEMENTS = {"kalker": 80, "fastsim": 160}
 FINE = PeakSettings(12, 16, 24, 48, 16, 12, 0.001, 0.0)
 # A search only ever finds too little, so the largest of several fine ones is the best known.
 REFERENCE_SEARCHES = (PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0), PeakSettings(16, 24, 32, 96, 24, 20, 5e-4, 0.0),

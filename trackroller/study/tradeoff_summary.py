@@ -51,8 +51,9 @@ def presets(chosen: dict[str, list[Record]]) -> dict[str, Record]:
     if not all(chosen.values()):
         return {}
     measured = read_ladders(chosen)
-    return {name: dict(zip(("forces", "peak", "elements"), (dict(r.settings) for r in preset_rungs(name, measured)),
-                           strict=True)) for name in ACCURACIES}  # fmt: skip
+    return {name: {part: dict(rung.settings) for part, rung in zip(("forces", "peak", "elements"),
+                                                                   preset_rungs(name, measured), strict=True) if rung}
+            for name in ACCURACIES}  # fmt: skip
 
 
 def _plain(value: Any) -> Any:
