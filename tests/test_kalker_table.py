@@ -22,7 +22,7 @@ def test_random_patches_agree_with_the_exact_solver_within_the_stated_error():
     stated = table.stored().errors
     assert np.median(like) < 2 * stated["like_force_median"] and like.max() < 2 * stated["like_force_worst"]
     assert np.median(unlike) < 2 * stated["unlike_force_median"] and unlike.max() < 2 * stated["unlike_force_worst"]
-    assert stated["like_force_p99"] < 0.02
+    assert stated["like_force_p99"] < 0.03
 
 
 def test_small_creepages_give_the_linear_theory_exactly():

@@ -311,8 +311,11 @@ def peak_stress(results: Results, options: Options) -> None:
         peak, scale, side = stages_grid.peaks(results, asked, _poisson(results, options), options), 1.0, 1.0
     else:
         peak, scale, side = _ellipse_peaks(results, options, asked)
+    error = peak.error
+    if isinstance(results.scene.model, TableModel):
+        error = error + results.scene.model.peak_error(results.friction[asked])[:, None]
     found = {"peak_stress": (peak.stress * scale, 1.0), "peak_x": (side * peak.x, -1.0), "peak_y": (peak.y, 1.0),
-             "peak_z": (peak.z, 1.0), "error_estimate": (peak.error, 1.0)}  # fmt: skip
+             "peak_z": (peak.z, 1.0), "error_estimate": (error, 1.0)}  # fmt: skip
     for name, (value, sign) in found.items():
         full = np.full((2 * results.scene.n, 2), np.nan)
         full[good] = mirror.spread(good, value, sign)
