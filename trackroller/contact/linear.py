@@ -2,7 +2,8 @@
 
 Values come from a stored table of `LinearTheory` (degree 20, good to 1e-5 .. 1e-4), interpolated by Chebyshev
 polynomials in the logarithm of the axis ratio and in Poisson's ratio. Kalker's printed table (1990, table E.3)
-agrees to its digits for axis ratios up to about 3 and differs by up to 1.2 % at 5 and 10, see tests/test_linear.py.
+agrees to its digits for axis ratios up to about 3 and is up to 1.2 % low at 5 and 10, where rectangular elements (80
+and 160 along each axis, extrapolated) agree with the polynomials to 0.2 %: tests/test_kalker_linear.py.
 """
 
 from __future__ import annotations
