@@ -172,22 +172,27 @@ def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]
         ladder = contact_model if contact_model in ladders() else "kalker"
         rung = _cheapest(ladders()[ladder], (1.0 - PEAK_SHARE) * tolerance if peaks else tolerance, wanted)
         if rung is None:
-            raise _beyond(tolerance, contact_model, ladder, wanted, 1.0 - PEAK_SHARE if peaks else 1.0)
+            shares = {ladder: 1.0 - PEAK_SHARE, "peak": PEAK_SHARE} if peaks else {ladder: 1.0}
+            raise _beyond(tolerance, contact_model, shares, wanted)
         elements = rung.settings["elements"]
     share = FORCE_SHARE if peaks and not rolling else 1.0
     nodes, searches = ladders()["forces"], ladders()["peak"]
     forces = _cheapest(nodes, share * tolerance, wanted) or _cheapest(nodes, tolerance, wanted)
     peak = _cheapest(searches, PEAK_SHARE * tolerance if rolling else tolerance, ("peak_stress",) if peaks else ())
-    if forces is None and not rolling:
-        raise _beyond(tolerance, contact_model, "forces", wanted, 1.0)
-    if peak is None:
-        raise _beyond(tolerance, contact_model, "peak", wanted, 1.0)
+    if peak is None or (forces is None and not rolling):
+        shares = {"peak": PEAK_SHARE} if rolling else {"forces": 1.0, **({"peak": 1.0} if peaks else {})}
+        raise _beyond(tolerance, contact_model, shares, wanted)
     return _composed(f"{tolerance:g}", tolerance, forces or _finest(nodes, FORCE_QUANTITIES), peak, elements)
 
 
-def _beyond(tolerance: float, model: str, ladder: str, wanted: Iterable[str], share: float) -> InputError:
-    rung = _finest(ladders()[ladder], [q for q in wanted if q in ladders()[ladder][0].errors])
-    bounds = {q: rung.errors[q].bound / share for q in wanted if q in rung.errors}
+def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: Iterable[str]) -> InputError:
+    """The refusal, with the tolerance that the finest rungs of the ladders reach with their shares of it."""
+    bounds: dict[str, float] = {}
+    for ladder, share in shares.items():
+        known = [q for q in wanted if q in ladders()[ladder][0].errors]
+        rung = _finest(ladders()[ladder], known)
+        for q in known:
+            bounds[q] = max(bounds.get(q, 0.0), rung.errors[q].bound / share)
     worst = max(bounds, key=lambda q: bounds[q])
     reached = rounded_up(bounds[worst])
     return InputError("accuracy", tolerance, f"the finest tolerance that {model} reaches here is {reached:g}, by its "

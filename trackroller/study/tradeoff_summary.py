@@ -118,7 +118,9 @@ def orders(records: list[Record]) -> list[Record]:
 def ladder(records: list[Record], stage: str, model: str) -> list[Record]:
     """The settings that no other beats in cost and in what 99 % of the cases keep; at most ten, evenly spread."""
     name = LADDERS[stage, model]
-    found = [r for r in records if (r["stage"], r["model"]) == (stage, model) and r["ladder"]]
+    judged_by = {q for group in _JUDGED_BY[name] for q in group}
+    found = [r for r in records if (r["stage"], r["model"]) == (stage, model) and r["ladder"]
+             and judged_by <= set(r["errors"])]  # fmt: skip
     if not found:
         return []
     judged = [[r["cost"], *(max(levels(r, q)[3] for q in group) for group in _JUDGED_BY[name])] for r in found]
