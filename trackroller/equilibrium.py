@@ -375,7 +375,8 @@ def _follow_friction(loads, law, rows, low, high):
             grip = np.where(fine, np.max(np.abs(f[0] / n_new), axis=0) / tangent, grip)
     best = np.where(lost, np.inf, best)
     # a branch that ends where friction nearly carries the lateral load has shed a contact
-    lifted |= np.where(lost, (grip > 0.5) & (loads.axial_force[rows] != 0), ~roller.wedged(normal, f))
+    light = np.any(normal < 0.2 * roller.load, axis=0)
+    lifted |= np.where(lost, ((grip > 0.5) | light) & (loads.axial_force[rows] != 0), ~roller.wedged(normal, f))
     return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing
 
 

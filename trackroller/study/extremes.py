@@ -33,8 +33,9 @@ class Scene:
     """A series of cases along `quantity` (values in `unit`) and the claims made on it.
 
     `rising` and `falling` name results that may only rise or fall along the series; `pairs` says that cases come in
-    pairs just below and just above a border; `limit` that the last case is what the one before tends to. `models` are run; those in `reach` may leave cases failed that lie
-    beyond their reach (too slender a patch for their coefficients or grid).
+    pairs just below and just above a border; `limit` that the last case is what the one before tends to. `models` are
+    run; those in `reach` may leave cases failed that lie beyond their reach (patches too slender for their
+    coefficients or grid).
     """
 
     name: str
@@ -167,7 +168,8 @@ def _borders() -> tuple[Scene, ...]:
         _series("slip limit, braking", "motor force just below and above what friction can brake", "share of limit",
                 "1", _border(1.0), _brake, pairs=True),
         _series("lift-off without friction", "axial force just below and above lift-off", "share of limit", "1",
-                _border(1.0), lambda v: {"axial_force": v * lift, "friction_coefficient": 0.0, "motor_force": 0.0},
+                _border(1.0, (1e-3, 1e-5, 1e-7)), lambda v: {"axial_force": v * lift, "friction_coefficient":
+                0.0, "motor_force": 0.0},
                 pairs=True),
         _series("self-locking", "friction across mu = tan(alpha), axial force small", "mu/tan(alpha)", "1",
                 (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 3.0),

@@ -118,7 +118,8 @@ def pole_positions() -> KernelError:
     scale = 0.3 * ellipse.normal_force
     gaps = [np.abs(getattr(coarse, f) - getattr(fine, f)) / scale
             for f in ("lateral_force", "driving_force", "spin_moment")]  # fmt: skip
-    return KernelError("sliding integrals, 12 points", "x_spin/a", values, tuple(map(float, np.max(gaps, axis=0))), 1e-5)
+    worst = tuple(map(float, np.max(gaps, axis=0)))
+    return KernelError("sliding integrals, 12 points", "x_spin/a", values, worst, 1e-5)
 
 
 @_digits

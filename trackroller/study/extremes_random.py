@@ -42,7 +42,8 @@ def _draw(rng: np.random.Generator) -> dict[str, Any]:
 
 def random_extremes(count: int, seed: int) -> list[dict[str, Any]]:
     """`count` valid cases; those whose surfaces conform or interlock are drawn anew."""
-    rng, found = np.random.default_rng(seed), []
+    rng = np.random.default_rng(seed)
+    found: list[dict[str, Any]] = []
     while len(found) < count:
         case = _draw(rng)
         try:

@@ -1,0 +1,53 @@
+# A catalogue of edge scenes, run and drawn as a map: snakemake --cores all extremes
+EXTREMES = f"{config.get('results', 'results')}/extremes"
+
+
+rule extremes:
+    input:
+        f"{EXTREMES}/extremes.json",
+        f"{EXTREMES}/extremes.html",
+
+
+rule extremes_run:
+    input:
+        code=sources(
+            "solver.py",
+            "stages.py",
+            "equilibrium.py",
+            "contact",
+            "halfspace",
+            "study/extremes.py",
+            "study/extremes_checks.py",
+            "study/extremes_kernels.py",
+            "study/extremes_random.py",
+            "study/extremes_run.py",
+        ),
+    output:
+        f"{EXTREMES}/extremes.json",
+    log:
+        f"{EXTREMES}/logs/run.log",
+    conda:
+        "../envs/trackroller.yaml"
+    threads: workflow.cores
+    script:
+        "../scripts/extremes_run.py"
+
+
+rule extremes_show:
+    input:
+        record=f"{EXTREMES}/extremes.json",
+        code=sources(
+            "plots/extremes.py",
+            "plots/style.py",
+            "study/extremes_page.py",
+            "templates",
+        ),
+    output:
+        figures=directory(f"{EXTREMES}/figures"),
+        page=f"{EXTREMES}/extremes.html",
+    log:
+        f"{EXTREMES}/logs/show.log",
+    conda:
+        "../envs/trackroller.yaml"
+    script:
+        "../scripts/extremes_show.py"

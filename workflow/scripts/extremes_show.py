@@ -1,0 +1,15 @@
+"""Draw the extremes and write their page."""
+
+from pathlib import Path
+
+from trackroller.plots.extremes import draw_extremes
+from trackroller.study.extremes_page import html, read
+from trackroller.study.workflow import log_to
+
+log_to(snakemake.log[0])
+page = Path(snakemake.output.page)
+figures = Path(snakemake.output.figures)
+record, _ = read(page.parent, figures=False)
+draw_extremes(record, figures)
+record, infos = read(page.parent)
+page.write_text(html(record, infos, figures), encoding="utf-8")
