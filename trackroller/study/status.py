@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -88,8 +88,13 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     status.by_reason = dict(Counter(reasons.get(cases[i].decode(), "unknown") for i in failed).most_common())
     for name, factor in sampled.factors.items():
         if factor.discrete:
-            counts = Counter(label(sampled.columns[name][i]) for i in failed)
+            counts = Counter(_told(sampled.columns[name][i]) for i in failed)
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
     speed = measured_rate(folder.root / "store") or rate(study.options)
     status.seconds_left = status.missing / speed
     return status
+
+
+def _told(level: Any) -> str:
+    """A level with all its digits, so that neighbours are told apart."""
+    return f"{level:.10g}" if isinstance(level, float) else label(level)
