@@ -109,7 +109,7 @@ def solve(
     stress_bodies : 'both', or 'published' (one body with the mean Poisson's ratio)
     life_rule : 'elementary' | 'haibach' | 'unlimited' below the fatigue limit
     normal : 'hertz' pressures, or 'halfspace': patch and pressure solved on a grid, for drawn profiles too
-    contact_tolerance : relative tolerance of the contact forces for 'auto'
+    contact_tolerance : for `auto`: of normal forces and peak stress, and of friction forces over the normal force
     stop_if : a condition such as 'peak_stress > R_m' on which the search for peak stresses is not worth while; such
         cases are marked `stopped` and have no peak stress and life (see `trackroller.stop`)
     shortcuts : spare what symmetry and repetition make superfluous; numbers are the same to rounding
