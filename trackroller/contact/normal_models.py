@@ -16,7 +16,7 @@ from trackroller.contact.cross_sections import Gap
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.normal import TOLERANCE
 from trackroller.contact.normal_family import Family
-from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.normal_patch import GridPatch, rim_means
 from trackroller.errors import InputError
 
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
@@ -63,7 +63,7 @@ class Patches:
                 continue
             if fine:
                 node = family.at(load[i] / modulus)
-                box, shares, rest = node.box, node.shares, (*node.scalars, node.reaches, node.residual)
+                box, shares, rest = node.box, rim_means(node.shares), (*node.scalars, node.reaches, node.residual)
             else:
                 box, shares = family.between(load[i] / modulus)
                 rest = (math.nan, shares.max() / _cell(box, shares) * load[i] / modulus, math.nan, False, math.nan)

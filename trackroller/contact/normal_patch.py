@@ -66,3 +66,39 @@ class GridPatch(Ellipse):
 
 def _centres(elements: int) -> np.ndarray:
     return (2.0 * np.arange(elements) + 1.0) / elements - 1.0
+
+
+PARTS = 4  # of an element's side, over which the pressure near the rim is averaged
+
+
+def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
+    """Values (ny, nx) continued by one ring: the line through the two nearest `known`, or just their mean."""
+    total, count = np.zeros_like(values), np.zeros_like(values)
+    for axis in (0, 1):
+        for step in (1, -1):
+            near, next_one = np.roll(values, step, axis), np.roll(values, 2 * step, axis)
+            ring = ~known & np.roll(known, step, axis)
+            total[ring] += (2.0 * near - next_one if onward else near)[ring]
+            count[ring] += 1.0
+    return np.where(count > 0, total / np.maximum(count, 1.0), values)
+
+
+def rim_means(pressure: np.ndarray) -> np.ndarray:
+    """Element means (ny, nx) of a solved pressure whose rim runs through elements; the sum stays.
+
+    Collocation loads an element or does not. Near the rim p^2 is linear, and in Hertz's theory quadratic, so it
+    is continued outward and interpolated, and its root averaged. Tractions in stick feel the difference: the rolling
+    resultants converge as those on an ellipse only with it.
+    """
+    ny, nx = pressure.shape
+    known = np.pad(pressure > 0, 1)
+    square = _spread(np.pad(pressure**2, 1), known, onward=True)
+    ring = _spread(known.astype(float), known, onward=False) > 0
+    square = _spread(square, ring, onward=False)
+    t = (np.arange(PARTS) + 0.5) / PARTS - 0.5
+    for axis in (0, 1):
+        v = np.moveaxis(square, axis, 0)
+        pieces = [v[1:-1] * (1 - abs(x)) + (v[2:] if x > 0 else v[:-2]) * abs(x) for x in t]
+        square = np.moveaxis(np.stack(pieces, axis=1).reshape(-1, v.shape[1]), 0, axis)
+    means = np.sqrt(np.maximum(square, 0.0)).reshape(ny, PARTS, nx, PARTS).mean(axis=(1, 3))
+    return means * (pressure.sum() / means.sum())
