@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numba import njit
@@ -231,6 +232,10 @@ def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: E
     return a, b, mu * p, np.stack([xi, eta * l_x / l_2, phi], axis=1), flexibility
 
 
+def _rows_of(function, rest: tuple, first: int, last: int) -> None:
+    function((first, last), *rest)
+
+
 def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
     given = settings.travel_speed if travel_speed is None else travel_speed
     return np.array(np.broadcast_to(np.asarray(given, float), n), order="C")
@@ -263,7 +268,7 @@ def solve_patch(
     for k, steps in enumerate((settings.steps, 2 * settings.steps)):
         rest = (a, b, scale, rigid, flexibility, travel, steps, nodes, weights, settings.parabolic, law.speed,
                 law.factor, totals[k])  # fmt: skip
-        share_rows(lambda first, last, rest=rest: _all_patches((first, last), *rest), a.size, 8)
+        share_rows(partial(_rows_of, _all_patches, rest), a.size, 8)
     force = 2.0 / 3.0 * np.pi * a * b * scale
     lack = totals[1, :, 5] / np.where(force > 0, force, 1.0)
     best = 2.0 * totals[1] - totals[0]  # the steps are of first order
@@ -289,7 +294,7 @@ def tractions(
     shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
     rest = (a, b, scale, rigid, flexibility, _travel(travel_speed, settings, a.size), points, settings.parabolic,
             law.speed, law.factor, shear, moved)  # fmt: skip
-    share_rows(lambda first, last: _all_fields((first, last), *rest), a.size, 4)
+    share_rows(partial(_rows_of, _all_fields, rest), a.size, 4)
     u = (2.0 * np.arange(points) + 1.0) / points - 1.0
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - u[:, None] ** 2, 0.0))
     pressure = np.broadcast_to(ellipse.max_pressure, a.shape)[:, None, None] * root
