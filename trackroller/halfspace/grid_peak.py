@@ -27,7 +27,7 @@ WORTH = 0.9  # of the highest seed, from which others climb too
 # of twice the size is added; changes above SMOOTH tell of a singular pressure, where nothing is.
 SMOOTH = 0.05
 ERROR_SHARE = 0.3  # of that change, left as the estimated error; all of it above SMOOTH
-ERROR_FLOOR = 5e-4
+ERROR_FLOOR = 2e-3  # what the solved pressure itself may be off by
 
 
 @dataclass(frozen=True)
