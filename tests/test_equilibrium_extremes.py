@@ -67,3 +67,10 @@ def test_fastsim_draws_patches_too_slender_for_it_in_full_slip_and_fails_those_t
     assert ds.regime.values.tolist() == [FAILED, FULL_SLIP]
     assert np.isfinite(ds.shear_rolling.values[1]).all() and np.isnan(ds.slip_rolling.values[1]).all()
     assert ds.patch_x.values[1].max() < ds.semi_axis_lateral.values[1].max()
+
+
+def test_friction_at_the_end_of_the_range_of_numbers_is_none():
+    case = dict(friction_coefficient=5e-324, contact_angle=5.0, axis_distance=48, radial_force=-16)
+    ds = solved(*(tr.Case(**case, axial_force=a, motor_force=0.0) for a in (-0.03, 0.03)))
+    assert ds.regime.values.tolist() == [ROLLING, ROLLING]
+    assert ds.normal_force.values[0] == pytest.approx(ds.normal_force.values[1, ::-1], rel=1e-12)

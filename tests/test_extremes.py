@@ -1,4 +1,4 @@
-"""Edge scenes: the quick part of the catalogue holds, kernels keep their digits, random extremes are finite or flagged."""
+"""Edge scenes: the quick part of the catalogue holds, kernels keep digits, random extremes are finite or flagged."""
 
 import subprocess
 import sys

@@ -145,7 +145,7 @@ class _Roller:
     def floored(self, normal: np.ndarray, pick=slice(None)) -> np.ndarray:
         """Normal forces kept positive, for a contact about to lift still needs an ellipse, and finite."""
         load = self.load[pick]
-        return np.clip(np.where(np.isnan(normal), load, normal), 1e-13 * load, self.largest[pick])
+        return np.clip(np.where(np.isnan(normal), load, normal), 1e-9 * load, self.largest[pick])
 
 
 def _bracketed(roller: _Roller, w_low, w_high, fine: bool, sweeps: int, tolerance: float):
@@ -275,6 +275,8 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
     a normal force would be <= 0. ASSUME: without friction the slip is that of the limit mu -> 0 if F_Motor = 0,
     and every motor force means full slip.
     """
+    # friction whose forces would run out of the range of numbers is none
+    loads = replace(loads, friction=np.where(loads.friction < 1e-100, 0.0, loads.friction))
     n = loads.radial_force.size
     regime = np.full(n, FAILED, dtype=np.int8)
     residual, shift = np.full(n, np.nan), np.full(n, np.nan)
@@ -331,7 +333,7 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
         w2, n2 = _bracketed(again, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
         b2, w2, n2, f2 = _newton(again, w2, n2, low[bad], high[bad])
         best[bad], w[bad], n[:, bad], f[:, :, bad] = b2, w2, n2, f2
-    lift = np.any(n <= 1e-12 * roller.load, axis=0)
+    lift = np.any(n <= 1e-8 * roller.load, axis=0)
     bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift)
     if bad.size:
         b3, w3, n3, f3, lift[bad] = _follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
@@ -367,9 +369,9 @@ def _follow_friction(loads, law, rows, low, high):
             w, normal = _bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
         best, w_new, n_new, f = _newton(roller, w.copy(), normal.copy(), low, high)
         fine = best <= 1e-8
-        lost, found = lost | ~fine, found | fine
+        lost, found = lost | ~fine, found | np.isfinite(best)
         shrunk = np.any(normal < 0.15 * roller.load, axis=0)
-        lifted |= np.where(fine, np.any(n_new < 1e-12 * roller.load, axis=0), shrunk)
+        lifted |= np.where(fine, np.any(n_new < 1e-7 * roller.load, axis=0), shrunk)
         w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
         with np.errstate(invalid="ignore"):
             grip = np.where(fine, np.max(np.abs(f[0] / n_new), axis=0) / tangent, grip)
