@@ -146,8 +146,8 @@ def _force_tables(found: dict[str, Any]) -> list[Block]:
                      " / ".join(f"{v:.3g}" for v in life), " / ".join(f"{v:.3g}" for v in exact), "-"))  # fmt: skip
         out += [("h3", told), ("table", (heads, rows))]
     out.append(("p", "*Its options*: `hertz: published`, `stress_bodies: published`. CONTACT: open-source release "
-                     "2025, 60x60 and 40x40 elements extrapolated; its peaks on 40x40 elements are good to about 1 % on "
-                     "the surface. Peaks are the larger of both bodies."))  # fmt: skip
+                     "2025, 60x60 and 40x40 elements extrapolated; its peaks on 40x40 elements are good to about 1 % "
+                     "on the surface. Peaks are the larger of both bodies."))  # fmt: skip
     return out
 
 

@@ -354,8 +354,8 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
     per_body, errors = [], []
     for j, m in enumerate((table.roller, table.guide)):
         column = lambda a: a[:, None]  # noqa: E731
-        line = [column(a) for a in (m.tensile_strength, m.fatigue_limit, m.cycles_at_tensile_strength,
-                                    m.cycles_at_fatigue_limit)]  # fmt: skip
+        line = (column(m.tensile_strength), column(m.fatigue_limit), column(m.cycles_at_tensile_strength),
+                column(m.cycles_at_fatigue_limit))  # fmt: skip
         per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], *line, rule=options.life_rule))
         exponent = fatigue.woehler_exponent(*line)
         if options.life_rule == "haibach":  # the flatter line below the fatigue limit
