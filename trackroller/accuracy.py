@@ -226,7 +226,8 @@ def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[
     Quantities without a measurement (settings of one's own) are missing.
     """
     rungs = ladders()
-    own: dict[str, dict[str, Any]] = {"forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
+    own: dict[str, dict[str, Any]]
+    own = {"forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
            "peak": {"peak": list(vars(settings.peak).values())}}  # fmt: skip
     if contact_model != "sliding":
         ladder = contact_model if contact_model in rungs else "kalker"

@@ -1,10 +1,10 @@
 """What a case is: a fingerprint of all that decides its numbers.
 
 A fingerprint is the SHA-256 (first 128 bits, as hex) of: `RESULTS_VERSION`, the options of the solver
-(outputs, contact model, spin model where it matters, accuracy, hertz, stress_bodies, life_rule, normal, stop_if),
-the numeric parameters of the case with the friction coefficient resolved, friction law and profiles, and the
-*values* (not the names) of both materials. Two cases with the same fingerprint have the same results, so a case that is in the store is never
-solved again, whatever study, chunk or order it came from.
+(outputs, contact model, spin model where it matters, accuracy, hertz, stress_bodies, life_rule, normal,
+stop_if), the numeric parameters of the case with the friction coefficient resolved, friction law and profiles,
+and the *values* (not the names) of both materials. Two cases with the same fingerprint have the same results, so a
+case that is in the store is never solved again, whatever study, chunk or order it came from.
 """
 
 from __future__ import annotations
