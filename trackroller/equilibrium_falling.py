@@ -16,7 +16,7 @@ GOLDEN, REFINEMENTS = 0.381966011250105, 12
 def first_balance(roller, w_low: np.ndarray, w_high: np.ndarray):
     """Bounds in w of the balance nearest to no slip, for rollers that are driven or braked.
 
-    roller : as `equilibrium._Roller`; w_low, w_high : the whole range, (m,)
+    roller : as `equilibrium_roller.Roller`; w_low, w_high : the whole range, (m,)
 
     Returns w_low and w_high narrowed to that balance, and where there is none (m,).
     """

@@ -1,0 +1,45 @@
+"""Which of several equilibria near self-locking: solutions followed from little friction to the given."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from trackroller.equilibrium_newton import bracketed, newton_polish
+from trackroller.equilibrium_roller import Roller
+
+
+def follow_friction(loads, law, rows, low, high):
+    """Solutions followed from little friction to the given; a contact that lifts off on the way stays off.
+
+    Near self-locking, mu f = tan(alpha), the equations have several solutions or none; the one that grows out of the
+    frictionless wedge is the one that loading reaches. Returns what `newton_polish` does, and the rows that lift off.
+    """
+    m = rows.size
+    lifted, w = np.zeros(m, bool), np.zeros(m)
+    normal = np.full((2, m), np.nan)
+    best, f = np.full(m, np.inf), np.full((3, 2, m), np.nan)
+    lost, found, grip = np.zeros(m, bool), np.zeros(m, bool), np.zeros(m)
+    scale = np.ones_like(loads.friction)
+    tangent = np.tan(loads.contact_angle[rows])
+    start = np.clip(0.2 * tangent / loads.friction[rows], 1e-8, 0.05)  # well before the wedge may lock
+    for k in range(21):
+        scale[rows] = np.maximum(start ** (1 - k / 20), k / 20)
+        eased = replace(loads, friction=loads.friction * scale, motor_force=loads.motor_force * scale)
+        roller = Roller(eased, law, rows)
+        if k == 0:
+            w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
+        best, w_new, n_new, f = newton_polish(roller, w.copy(), normal.copy(), low, high)
+        fine = best <= 1e-8
+        lost, found = lost | ~fine, found | np.isfinite(best)
+        shrunk = np.any(normal < 0.15 * roller.load, axis=0)
+        lifted |= np.where(fine, np.any(n_new < 1e-7 * roller.load, axis=0), shrunk)
+        w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
+        with np.errstate(invalid="ignore"):
+            grip = np.where(fine, np.max(np.abs(f[0] / n_new), axis=0) / tangent, grip)
+    best = np.where(lost, np.inf, best)
+    # a branch that ends where friction nearly carries the lateral load has shed a contact
+    light = np.any(normal < 0.2 * roller.load, axis=0)
+    lifted |= np.where(lost, ((grip > 0.5) | light) & (loads.axial_force[rows] != 0), ~roller.wedged(normal, f))
+    return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing

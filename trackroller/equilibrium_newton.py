@@ -1,0 +1,121 @@
+"""Roots of the balances of a roller: bracketing in the slip with a coarse contact law, then Newton on all unknowns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trackroller.equilibrium_roller import Roller
+
+
+def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance: float):
+    """Root of the torque balance in w by the Illinois rule, the normal forces following along.
+
+    The torque falls with w. Returns w (m,) and normal forces (2, m).
+    """
+    m = roller.rows.size
+    normal = roller.floored(roller.normal_forces(np.zeros((2, m))))
+    t_low, t_high = np.full(m, np.nan), np.full(m, np.nan)
+    w, side = np.clip(np.zeros(m), w_low, w_high), np.zeros(m)
+    active = np.arange(m)
+    for _ in range(sweeps):
+        # the normal forces follow the slip; twice when the answer counts
+        for _ in range(3 if fine else 1):
+            f = roller.contact(roller.shift(w[active], active), normal[:, active], fine, active)
+            normal[:, active] = roller.floored(roller.normal_forces(f[0] / normal[:, active], active), active)
+        t = roller.torque(f, active)
+        up = t > 0
+        w_low[active] = np.where(up, w[active], w_low[active])
+        w_high[active] = np.where(up, w_high[active], w[active])
+        same = np.where(up, 1.0, -1.0) == side[active]
+        t_high[active] = np.where(up, np.where(same, t_high[active] / 2, t_high[active]), t)
+        t_low[active] = np.where(up, t, np.where(same, t_low[active] / 2, t_low[active]))
+        side[active] = np.where(up, 1.0, -1.0)
+        lo, hi, tl, th = w_low[active], w_high[active], t_low[active], t_high[active]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            new = (lo * th - hi * tl) / (th - tl)
+        new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
+        moved = np.abs(new - w[active])
+        w[active] = new
+        active = active[(moved > tolerance) & (hi - lo > tolerance)]
+        if active.size == 0:
+            break
+    return w, normal
+
+
+def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
+    """Derivatives of the balances with respect to (F_N1, F_N2, w), shape (m, 3, 3), coarse law, differences."""
+    h = roller.step
+    shift = roller.shift(w, pick)
+    base = roller.contact(shift, normal, False, pick)
+    grown = roller.contact(shift, normal * (1 + h), False, pick)
+    room = 1 - np.abs(w)
+    step = h * room * np.where(w > 0, -1.0, 1.0)
+    moved = roller.contact(roller.shift(w + step, pick), normal, False, pick)
+    r0 = roller.residuals(normal, base, pick)
+    jac = np.empty((w.size, 3, 3))
+    for i in (0, 1):
+        f, n = base.copy(), normal.copy()
+        f[:, i], n[i] = grown[:, i], normal[i] * (1 + h)
+        jac[:, :, i] = ((roller.residuals(n, f, pick) - r0) / (h * normal[i])).T
+    jac[:, :, 2] = ((roller.residuals(normal, moved, pick) - r0) / step).T
+    return jac
+
+
+def newton_polish(roller: Roller, w, normal, w_low, w_high, steps: int = 14):
+    """Newton-Broyden polish of all three unknowns with the fine law; returns residual (m,) with w, normal, forces."""
+    m = w.size
+    best = np.full(m, np.inf)
+    w_best, n_best, f_best = w.copy(), normal.copy(), np.full((3, 2, m), np.nan)
+    active = np.arange(m)
+    jac = np.empty((m, 3, 3))
+    step_old, r_old = np.zeros((m, 3)), np.zeros((m, 3))
+    scale = np.stack([roller.load, roller.load, roller.torque_scale], axis=1)
+    for k in range(steps):
+        n_a, w_a = normal[:, active], w[active]
+        f = roller.contact(roller.shift(w_a, active), n_a, True, active)
+        r = roller.residuals(n_a, f, active).T
+        size = np.max(np.abs(r) / scale[active], axis=1)
+        better = size < best[active]
+        hit = active[better]
+        best[hit], w_best[hit] = size[better], w_a[better]
+        n_best[:, hit], f_best[:, :, hit] = n_a[:, better], f[:, :, better]
+        stalled = (size > 0.3 * best[active]) & ~better if k > 8 else np.zeros(active.size, bool)
+        go = (size > 1e-15) & np.isfinite(size) & ~stalled & ~((best[active] < roller.goal) & ~better)
+        active, r = active[go], r[go]
+        if active.size == 0:
+            break
+        if k in (0, 6):
+            jac[active] = _jacobian(roller, w[active], normal[:, active], active)
+        else:  # Broyden's update: the old step made this residual
+            s = step_old[active]
+            y = r - r_old[active]
+            miss = y - np.einsum("mij,mj->mi", jac[active], s)
+            with np.errstate(divide="ignore", invalid="ignore"):  # no step, no news: the row ends as singular
+                jac[active] += miss[:, :, None] * s[:, None, :] / np.sum(s * s, axis=1)[:, None, None]
+        step = _solve3(jac[active], -r)
+        room = np.stack([0.9 * normal[0, active], 0.9 * normal[1, active]], axis=1)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            damp = np.min(np.where(step[:, :2] < 0, room / -step[:, :2], np.inf), axis=1)
+            gap = np.where(step[:, 2] > 0, w_high[active] - w[active], w[active] - w_low[active])
+            damp = np.minimum(np.minimum(damp, 0.9 * gap / np.abs(step[:, 2])), 1.0)
+        sound = np.all(np.isfinite(step), axis=1) & np.isfinite(damp)  # a singular system ends the row
+        step = np.where(sound[:, None], step * damp[:, None], 0.0)
+        step_old[active], r_old[active] = step, r
+        normal[:, active] += step[:, :2].T
+        w[active] += step[:, 2]
+        active = active[sound]
+        if active.size == 0:
+            break
+    return best, w_best, n_best, f_best
+
+
+def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Batch of 3x3 systems by Cramer's rule on scaled rows and columns; a singular one gives NaN, no exception."""
+    with np.errstate(all="ignore"):
+        a, b = a / (rows := np.max(np.abs(a), axis=2))[:, :, None], b / rows
+        columns = np.max(np.abs(a), axis=1)
+        a = a / columns[:, None, :]
+        cross = np.stack([np.cross(a[:, :, 1], a[:, :, 2]), np.cross(a[:, :, 2], a[:, :, 0]),
+                          np.cross(a[:, :, 0], a[:, :, 1])], axis=1)  # fmt: skip
+        x = np.einsum("mij,mj->mi", cross, b) / np.sum(a[:, :, 0] * cross[:, 0], axis=1)[:, None] / columns
+    return np.where(np.isfinite(x), x, np.nan)
