@@ -68,7 +68,7 @@ def test_study_from_plan_to_repeat(tmp_path):
     (["solve", "-o", "no/where.nc"], "--out"),
     (["plan", "bad.yaml"], "not YAML"),
     (["run", "bad.yaml"], "not YAML"),
-    (["run", "blocked.yaml"], "cannot be written"),
+    (["run", "blocked.yaml"], "cannot be a folder"),
     (["run", "good.yaml", "--scheduler", "nonsense"], "--scheduler"),
     (["status", "../etc"], "../etc"),
     (["repeat", "good.yaml", "99"], "99"),

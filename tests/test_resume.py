@@ -216,7 +216,7 @@ def test_table_of_cases(tmp_path):
 
 def test_results_folder_that_cannot_be_written_is_an_input_error(tmp_path):
     (tmp_path / "s").write_text("a file where the folder should be")
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="cannot be a folder"):
         make_plan(parse_study(DATA), tmp_path)
 
 

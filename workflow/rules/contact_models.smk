@@ -4,7 +4,7 @@ COMPARED = f"{config.get('results', 'results')}/contact_models"
 
 rule contact_models:
     input:
-        study="config/studies/contact-models.yaml",
+        study="config/studies/contact_models.yaml",
         code=sources("study/ladder.py", "plots/ladder.py", "contact"),
     output:
         report=f"{COMPARED}/report.html",
