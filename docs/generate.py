@@ -13,6 +13,7 @@ from pathlib import Path
 from trackroller import parameters as p
 from trackroller.accuracy import PRESETS
 from trackroller.dataset import VALIDITY_BITS, VARIABLES
+from trackroller.pages import markdown
 from trackroller.study import tradeoff_page
 
 FOLDER = Path(__file__).parent
@@ -125,7 +126,8 @@ def tradeoff() -> str:
     """The measured trade-off, from the data that docs/adopt_tradeoff.py took over."""
     summary, figures = (json.loads((FOLDER / "data" / name).read_text(encoding="utf-8"))
                         for name in ("tradeoff.json", "tradeoff_figures.json"))  # fmt: skip
-    return tradeoff_page.markdown(tradeoff_page.blocks(summary, figures))
+    made_by = "made by docs/generate.py from docs/data/tradeoff.json"
+    return markdown(tradeoff_page.blocks(summary, figures), made_by)
 
 
 def main(check: bool) -> int:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import html
 import json
 import re
 from collections.abc import Iterable, Sequence
@@ -12,9 +10,9 @@ from typing import Any
 
 from trackroller.accuracy import PROMISES, accuracy_settings, preset_rungs, read_ladders, rounded_up
 from trackroller.errors import InputError
+from trackroller.pages import Block, page_html
 from trackroller.study.tradeoff_errors import QUANTITIES
 
-Block = tuple[str, Any]
 Record = dict[str, Any]
 LADDER_NAMES = {"forces": "quadrature of the forces (full sliding)", "peak": "search of the peak stress",
                 "fastsim": "elements of `fastsim`", "kalker": "elements of `kalker`"}  # fmt: skip
@@ -180,57 +178,6 @@ def _error(value: float | None) -> str:
     return "< 1e-15" if value < 1e-15 else f"{rounded_up(value):.1e}"
 
 
-def markdown(content: Sequence[Block], folder: str = "figures") -> str:
-    """The page as Markdown with figures from a folder beside it."""
-    lines = ["<!-- made by docs/generate.py from docs/data/tradeoff.json; do not edit -->"]
-    for kind, value in content:
-        if kind in ("h1", "h2", "h3"):
-            lines += [f"{'#' * int(kind[1])} {value}", ""]
-        elif kind == "p":
-            lines += [value, ""]
-        elif kind == "figure":
-            lines += [f"![{value['caption']}]({folder}/{value['name']}.png)", "", f"*{value['sentence']}*", ""]
-        else:
-            heads, rows = value
-            for cells in (heads, ["---"] * len(heads), *rows):
-                lines.append("| " + " | ".join(str(c).replace("|", "\\|") for c in cells) + " |")
-            lines.append("")
-    return "\n".join(lines).rstrip() + "\n"
-
-
-_CSS = ("body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;"
-        "font-size:12px;display:block;overflow-x:auto}td,th{border:1px solid #ccc;padding:2px 7px;text-align:left}"
-        "img{max-width:100%;width:24em}figure{display:inline-block;margin:.5em;vertical-align:top;width:24em}"
-        "figcaption{font-size:12px}")  # fmt: skip
-
-
-def page_html(content: Sequence[Block], figures: Path) -> str:
-    """The page as one HTML file that holds its figures."""
-    body = []
-    for kind, value in content:
-        if kind in ("h1", "h2", "h3", "p"):
-            body.append(f"<{kind}>{_inline(value)}</{kind}>")
-        elif kind == "figure":
-            data = base64.b64encode((figures / f"{value['name']}.png").read_bytes()).decode()
-            body.append(
-                f'<figure><img alt="{html.escape(value["caption"])}" src="data:image/png;base64,{data}">'
-                f"<figcaption>{_inline(value['caption'])} {_inline(value['sentence'])}</figcaption></figure>"
-            )
-        else:
-            heads, rows = value
-            cells = ["<tr>" + "".join(f"<th>{_inline(h)}</th>" for h in heads) + "</tr>"]
-            cells += ["<tr>" + "".join(f"<td>{_inline(str(c))}</td>" for c in row) + "</tr>" for row in rows]
-            body.append("<table>" + "".join(cells) + "</table>")
-    return (f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>What accuracy costs</title>'
-            f"<style>{_CSS}</style></head><body>{''.join(body)}</body></html>\n")  # fmt: skip
-
-
-def _inline(text: str) -> str:
-    text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", html.escape(text, quote=False))
-    text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
-    return re.sub(r"\*([^*]+)\*", r"<em>\1</em>", text)
-
-
 def write_results(tradeoff_nc: str, summary_json: str, figures: str, page: str) -> None:
     """Summary, figures and report from the gathered measurement."""
     import xarray as xr
@@ -244,5 +191,5 @@ def write_results(tradeoff_nc: str, summary_json: str, figures: str, page: str) 
     text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
     write_whole(Path(summary_json), lambda beside: beside.write_text(text, encoding="utf-8"))
     infos = [vars(info) for info in draw_all(found, ds, Path(figures))]
-    whole = page_html(blocks(found, infos), Path(figures))
+    whole = page_html(blocks(found, infos), Path(figures), "What accuracy costs")
     write_whole(Path(page), lambda beside: beside.write_text(whole, encoding="utf-8"))
