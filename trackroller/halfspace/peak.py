@@ -7,13 +7,13 @@ is evaluated again with finer quadrature. Stresses per unit p_max, depth in unit
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from trackroller.halfspace.ellipse import near_parts, unit_rule
-from trackroller.halfspace.ellipse_kernels import FRICTION, K0, K1, K2, POLE_X, A, B
+from trackroller.halfspace.ellipse_kernels import FRICTION, A, B
+from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
 from trackroller.threads import share_rows
 
 
@@ -46,23 +46,8 @@ class Peak:
     error: np.ndarray
 
 
-def _scan_points() -> np.ndarray:
-    """Points (rho cos, rho sin, depth) in normalised coordinates."""
-    rows = [(0.0, 0.0, 0.0)]
-    for rho, count in ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)):
-        angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
-        rows += [(rho * math.cos(t), rho * math.sin(t), 0.0) for t in angles]
-    for depth, rings in ((0.12, ((0.4, 6), (0.8, 6))), (0.2, ((0.95, 8),)), (0.3, ((0.4, 6), (0.8, 6))),
-                         (0.5, ((0.45, 6),)), (0.75, ((0.45, 4),))):  # fmt: skip
-        rows.append((0.0, 0.0, depth))
-        for rho, count in rings:
-            angles = 2 * np.pi * (np.arange(count) + 0.5 * (rho == 0.4)) / count
-            rows += [(rho * math.cos(t), rho * math.sin(t), depth) for t in angles]
-    return np.array(rows)
-
-
-SCAN = _scan_points()
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of first steps along radius, circumference and depth
+APART = (0.5, 0.2)  # of seeds in ordinary and in slender patches
 GAPS = (0.045, 0.017, 0.008)  # to the highest, times the number of finalists: seeds further down are given up
 
 
@@ -73,6 +58,7 @@ class _Patches:
     rows: np.ndarray
     fields: np.ndarray
     poisson_ratio: np.ndarray
+    slender: bool
 
     def parts(self, of: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
         """Stress parts (4, 6, m) of patches `of` at normalised points u (m, 3)."""
@@ -129,7 +115,7 @@ def _project(u: np.ndarray) -> np.ndarray:
 @dataclass
 class _Climbs:
     """Points u (m, 3) with stress f (m,) on their way up, each in a body of a patch; `gained` by the last sweep,
-    `step` (m, 3) of the search along radius, circumference and depth."""
+    `step` (m, 3) of the search along radius, circumference and depth, `along` (m, 2) the first axis."""
 
     patches: _Patches
     of: np.ndarray
@@ -138,6 +124,7 @@ class _Climbs:
     f: np.ndarray
     gained: np.ndarray
     step: np.ndarray
+    along: np.ndarray
 
     def values(self, i: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
         return self.patches.stress(self.of[i], self.body[i], u, waves, rule)
@@ -156,19 +143,29 @@ class _Climbs:
         off = r > 1e-9
         c, s = np.where(off, start[:, 0], 1.0), np.where(off, start[:, 1], 0.0)
         r = np.where(off, r, 1.0)
-        zero = np.zeros_like(r)
-        axes = np.stack([np.stack([c / r, s / r, zero], 1), np.stack([-s / r, c / r, zero], 1),
-                         np.stack([zero, zero, zero + 1.0], 1)])  # fmt: skip
+        c, s, zero = c / r, s / r, np.zeros_like(r)
+        # ridges are narrow: inside of the rim an axis lies along them
+        inner = self.u[rows, 0] ** 2 + self.u[rows, 1] ** 2 < 0.998
+        c, s = np.where(inner, self.along[rows, 0], c), np.where(inner, self.along[rows, 1], s)
+        axes = np.stack([np.stack([c, s, zero], 1), np.stack([-s, c, zero], 1), np.stack([zero, zero, zero + 1.0], 1)])
         moved = zero
         for k in range(3):
             moved = np.maximum(moved, self._along(rows, axes[k], self.step[:, k], waves, rule))
         if ridge:  # one that lies askew to the axes
             far = ((self.u[rows] - start) ** 2).sum(axis=1) > 1e-8
             self.try_points(rows[far], _project(2.0 * self.u[rows[far]] - start[far]), waves, rule)
+        self._turn(rows, start)
         self.gained[rows] = self.f[rows] - before
         widest = self.step[rows].max(axis=1)
         still = (self.gained[rows] < 1e-6 * self.f[rows]) & (moved < 1e-9) & (widest < 4.0 * smallest)
         return rows[~((widest < smallest) | still)]
+
+    def _turn(self, rows: np.ndarray, start: np.ndarray) -> None:
+        """Turns the first axis of climbs `rows` into the direction they have gone from `start` (Rosenbrock)."""
+        gone = self.u[rows, :2] - start[:, :2]
+        length = np.sqrt(gone[:, 0] ** 2 + gone[:, 1] ** 2)
+        far = length > 1e-5
+        self.along[rows[far]] = gone[far] / length[far, None]
 
     def standing(self, share: float, gap: float, most: int) -> np.ndarray:
         """Up to `most` climbs of each body: the highest, and those above its `share` that are not the same summit.
@@ -209,64 +206,38 @@ class _Climbs:
         worth = round_top & (np.abs(jump) > 0.05 * step) & (np.abs(np.abs(jump) - step) > 0.05 * step)
         self.try_points(rows[worth], _project(u_0[worth] + jump[worth, None] * axis[worth]), waves, rule)
         distance = np.abs(self.u[rows] - u_0).sum(axis=1)
-        h[rows] = np.where(distance < 0.5 * step, 0.35 * step, step)
+        longer = np.where(distance > 1.5 * step, 1.5 * step, step)
+        h[rows] = np.where(distance < 0.5 * step, 0.35 * step, longer)
         return distance / step
-
-
-def _scans(patches: np.ndarray) -> np.ndarray:
-    """Points (n, m, 3) of the scans: the common ones and some on the line where the lateral slip turns.
-
-    The sharp fold of the slip carries ridges of stress in slender patches.
-    """
-    pole = np.clip(patches[:, POLE_X] / patches[:, A], -1.0, 1.0)[:, None]
-    share = np.array([0.15, 0.4, 0.6, 0.85])
-    left, right = pole - share * (1.0 + pole), pole + share * (1.0 - pole)
-    a, b = patches[:, A, None], patches[:, B, None]
-    fold = np.concatenate([patches[:, K1, None] * (left + 1.0), patches[:, K2, None] * (right - 1.0)], axis=1)
-    u = np.stack([np.concatenate([left, right], axis=1), (patches[:, K0, None] + fold * a) / b], axis=2)
-    u /= np.maximum(np.hypot(u[..., 0], u[..., 1]), 1.0)[..., None]
-    turning = np.concatenate([u, np.zeros((*u.shape[:2], 1))], axis=2)
-    return np.concatenate([np.broadcast_to(SCAN, (len(patches), *SCAN.shape)), turning], axis=1)
-
-
-def _seeds(points: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
-    """The best scan points (n, m, 3) that lie apart from each other: indices (n, count), -1 where there are no more."""
-    left, every = values.copy(), np.arange(len(values))
-    enough = 0.85 * values.max(axis=1)
-    chosen = np.full((len(values), count), -1)
-    for k in range(count):
-        best = left.argmax(axis=1)
-        good = left[every, best] > enough
-        chosen[good, k] = best[good]
-        gap = ((points - points[every, best][:, None, :]) ** 2).sum(axis=2)
-        left = np.where(gap < 0.25, 0.0, left)
-    return chosen
 
 
 def _search(patches: _Patches, rules: tuple, settings: PeakSettings, smallest: float, out: np.ndarray) -> None:
     """Fills out (n, 2, 5): stress, place in normalised coordinates and error of both bodies of each patch."""
     scan_rule, climb_rule, polish_rule, summit_rule, waves = rules
-    n, count = len(patches.rows), settings.seeds
-    points = _scans(patches.rows)
+    slender = patches.slender
+    n, count = len(patches.rows), settings.seeds + 5 * slender
+    points = scan_points(patches.rows, slender)
     values = patches.scan(points, scan_rule)
-    chosen = np.stack([_seeds(points, values[:, :, body], count) for body in (0, 1)], axis=1)
+    chosen = np.stack([best_seeds(points, values[:, :, body], count, APART[slender]) for body in (0, 1)], axis=1)
     of, body, _ = (index.ravel() for index in np.indices((n, 2, count)))
     climbs = _Climbs(patches, of, body, points[of, chosen.ravel()], np.full(of.size, -1.0), np.zeros(of.size),
-                     0.12 * PROPORTIONS * np.ones((of.size, 3)))  # fmt: skip
+                     0.12 * PROPORTIONS * np.ones((of.size, 3)), np.zeros((of.size, 2)))  # fmt: skip
+    climbs.along[:] = along_turn(patches.rows[of], climbs.u)
     rows = np.flatnonzero(chosen.ravel() >= 0)
     climbs.f[rows] = climbs.values(rows, climbs.u[rows], climb_rule, climb_rule)
     # the scan is rough: seeds that fall behind with better quadrature are given up, and sooner with every sweep
-    most = max(settings.finalists, 2)
+    finalists = settings.finalists + 2 * slender
+    most = max(finalists, 2)
     for k, gap in enumerate(GAPS):
         if k == 1:
             climbs.step[:] = 0.08 * PROPORTIONS
         rows = climbs.standing(max(1.0 - gap * most, 1e-9), 0.15 if k > 0 else 0.0, most)
         climbs.sweep(rows, climb_rule, climb_rule, 0.06, k > 1)
-    rows = climbs.standing(0.97, 0.1, settings.finalists)
+    rows = climbs.standing(0.97, 0.1, finalists)
     found = climbs.values(rows, climbs.u[rows], waves, polish_rule)
     climbs.f[rows] = found
     climbs.step[:] = max(3.0 * smallest, 0.01) * PROPORTIONS
-    for k in range(12):
+    for k in range(12 + 12 * slender):
         if rows.size > 0:
             rows = climbs.sweep(rows, waves, polish_rule, smallest, k > 0)
     best = np.arange(2 * n) * count + climbs.f.reshape(2 * n, count).argmax(axis=1)
@@ -301,12 +272,16 @@ def find_peaks(
         orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
         rules = tuple(unit_rule(int(order * factor)) for order in orders)
         chosen = np.zeros((group.size, 2, 1, 1)) if fields is None else np.ascontiguousarray(fields[group])
-        some = _Patches(patches[group], chosen, np.ascontiguousarray(poisson_ratio[group], dtype=float))
+        some = _Patches(
+            patches[group], chosen, np.ascontiguousarray(poisson_ratio[group], dtype=float), bool(factor > 1)
+        )
         found = np.empty((group.size, 2, 5))
         _search(some, rules, settings, settings.step / factor, found)
         out[group] = found
     # a missed or not quite climbed ridge shows nowhere: measured, it grows so with friction and slenderness
     out[:, :, 4] += (settings.floor * (1.0 + 10.0 * patches[:, FRICTION] ** 2 * np.sqrt(long / short)))[:, None]
+    if fields is None:  # whether the search meets the spike of a logarithm is chance, and how far it follows it
+        out[:, :, 4] += 4.0 * spike(patches)[:, None] / out[:, :, 0]
     # very slender patches under friction hide ridges from a rough search: 5 % seen at `standard`
     hidden = (long / short > 50.0) & (patches[:, FRICTION] > 0)
     out[:, :, 4] += np.where(hidden, 160.0 * settings.floor, 0.0)[:, None]
