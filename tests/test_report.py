@@ -15,7 +15,7 @@ from synthetic_results import PAIRS, grid_study, sampled_study
 
 from trackroller.plots.study import draw_all
 from trackroller.plots.study_view import StudyView
-from trackroller.report import contents, write_report
+from trackroller.report import contents, models_used, write_report
 from trackroller.report_tables import causes, regime_table, validity_table
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -165,3 +165,28 @@ def test_a_browser_shows_it_whole_and_without_console_errors(report, tmp_path, w
     assert title, done.stdout[:500] + done.stderr[-500:]
     found = json.loads(title.group(1).replace("&amp;", "&").replace("&lt;", "<").replace("&gt;", ">"))
     assert found["images"] == 0 and found["out"] == [] and found["page"] <= found["width"] == width
+
+
+def test_the_paper_s_numbers_are_judged_in_every_report(report):
+    text = report.read_text(encoding="utf-8")
+    assert "Where the published numbers hold" in text and "Peak stress with friction" in text
+    assert text.count("times shorter") >= 3 and "(contact-models.md)" not in text
+
+
+def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
+    ds = sampled_study(40)
+    law = np.where(np.arange(40) < 20, "", json.dumps({"kind": "linear", "speed": 50, "lowest": 0.3}))
+    ds = ds.assign_coords(friction_law=("case", law.astype(object)))
+    ds["contact_model_used"] = ("case", np.arange(40) % 2 * 2, {"flag_meanings": "sliding fastsim kalker"})
+    ds["stopped"] = ("case", (np.arange(40) < 7).astype("i1"))
+    assert models_used(ds) == [("Contact model chosen", "sliding in 20, kalker in 20 of 40 cases")]
+    told = contents(ds)
+    assert any(s.startswith("7 of 40 cases met the condition of stop_if") for s in told["summary"])
+    assert models_used(sampled_study(40)) == []
+
+
+def test_a_handful_of_cases_among_many_tells_no_cause():
+    view = StudyView.of(sampled_study(400))
+    hit = np.zeros(400, dtype=bool)
+    hit[:3] = True
+    assert causes(view, hit) == []

@@ -45,23 +45,24 @@ def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
     body = []
     for kind, value in content:
         if kind in ("h1", "h2", "h3", "p"):
-            body.append(f"<{kind}>{_inline(value)}</{kind}>")
+            body.append(f"<{kind}>{inline(value)}</{kind}>")
         elif kind == "figure":
             data = base64.b64encode((figures / f"{value['name']}.png").read_bytes()).decode()
             body.append(
                 f'<figure><img alt="{html.escape(value["caption"])}" src="data:image/png;base64,{data}">'
-                f"<figcaption>{_inline(value['caption'])} {_inline(value['sentence'])}</figcaption></figure>"
+                f"<figcaption>{inline(value['caption'])} {inline(value['sentence'])}</figcaption></figure>"
             )
         else:
             heads, rows = value
-            cells = ["<tr>" + "".join(f"<th>{_inline(h)}</th>" for h in heads) + "</tr>"]
-            cells += ["<tr>" + "".join(f"<td>{_inline(str(c))}</td>" for c in row) + "</tr>" for row in rows]
+            cells = ["<tr>" + "".join(f"<th>{inline(h)}</th>" for h in heads) + "</tr>"]
+            cells += ["<tr>" + "".join(f"<td>{inline(str(c))}</td>" for c in row) + "</tr>" for row in rows]
             body.append("<table>" + "".join(cells) + "</table>")
     return (f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
             f"<style>{_CSS}</style></head><body>{''.join(body)}</body></html>\n")  # fmt: skip
 
 
-def _inline(text: str) -> str:
+def inline(text: str) -> str:
+    """Text with `code`, *emphasis* and links as HTML, all else escaped; of links only their words stay."""
     text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", html.escape(text, quote=False))
     text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
     return re.sub(r"\*([^*]+)\*", r"<em>\1</em>", text)

@@ -46,7 +46,7 @@ def blocks(found: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Blo
               "computation yields, from this software, beside what the paper, its program and CONTACT print. "
               "`snakemake --cores all paper` makes this page."),
         ("h2", "Where the published numbers hold, and where they do not"),
-        *_verdict(found),
+        *verdict(found),
         ("h2", "Table 1: the case"),
         _case_table(),
         ("p", "Scenes: nearly frictionless and free (μ = 0.0001), free with μ = 0.3, driven with 30 N and μ = 0.3. The "
@@ -69,7 +69,8 @@ def blocks(found: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Blo
     ]  # fmt: skip
 
 
-def _verdict(found: dict[str, Any]) -> list[Block]:
+def verdict(found: dict[str, Any]) -> list[Block]:
+    """Which published numbers hold and what the others mean for life: a table and a paragraph, of `paper.results`."""
     known, ours = reference(), found["ours"]
     free, driven = known["published_program"]["free"]["published"], ours["driven"]
     peaks = [max(c) for c in ours["free"]["sliding"]["peak_stress"]]

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 log = logging.getLogger(__name__)
+SAMPLED = ("lhs", "sobol", "morris", "saltelli", "nested")  # designs that `samples` counts for
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = ("contact_model", "spin_model", "hertz", "stress_bodies", "life_rule", "accuracy", "normal", "stop_if")
 _TOLD = {
@@ -63,7 +64,10 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     The path written.
     """
     import jinja2
+    import markupsafe
     import xarray as xr
+
+    from trackroller.pages import inline
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trackroller", "templates"),
@@ -72,6 +76,7 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    environment.filters["marked"] = lambda text: markupsafe.Markup(inline(str(text)))
     with xr.open_dataset(study_nc) as ds:
         content = contents(ds) | decisions(ds, sensitivity_nc)
     content["figures"] = figures(Path(figures_dir))
@@ -99,11 +104,12 @@ def contents(ds: xr.Dataset) -> dict[str, Any]:
         "description": str(settings.get("description") or attrs.get("comment") or ""),
         "cases": len(view.table),
         "design": str(merged.get("design", "grid" if view.grid else "sample")),
-        "samples": settings.get("samples") if not view.grid else None,
+        "samples": settings.get("samples") if str(merged.get("design")) in SAMPLED else None,
         "date": str(attrs.get("date_created") or attrs.get("date") or attrs.get("created") or ""),
         "factors": factor_table(view),
         "base": base_table(view, ds),
-        "options": [(style.capital(style.plain(k)), str(merged[k])) for k in OPTIONS if str(merged.get(k, ""))],
+        "options": [(style.capital(style.plain(k)), str(merged[k])) for k in OPTIONS if str(merged.get(k, ""))]
+        + models_used(ds),
         "materials": materials_table(attrs),
         "regimes": regime_table(view),
         "validity": validity_table(view, ds),
@@ -115,6 +121,7 @@ def contents(ds: xr.Dataset) -> dict[str, Any]:
         "summary": summary(view),
         "conventions": conventions(merged, results),
         "papers": papers(merged, results),
+        "published": published_numbers(),
         "record": record_table(attrs, _TOLD),
         "study_text": str(attrs.get("study", "")),
     }
@@ -130,6 +137,8 @@ def summary(view: StudyView) -> list[str]:
         for code in (1, 2, 3):
             if why := causes(view, regime == code):
                 said.append(f"{style.capital(style.REGIME_LABELS[code])} goes with {'; '.join(why)}.")
+    if view.has("stopped") and (stopped := int((table["stopped"] == 1).sum())):
+        said.append(f"{stopped} of {len(table)} cases met the condition of stop_if: no stress and no life was sought.")
     if view.life is not None:
         column, words, unit = view.life
         life = table[column].to_numpy()
@@ -150,6 +159,25 @@ def summary(view: StudyView) -> list[str]:
     return said
 
 
+def models_used(ds: xr.Dataset) -> list[tuple[str, str]]:
+    """How many cases each contact model solved, where it was chosen case by case."""
+    if "contact_model_used" not in ds:
+        return []
+    names = str(ds["contact_model_used"].attrs.get("flag_meanings", "")).split()
+    used = ds["contact_model_used"].values.astype(float)
+    counts = [(name, int((used == i).sum())) for i, name in enumerate(names)]
+    said = ", ".join(f"{name} in {count}" for name, count in counts if count)
+    return [("Contact model chosen", f"{said} of {used.size} cases")] if said and len(set(used.ravel())) > 1 else []
+
+
+def published_numbers() -> list[tuple[str, Any]]:
+    """Where the numbers of the published example hold: tables (heads, rows) and paragraphs."""
+    from trackroller.paper import stored
+    from trackroller.paper_page import verdict
+
+    return [(kind, value) for kind, value in verdict(stored()) if kind in ("table", "p")]
+
+
 def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:
     """How well the cases are solved."""
     rows = []
@@ -162,7 +190,11 @@ def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:
         if name in ds and ds[name].dtype.kind == "f":
             values = ds[name].values
             if np.isfinite(values).any():
-                rows.append((words, style.rounded(float(np.nanmax(values[np.isfinite(values)])), 2)))
+                good = values[np.isfinite(values)]
+                text = style.rounded(float(good.max()), 2)
+                if name == "error_estimate" and good.max() > 0.01:
+                    text += f" (half of the peaks below {style.rounded(float(np.median(good)), 2)})"
+                rows.append((words, text))
     return rows
 
 

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 MAX_DESIGNS = 12  # rows of the table of the Pareto set
 MAX_POINTS = 24  # rows of the table of design points
+OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 MEASURES = (
     ("S1", "Sobol index, alone"), ("ST", "Sobol index, total"), ("main_share", "share of variance, alone"),
     ("mu_star", "mean absolute effect μ*"), ("sigma", "spread of effects σ"), ("effect", "change over the range"),
+    ("curvature", "curvature of the fit"),
     ("first", "share of variance, given data"), ("delta", "delta"), ("pawn", "PAWN"),
     ("prcc", "partial rank correlation"),
 )  # fmt: skip
@@ -61,7 +63,8 @@ def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
     rows = []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
-        ranks = [f"{r.name} {_value(r.value, r.low, r.high)}" for r in words.order(sens, output)[:4]]
+        ranks = [f"{r.name} {_value(r.value, r.low, r.high)}" for r in words.order(sens, output)[:4]
+                 if r.value > 0 or (r.value and words.headline(sens) in words.SIGNED)]
         advice = words.advice_of(sens, output)
         unit = f" [{effect_unit(sens, output)}]" if words.headline(sens) in ("mu_star", "effect") else ""
         rows.append((words.upper(words.of_output(sens, output)) + unit, ranks, str(part["note"].item()), advice))
@@ -87,7 +90,8 @@ def measures(sens: xr.Dataset, output: str) -> dict[str, Any]:
         cells = []
         for key, _ in shown:
             low, high = (float(one[f"{key}_{end}"]) if f"{key}_{end}" in one else np.nan for end in ("low", "high"))
-            text = _value(float(one[key]), low, high)
+            value = max(0.0, float(one[key])) if key == "first" else float(one[key])  # no share is below nothing
+            text = _value(value, low, high)
             noise = float(one[f"{key}_noise"]) if f"{key}_noise" in one else np.nan
             cells.append(f"({text})" if float(one[key]) <= noise else text)
         rows.append((words.upper(rank.name), cells))
@@ -98,7 +102,7 @@ def _value(value: float, low: float = np.nan, high: float = np.nan) -> str:
     """0.61 ± 0.03."""
     if not np.isfinite(value):
         return "–"
-    half = (high - low) / 2
+    half = max(high - value, value - low)  # an interval may end at 0
     if not np.isfinite(half):
         return style.rounded(value, 3)
     digits = max(0, 1 - int(np.floor(np.log10(half)))) if half > 0 else 3
@@ -129,17 +133,22 @@ def _points(table: xr.Dataset, output: str) -> dict[str, Any]:
     part = table.sel(output=output)
     key = np.lexsort((-np.nan_to_num(part["b10"].values), -np.nan_to_num(part["b10_safe"].values)))
     share = part["percentile_value"].sel
+    seen = [r for r in OTHERS if float(table["probability"].sel(regime=r).max()) > 0]
     rows = []
     for p in key[:MAX_POINTS]:
         b10, low, high = (float(part[n][p]) for n in ("b10", "b10_low", "b10_high"))
         spread = [style.rounded(float(share(percentile=q)[p]), 3) for q in (5.0, 50.0, 95.0)]
-        chances = [_chance(table, regime, int(p)) for regime in ("full_slip", "lift_off", "failed")]
+        chances = [_chance(table, regime, int(p)) for regime in seen]
         interval = f" ({style.rounded(low, 3)} … {style.rounded(high, 3)})" if np.isfinite(high) else ""
         rows.append((words.upper(words.point_words(table, int(p))),
                      [f"{style.rounded(b10, 3)}{interval}", style.rounded(float(part["b10_safe"][p]), 3), *spread,
                       *chances]))  # fmt: skip
     unit = style.unit_text(str(part["output_units"].item()))
-    return {"title": words.upper(str(part["output_name"].item())), "unit": unit, "rows": rows,
+    never = [OTHERS[r] for r in OTHERS if r not in seen]
+    high = 100 * float(table["probability_high"].sel(regime=[r for r in OTHERS if r not in seen]).max()) if never else 0
+    said = f"No case of any point shows {words.listing(never)}: below {high:.2g} % at each (95 %)." if never else ""
+    return {"title": words.upper(str(part["output_name"].item())), "unit": unit, "rows": rows, "never": said,
+            "columns": [words.upper(OTHERS[r]) for r in seen],
             "left": max(0, table.sizes["point"] - MAX_POINTS)}  # fmt: skip
 
 

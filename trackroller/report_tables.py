@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 from trackroller.plots import style
 from trackroller.plots.study_view import StudyView, study_settings
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SPREAD = 0.1  # a factor whose levels differ less than this in the share of cases is not named as a cause
+FEWEST = 5  # rare events tell no cause
 BEST = 5  # designs in the tables of best and worst
 Table = list[dict[str, Any]]
 
@@ -33,7 +34,7 @@ def factor_table(view: StudyView) -> Table:
             words = name in ("motor_force", "guide_curve_radius")
             values = ", ".join(style.level_text(name, v, unit=words) for v in levels)
         else:
-            values = f"{style.rounded(levels[0], 4)} … {style.rounded(levels[-1], 4)}"
+            values = _range(levels)
         rows.append(
             {
                 "name": style.capital(style.long_name(name)),
@@ -44,7 +45,33 @@ def factor_table(view: StudyView) -> Table:
                 "spec": _spec(given.get(name)) if isinstance(given, Mapping) else "",
             }
         )
+    return rows + _derived(view, given if isinstance(given, Mapping) else {})
+
+
+def _derived(view: StudyView, given: Mapping[str, Any]) -> Table:
+    """Rows of parameters that follow from the factors: their range and the expression."""
+    rows = []
+    for name, spec in given.items():
+        if name in view.factors or name not in view.table or not _spec(spec).startswith("="):
+            continue
+        levels, p = view.levels(name), PARAMETERS.get(name)
+        if not levels:
+            continue
+        rows.append(
+            {
+                "name": style.capital(style.long_name(name)),
+                "symbol": _symbol(p.symbol) if p else ("", ""),
+                "unit": style.unit_text(p.unit) if p else "",
+                "values": _range(levels) if view.numeric(name) else ", ".join(map(str, levels[:6])),
+                "count": len(levels),
+                "spec": _spec(spec),
+            }
+        )
     return rows
+
+
+def _range(levels: list[float]) -> str:
+    return " … ".join(style.near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
 
 
 def _symbol(symbol: str) -> tuple[str, str]:
@@ -89,11 +116,15 @@ def base_table(view: StudyView, ds: xr.Dataset) -> Table:
                 rows.append(
                     {"name": style.capital(style.plain(name)), "symbol": ("", ""), "value": str(value), "unit": ""}
                 )
+    for name in MAPPING_FIELDS:
+        if name not in view.table and view.base.get(name):
+            text = style.level_text(name, str(view.base[name]))
+            rows.append({"name": style.capital(style.plain(name)), "symbol": ("", ""), "value": text, "unit": ""})
     return rows
 
 
 def causes(view: StudyView, hit: np.ndarray) -> list[str]:
-    """The factor levels that an event goes with: up to two factors, the levels with the largest shares.
+    """The factor levels that an event goes with: up to three factors, the levels with the largest shares.
 
     Parameters
     ----------
@@ -104,6 +135,8 @@ def causes(view: StudyView, hit: np.ndarray) -> list[str]:
     total = float(hit.mean())
     if not 0 < total < 1:
         return ["all cases"] if total else []
+    if hit.sum() < FEWEST and total < SPREAD:
+        return []
     found = []
     for name in view.factors:
         labels, members = groups(view, name, view.table[name].to_numpy(), unit=True)
@@ -111,7 +144,7 @@ def causes(view: StudyView, hit: np.ndarray) -> list[str]:
         if np.isfinite(shares).sum() > 1:
             found.append((float(np.nanmax(shares) - np.nanmin(shares)), name, labels, shares))
     said = []
-    for spread, name, labels, shares in sorted(found, key=lambda item: -item[0])[:2]:
+    for spread, name, labels, shares in sorted(found, key=lambda item: -item[0])[:3]:
         if spread < min(SPREAD, total):
             continue
         above = [i for i in np.argsort(-np.nan_to_num(shares), kind="stable") if shares[i] > total][:3]

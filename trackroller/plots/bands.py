@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -110,7 +111,7 @@ def percentiles(column: np.ndarray, factor: Factor, shown: Output) -> tuple[np.n
 
 
 def _level(name: str, level: Any) -> str:
-    return style.level_text(name, level) if isinstance(level, (int, float)) else label(level)
+    return style.level_text(name, level if isinstance(level, (int, float)) else label(level))
 
 
 def _draw(axes, at: np.ndarray, table: np.ndarray, factor: Factor, labels: list[str]) -> None:  # type: ignore[no-untyped-def]
@@ -123,7 +124,8 @@ def _draw(axes, at: np.ndarray, table: np.ndarray, factor: Factor, labels: list[
     axes.vlines(at, table[0], table[4], color=colour, alpha=0.35, linewidth=6)
     axes.vlines(at, table[1], table[3], color=colour, alpha=0.9, linewidth=6)
     axes.plot(at, table[2], color="0.1", marker="_", markersize=9, markeredgewidth=1.5, linestyle="none")
-    short = [text if len(text) <= 20 else text[:19] + "…" for text in style.short_levels(labels)]
-    long = max(map(len, short)) > 6
-    axes.set_xticks(at, short, rotation=25 if long else 0, ha="right" if long else "center", rotation_mode="anchor")
+    shown = [textwrap.fill(text, 17) for text in style.short_levels(labels)]
+    long = max(len(line) for text in shown for line in text.split("\n")) * len(at) > 27
+    axes.set_xticks(at, shown, rotation=35 if long else 0, ha="right" if long else "center", rotation_mode="anchor",
+                    linespacing=0.95)  # fmt: skip
     axes.set_xlim(-0.6, len(at) - 0.4)

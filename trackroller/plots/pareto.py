@@ -97,7 +97,7 @@ def parallel(front: xr.Dataset) -> Drawn:
     if not best.any() or not factors:
         return None
     names = [*factors, *(g for g in goals if g not in factors)]
-    scaled, ends = zip(*(_scaled(front[n].values, "life" in n) for n in names), strict=True)
+    scaled, ends = zip(*(_scaled(n, front[n].values) for n in names), strict=True)
     table = np.stack(scaled, axis=1)
     figure = style.new_figure(92, 170.0 if len(names) > 6 else style.COLUMN_MM)
     axes = figure.add_subplot()
@@ -113,7 +113,7 @@ def parallel(front: xr.Dataset) -> Drawn:
     for i, (row, shade) in enumerate(zip(chosen, shades, strict=True)):
         axes.plot(table[row], color=shade, linewidth=1.0, linestyle=style.LINES[i % 2], zorder=2)
     for j, (low, high) in enumerate(ends):
-        axes.axvline(j, color="0.3", linewidth=0.7, zorder=3)
+        axes.vlines(j, 0.0, 1.0, color="0.3", linewidth=0.7, zorder=3)
         axes.annotate(high, (j, 1.0), xytext=(0, 3), textcoords="offset points", ha="center", fontsize=6)
         axes.annotate(low, (j, 0.0), xytext=(0, -8), textcoords="offset points", ha="center", fontsize=6)
     axes.set_xticks(range(len(names)), [_label(front, n) for n in names], rotation=35, ha="right",
@@ -155,11 +155,12 @@ def _common(front: xr.Dataset, factors: list[str], best: np.ndarray) -> str:
     return f"Most of the best designs have {words.listing([text for _, text in said[:4]])}."
 
 
-def _scaled(values: np.ndarray, log: bool) -> tuple[np.ndarray, tuple[str, str]]:
+def _scaled(name: str, values: np.ndarray) -> tuple[np.ndarray, tuple[str, str]]:
     """Values on 0 to 1 with the labels of the ends; categories by their order of appearance."""
+    log = "life" in name
     if values.dtype.kind not in "fiu":
-        kinds = list(dict.fromkeys(style.short_levels([str(v) for v in values])))
-        values = np.array(style.short_levels([str(v) for v in values]), dtype=object)
+        texts = style.short_levels([style.level_text(name, str(v)) for v in values])
+        kinds, values = list(dict.fromkeys(texts)), np.array(texts, dtype=object)
         place = np.array([kinds.index(str(v)) for v in values]) / max(1, len(kinds) - 1)
         return place, (_cut(kinds[0]), _cut(kinds[-1]))
     values = values.astype(float)
@@ -169,8 +170,9 @@ def _scaled(values: np.ndarray, log: bool) -> tuple[np.ndarray, tuple[str, str]]
         part = np.log(np.clip(values, low, high) / low) / max(np.log(high / low), 1e-300)
     else:
         part = (np.clip(values, low, high) - low) / max(high - low, 1e-300)
-    more = ("unlimited" if log else "∞") if np.isposinf(values).any() else style.number(float(high))
-    return part, (style.number(float(low)), more)
+    span = 0.0 if log else float(high - low)
+    more = ("unlimited" if log else "∞") if np.isposinf(values).any() else style.near(float(high), span)
+    return part, (style.near(float(low), span), more)
 
 
 def _cut(text: str) -> str:

@@ -63,11 +63,11 @@ def tornado(sens: xr.Dataset, output: str) -> Drawn:
     second = {r.factor: r for r in words.order(sens, output, "S1")} if index == "ST" else {}
     high = 0.38 if second else 0.62
     _bars(axes, place + (high / 2 if second else 0), ranks, high, colours[0], "",
-          "with interactions" if second else AXIS[index])  # fmt: skip
+          "with interactions" if second else AXIS[index], index not in words.SIGNED)  # fmt: skip
     if second:
         alone = [second[r.factor] for r in ranks if r.factor in second]
         at = np.array([p for p, r in zip(place, ranks, strict=True) if r.factor in second]) - high / 2
-        _bars(axes, at, alone, high, colours[1], "////", "alone")
+        _bars(axes, at, alone, high, colours[1], "////", "alone", True)
         axes.legend(loc="lower right")
     axes.set_yticks(place, [words.upper(r.name) for r in ranks])
     axes.tick_params(axis="y", length=0)
@@ -82,9 +82,12 @@ def tornado(sens: xr.Dataset, output: str) -> Drawn:
     return figure, style.FigureInfo(f"tornado-{output}", caption, words.tornado(sens, output))
 
 
-def _bars(axes, place, ranks, height, colour, hatch, label) -> None:  # type: ignore[no-untyped-def]
+def _bars(axes, place, ranks, height, colour, hatch, label, shares) -> None:  # type: ignore[no-untyped-def]
     value = np.array([r.value for r in ranks])
-    error = np.abs(np.array([[r.value - r.low, r.high - r.value] for r in ranks]).T)
+    ends = np.array([[r.low, r.high] for r in ranks]).T
+    if shares:  # no share of variance is below nothing
+        value, ends = np.maximum(value, 0.0), np.where(np.isnan(ends), np.nan, np.maximum(ends, 0.0))
+    error = np.abs(ends - value)
     axes.barh(place, value, height, color=colour, hatch=hatch, edgecolor="0.15", linewidth=0.6, label=label)
     good = np.isfinite(error).all(axis=0)
     if good.any():
@@ -95,7 +98,8 @@ def _bars(axes, place, ranks, height, colour, hatch, label) -> None:  # type: ig
 def overview(sens: xr.Dataset) -> Drawn:
     """All outputs at once: the headline index of each factor, relative to the largest where it has units."""
     index = words.headline(sens)
-    table = np.abs(sens[index].transpose("factor", "output").values)
+    table = sens[index].transpose("factor", "output").values
+    table = np.abs(table) if index in words.SIGNED else np.where(np.isnan(table), np.nan, np.maximum(table, 0.0))
     keep = np.isfinite(table).any(axis=0)
     if keep.sum() < 2:
         return None
@@ -210,14 +214,17 @@ def interactions(sens: xr.Dataset, output: str) -> Drawn:
     table = np.where(np.isfinite(table), table, table.T)
     if name != "interaction":
         table = np.where(np.isfinite(table), np.maximum(table, 0.0), table)  # estimates of nothing fall below 0
-    own = {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
-    np.fill_diagonal(table, np.abs(part[own].values))
+    fitted = name == "interaction_share" and "main_share" not in part
+    own = "first" if fitted else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
+    np.fill_diagonal(table, np.abs(part[own].values) if own == "effect" else np.maximum(part[own].values, 0.0))
     table = np.where(np.triu(np.ones_like(table, dtype=bool)), np.abs(table), np.nan)
     names = [words.upper(str(n)) for n in part["factor_name"].values]
     unit = effect_unit(sens, output) if name == "interaction" else "share of variance"
     figure = _heat(table, names, names, f"{unit} [–]" if name != "interaction" else f"size [{unit}]",
                    f"{title(sens, output)}: interactions")  # fmt: skip
     caption = "Off the diagonal what two factors do together beyond the sum of both; on it each factor alone."
+    if fitted:
+        caption += " Approximate: from a polynomial fitted to the sample."
     return figure, style.FigureInfo(f"interactions-{output}", caption, words.interactions(sens, output))
 
 

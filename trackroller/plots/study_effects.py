@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -54,14 +55,18 @@ def groups(view: StudyView, name: str, values: np.ndarray, unit: bool = False) -
         return [style.level_text(name, v) if unit else _short(name, v) for v in levels], [values == v for v in levels]
     edges = np.unique(np.quantile(values[np.isfinite(values)], np.linspace(0, 1, 6)))
     index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
-    ending = style.level_text(name, edges[-1]).partition(" ")[2] if unit and name in PARAMETERS else ""
-    names = [f"{style.rounded(a, 3)} … {style.rounded(b, 3)} {ending}".strip() for a, b in pairwise(edges)]
+    told = style.unit_text(PARAMETERS[name].unit) if unit and name in PARAMETERS else ""
+    ending = "" if told == "–" else told
+    span = float(edges[-1] - edges[0])
+    names = [f"{style.near(a, span)} … {style.near(b, span)} {ending}".strip() for a, b in pairwise(edges)]
     return names, [index == i for i in range(len(edges) - 1)]
 
 
 def _short(name: str, value: Any) -> str:
     text = style.level_text(name, value, unit=name in ("guide_curve_radius", "motor_force"))
-    return text if len(text) <= 30 else "\n on ".join(text.split(" on ", 1)) if " on " in text else text[:29] + "…"
+    if len(text) <= 30:
+        return text
+    return "\n on ".join(text.split(" on ", 1)) if " on " in text else textwrap.fill(text, 26)
 
 
 def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
-from trackroller.plots.study_life import MAX_POINTS, legend, marks
+from trackroller.plots.study_life import legend, marks
 from trackroller.plots.study_view import StudyView
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
+CLOUD = 400  # cases of a sample drawn, where more would hide each other
 FORCES = (
     ("normal_force", "Normal force", r"$F_\mathrm{N}$"),
     ("lateral_force", "Lateral force", r"$F_\mathrm{T}$"),
@@ -81,7 +82,7 @@ def _stress_groups(view: StudyView, rows: pd.DataFrame, hue: str | None) -> list
     levels = view.levels(hue, rows)
     name = "μ = " if hue == "friction_coefficient" else ""
     if not view.grid and view.numeric(hue) and len(levels) > 5:
-        rows = rows if len(rows) <= MAX_POINTS else rows.sample(MAX_POINTS, random_state=0)
+        rows = rows if len(rows) <= 3 * CLOUD else rows.sample(3 * CLOUD, random_state=0)
         edges = np.quantile(rows[hue], [0, 1 / 3, 2 / 3, 1])
         return [
             (
@@ -148,8 +149,10 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
     drive = "motor_force" if "motor_force" in view.factors and len(view.levels("motor_force")) <= 5 else None
     rows, held = view.hold((*view.behind(x), drive) if drive else view.behind(x))
     drives = view.levels(drive, rows) if drive else [None]
-    if not view.grid and len(rows) > MAX_POINTS:
-        rows = rows.sample(MAX_POINTS, random_state=0)
+    every = rows
+    if not view.grid and len(rows) > CLOUD:
+        rows = rows.sample(CLOUD, random_state=0)
+        held = f"{CLOUD} of the {len(every)} cases of the sample."
     colours = style.palette(3)
     figure = style.new_figure(22 + 32 * len(kinds) + 4 * (len(drives) + 1))
     panels = figure.subplots(len(kinds), 1, sharex=True, squeeze=False)[:, 0]
@@ -184,7 +187,7 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
     legend(figure, entries, columns=2)
     style.head(figure, "Forces of both contacts against axial force", held)
     style.finish(figure)
-    return figure, _force_info(rows, held, len(drives))
+    return figure, _force_info(every, held, len(drives))
 
 
 def _force_series(axes, part, x: str, y: str, contact: int, colour, line, grid: bool) -> None:
@@ -237,7 +240,7 @@ def _force_info(rows: pd.DataFrame, held: str, drives: int) -> style.FigureInfo:
     lifted = axial[regime == 2]
     if lifted.size:
         first = style.number(lifted[np.argmin(np.abs(lifted))])
-        sentence = f"{lifted.size} of {len(rows)} cases shown lift off, the first at an axial force of {first} N."
+        sentence = f"{lifted.size} of {len(rows)} cases lift off, the first at an axial force of {first} N."
         return style.FigureInfo(name, caption, sentence)
     if "normal_force_1" not in rows:
         return style.FigureInfo(name, caption, "The normal forces are not part of this study.")
@@ -248,5 +251,5 @@ def _force_info(rows: pd.DataFrame, held: str, drives: int) -> style.FigureInfo:
     last = np.flatnonzero(good)[np.argmax(np.abs(axial[good]))]
     one, two = (style.number(v) for v in both[last])
     at = style.number(axial[last])
-    sentence = f"At an axial force of {at} N the contacts carry {one} and {two} N; no case shown lifts off."
+    sentence = f"At an axial force of {at} N the contacts carry {one} and {two} N; no case lifts off."
     return style.FigureInfo(name, caption, sentence)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import textwrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -64,7 +65,10 @@ def _life_pair(view: StudyView) -> tuple[str, str] | None:
         rows, _ = view.hold(pair)
         regimes = rows["regime"].nunique() if "regime" in rows and view.grid else 1
         finite = np.isfinite(rows[view.life[0]]).any() if view.life else False
-        return float(finite), float(sum(many[f] for f in pair)), float(regimes), sum(swing.get(f, 0) for f in pair)
+        few = [len(view.levels(f)) <= MAX_CELLS for f in pair]
+        alike = view.grid or few[0] == few[1]  # a sample is drawn as cells or as points, not as rows of points
+        several = float(sum(many[f] for f in pair))
+        return float(finite), float(alike), several, float(regimes), sum(swing.get(f, 0) for f in pair)
 
     pairs = list(itertools.combinations(names, 2))
     if not pairs:
@@ -122,7 +126,7 @@ def _ticks(axes: Axes, pair: tuple[str, str], levels: tuple[list, list]) -> None
 def tick_text(name: str, value: Any) -> str:
     """A level at an axis: short, without unit."""
     if isinstance(value, str):
-        return style.level_text(name, value).replace(" on ", "\non ")
+        return textwrap.fill(style.level_text(name, value).replace(" on ", " on\u00a0"), 24).replace("\u00a0", " ")
     return "∞" if np.isposinf(value) else style.rounded(value, 3)
 
 
@@ -214,7 +218,10 @@ def _life_info(view: StudyView, rows: pd.DataFrame, pair: tuple[str, str], held:
         f"(the drive torque cannot be transmitted) and lift-off (one contact only). {held}"
     )
     if not view.grid:
-        caption = f"{what}, one mark a case; squares: full slip, triangles: lift-off. {held}"
+        cells = all(len(view.levels(f)) <= MAX_CELLS for f in pair)
+        marked = "one mark a case; squares: full slip, triangles: lift-off"
+        how = "median of the cases in each cell" if cells else marked
+        caption = f"{what}, {how}. {held}"
     good = rows[np.isfinite(rows[column])]
     best, worst = good.loc[good[column].idxmax()], good.loc[good[column].idxmin()]
 

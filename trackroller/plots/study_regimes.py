@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.plots import style
 from trackroller.plots.study_life import MAX_POINTS
-from trackroller.plots.study_maps import MAX_TICKS, tick_text
+from trackroller.plots.study_maps import MAX_CELLS, MAX_TICKS, tick_text
 from trackroller.plots.study_view import StudyView
 
 if TYPE_CHECKING:
@@ -48,13 +48,13 @@ def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     if len(ranked) < 2:
         return None
     pair = (ranked[0], ranked[1])
-    if view.grid or not all(view.numeric(f) for f in pair):
+    points = not view.grid and all(view.numeric(f) and _columns(view, f) > MAX_CELLS for f in pair)
+    if not points:
         pair = pair if _columns(view, pair[0]) >= _columns(view, pair[1]) else (pair[1], pair[0])
         if not view.numeric(pair[0]):  # long names stand beside the rows, not under the columns
             pair = (pair[1], pair[0])
     figure = style.new_figure(84)
     axes = figure.subplots()
-    points = not view.grid and all(view.numeric(f) for f in pair)
     (_regime_points if points else _regime_shares)(axes, view, pair)
     axes.set_xlabel(style.factor_label(pair[0]))
     axes.set_ylabel(style.factor_label(pair[1]))
@@ -65,10 +65,19 @@ def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     style.finish(figure)
     counts = view.table["regime"].value_counts()
     said = ", ".join(f"{int(counts.get(c, 0))} {style.REGIME_LABELS[c]}" for c in range(4) if counts.get(c, 0))
-    first, second = (style.long_name(f) for f in ranked[:2])
-    sentence = f"Of {len(view.table)} cases: {said}; {first} decides most, then {second}."
+    sentence = f"Of {len(view.table)} cases: {said}; {_deciding(view, ranked)}."
     caption = f"Regime of the cases over {style.long_name(pair[0])} and {style.long_name(pair[1])}. {note}"
     return figure, style.FigureInfo("regime_map", caption.strip(), sentence)
+
+
+def _deciding(view: StudyView, ranked: list[str]) -> str:
+    """Which factors the regimes change with, in words."""
+    spread = {f: regime_spread(view, f) for f in ranked[:3]}
+    total = max(spread.values())
+    names = [style.long_name(f) for f in ranked[:3] if spread[f] > 0.1 * total]
+    if len(names) == 1:
+        return f"{names[0]} alone decides"
+    return f"{names[0]} decides most, then {' and '.join(names[1:])}"
 
 
 def _columns(view: StudyView, name: str) -> int:

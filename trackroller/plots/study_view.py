@@ -28,7 +28,7 @@ CONTACT_RESULTS = (
     "semi_axis_rolling",
 )
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles")
-PLAIN_RESULTS = ("regime", "validity", "converged", "roller_life_hours", "guide_life_hours", "slip")
+PLAIN_RESULTS = ("regime", "validity", "converged", "roller_life_hours", "guide_life_hours", "slip", "stopped")
 SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lying on the surface
 
 

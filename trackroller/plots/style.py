@@ -13,7 +13,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.study.levels import short
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -132,8 +133,9 @@ def _set_title(figure: Figure) -> None:
 
 def log_ticks(axis: Any, low: float, high: float) -> None:
     """Ticks of a logarithmic axis: decades when there are many, 1-2-5 with plain numbers when there are few."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
+    axis.set_minor_formatter(NullFormatter())
     decades = math.log10(high / low) if low > 0 and high > low else 0.0
     if not 0 < decades <= 1.6:
         return
@@ -228,13 +230,21 @@ def rounded(value: float, figures: int) -> str:
     return number(float(f"{value:.{figures}g}"))
 
 
+def near(value: float, span: float) -> str:
+    """A value rounded to a thousandth of the span it lies in: 0.2498 of 0.25 is 0.25, 1.6e-5 of 0.25 is 0."""
+    if not (span > 0 and math.isfinite(span) and math.isfinite(value)):
+        return number(value)
+    digits = 2 - math.floor(math.log10(span))
+    return rounded(round(value, digits) + 0.0, 3)
+
+
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def level_text(name: str, value: Any, unit: bool = True) -> str:
     """A level of a factor in words: 'straight' for an infinite curve, 'driven −30 N' for a motor force."""
     if isinstance(value, str):
-        return _pair(value)
+        return short(name, value) if name in MAPPING_FIELDS else _pair(value)
     value = float(value)
     if name == "motor_force" and unit:
         if value == 0:
@@ -251,12 +261,18 @@ def level_text(name: str, value: Any, unit: bool = True) -> str:
 
 def short_levels(names: Sequence[str]) -> list[str]:
     """Names of categories without the part of a pair that all of them share: only what differs tells them apart."""
-    parts = [name.split(" / ") for name in names]
+    parts = [_parts(name) for name in names]
     if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
         for keep in (0, 1):
             if len({p[1 - keep] for p in parts}) == 1:
                 return [p[keep] for p in parts]
     return list(names)
+
+
+def _parts(name: str) -> list[str]:
+    if name.endswith(" on itself"):
+        return [name.removesuffix(" on itself")] * 2
+    return name.split(" / " if " / " in name else " on ")
 
 
 def _pair(label: str) -> str:

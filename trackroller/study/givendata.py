@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from trackroller.study.delta import classes, delta
+from trackroller.study.delta import delta
 from trackroller.study.indices import Estimates, Z, constant
 
 MIN_ROWS = 30
@@ -44,7 +44,7 @@ def given_data(
     unit : quantiles or list indices of the factors, shape (n, k)
     ordered : for which factors more and less mean something, shape (k,); others have no rank correlation
     measures : of `MEASURES`
-    resamples : bootstrap resamples of delta and PAWN
+    resamples : bootstrap resamples of PAWN
 
     Returns
     -------
@@ -70,7 +70,7 @@ def given_data(
         if np.ptp(unit[:, j]) == 0:
             continue
         if "delta" in measures:
-            found = delta(y, bins(unit[:, j], classes(len(y)), bool(ordered[j])), seed, resamples)
+            found = delta(y, unit[:, j], bool(ordered[j]), seed)
             for name, value in zip(MEASURES["delta"], found, strict=True):
                 out[name][j] = value
         if "pawn" in measures:

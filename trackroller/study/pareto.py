@@ -92,13 +92,13 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     allowed = np.isin(regime, [REGIMES.index(name) for name in keep])
     excluded = {"regime": int((~allowed).sum())}
     table = np.stack([np.asarray(columns[n][0], dtype=float) for n in objectives], axis=1)
-    defined = ~np.isnan(table).any(axis=1)
-    excluded["an undefined goal"] = int((allowed & ~defined).sum())
-    allowed &= defined
-    for text in constraints:
+    for text in constraints:  # first what the user asked for, then what has no number
         good = np.broadcast_to(_meets(text, columns), allowed.shape)
         excluded[text] = int((allowed & ~good).sum())
         allowed &= good
+    defined = ~np.isnan(table).any(axis=1)
+    excluded["an undefined goal"] = int((allowed & ~defined).sum())
+    allowed &= defined
     optimal = pareto_mask(table, objectives.values(), allowed)
     data: dict[str, Any] = {name: ("row", values[0][allowed], {"units": values[1], "long_name": values[2]})
                             for name, values in columns.items()}  # fmt: skip

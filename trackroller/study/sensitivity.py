@@ -19,6 +19,7 @@ from trackroller.parameters import PARAMETERS, REGIMES
 from trackroller.study import convergence, indices
 from trackroller.study.givendata import MEASURES, firsts, given_data
 from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes, settings
+from trackroller.study.pairs import pairs
 from trackroller.study.restore import design_of
 from trackroller.study.sampling import SampledDesign
 from trackroller.study.sobol import sobol
@@ -102,6 +103,8 @@ def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> tuple[Fields,
     places = design.places
     measures = tuple(dict.fromkeys(("first", *how.measures)))  # the one that ranks the factors
     out = given_data(y, places, ordered, how.seed, measures, how.resamples)
+    if len(design.factors) > 1 and not correlated(design):
+        out |= pairs(y, places, ordered, how.seed)
     at = convergence.sizes(len(y), smallest=64)
 
     def part(n: int) -> Fields:  # every so many rows: the first rows of a table may be sorted
@@ -143,7 +146,8 @@ def analyse_dataset(
     -------
     Dataset with dimensions output, factor, factor_2, sample_size. By method: S1, ST, S2 (saltelli), mu,
     mu_star, sigma (morris), main_share, interaction_share, higher_share (grid), effect, curvature,
-    interaction (response surfaces), first, delta, pawn, prcc (given data), with _low and _high and the course with
+    interaction (response surfaces), first, delta, pawn, prcc (given data; in a random sample also interaction_share,
+    approximate, by a polynomial that predicts `fit_share` of the variance), with _low and _high and the course with
     sample size. For each output: used_share, reliable, take_times, and `note`, which says what was left out
     and why.
     A nested study gives what `trackroller.study.robustness.robustness` returns.
@@ -243,6 +247,7 @@ _WORDS = {
     "higher_share": "share of variance of interactions of three and more factors",
     "effect": "change over the factor's range", "curvature": "quadratic coefficient, coded",
     "interaction": "two-factor interaction effect", "r_squared": "share of variance fitted",
+    "fit_share": "share of variance predicted by the fitted polynomial",
     "first": "share of variance explained alone, from given data", "pawn": "PAWN index", "delta": "delta index",
     "pawn_noise": "PAWN index an inert factor stays below", "delta_noise": "delta index an inert factor stays below",
     "prcc": "partial rank correlation coefficient",

@@ -10,8 +10,10 @@ import xarray as xr
 
 from trackroller.parameters import PARAMETERS
 from trackroller.study.convergence import advice
+from trackroller.study.levels import short
 
 SMALL = 0.02  # share of variance below which a factor is called negligible
+SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
 HEADLINES = {"saltelli": "ST", "morris": "mu_star", "grid": "main_share"}
 
 
@@ -45,7 +47,7 @@ def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
     rows = [Rank(str(f), str(n), float(v), float(a), float(b))
             for f, n, v, a, b in zip(part["factor"].values, names, part[index].values, low, high, strict=True)
             if np.isfinite(v)]  # fmt: skip
-    return sorted(rows, key=lambda r: -abs(r.value))
+    return sorted(rows, key=lambda r: -abs(r.value) if index in SIGNED else -r.value)
 
 
 def percent(value: float, low: float = np.nan, high: float = np.nan) -> str:
@@ -227,13 +229,16 @@ def interactions(sens: xr.Dataset, output: str) -> str:
     if name == "interaction":
         return f"The strongest interaction on {of_output(sens, output)} is {names[i]} with {names[j]}: {number(value)}."
     low, high = (float(part[f"{name}{e}"].values[i, j]) if f"{name}{e}" in part else np.nan for e in ("_low", "_high"))
+    how = ""
+    if "fit_share" in part:
+        how = f" (approximate: by a polynomial that predicts {percent(float(part['fit_share']))} of the variance)"
     if not np.isfinite(low) and value < 0.01:
         return f"No interaction of two factors makes 1 % of the variance of {of_output(sens, output)}."
     if np.isfinite(low) and low <= 0:
         return (f"No interaction of two factors on {of_output(sens, output)} is beyond doubt; the largest, {names[i]} "
-                f"with {names[j]}, is {percent(value, low, high)} of the variance.")  # fmt: skip
+                f"with {names[j]}, is {percent(value, low, high)} of the variance{how}.")  # fmt: skip
     text = (f"The strongest interaction on {of_output(sens, output)}, {names[i]} with {names[j]}, "
-            f"makes {percent(value, low, high)} of the variance")  # fmt: skip
+            f"makes {percent(value, low, high)} of the variance{how}")  # fmt: skip
     if "higher_share" in part:
         text += f"; interactions of three and more factors {percent(float(part['higher_share']))}"
     return text + "."
@@ -338,6 +343,7 @@ def point_words(table: xr.Dataset, point: int) -> str:
     said = []
     for name in names:
         value = table[name].values[point]
-        text = value if isinstance(value, str) else with_unit(float(value), _unit_of(name)).replace(" °", "°")
+        number = "" if isinstance(value, str) else with_unit(float(value), _unit_of(name)).replace(" °", "°")
+        text = number or short(name, value)
         said.append(f"{name.replace('_', ' ')} {text}")
     return ", ".join(said) or "the one design point"
