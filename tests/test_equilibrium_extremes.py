@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 import trackroller as tr
+from trackroller.dataset import VALIDITY_BITS
+from trackroller.study.extremes import scaled
+from trackroller.study.extremes_random import random_extremes
 
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
 
@@ -74,3 +77,53 @@ def test_friction_at_the_end_of_the_range_of_numbers_is_none():
     ds = solved(*(tr.Case(**case, axial_force=a, motor_force=0.0) for a in (-0.03, 0.03)))
     assert ds.regime.values.tolist() == [ROLLING, ROLLING]
     assert ds.normal_force.values[0] == pytest.approx(ds.normal_force.values[1, ::-1], rel=1e-12)
+
+
+def test_self_locking_is_flagged_with_and_without_axial_force():
+    """Without axial force the even balance is an unstable one; the slightest axial force sheds a contact: same flag."""
+    bit = 1 << list(VALIDITY_BITS).index("jamming")
+    case = dict(contact_angle=11, radial_force=-200, motor_force=0)
+    ds = solved(*(tr.Case(friction_coefficient=mu, axial_force=a, **case) for mu in (0.2, 0.6) for a in (0, 1e-9, 1)))
+    assert ds.regime.values.tolist() == [ROLLING] * 4 + [LIFT_OFF] * 2
+    assert (ds.validity.values & bit > 0).tolist() == [False] * 3 + [True] * 3
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_a_contact_lifts_at_a_stated_share_of_the_load_and_once(friction):
+    """Lift-off begins at 1e-8 of |F_rad| + |F_ax|, not where the iteration gives up; beyond it stays."""
+    lift, low, high = 200 * np.tan(np.deg2rad(30)), 0.5, 1.1
+    for _ in range(10):
+        shares = np.linspace(low, high, 41)
+        ds = solved(*(tr.Case(axial_force=lift * s, friction_coefficient=friction, motor_force=0) for s in shares))
+        up = ds.regime.values == LIFT_OFF
+        assert np.all(np.diff(up.astype(int)) >= 0) and set(ds.regime.values) <= {ROLLING, LIFT_OFF}
+        first = int(np.argmax(up))
+        least = float(ds.normal_force.values[first - 1].min())
+        low, high = shares[first - 1], shares[first]
+        if high - low < 1e-12:
+            break
+    assert least == pytest.approx(1e-8 * (200 + lift * low), rel=1e-2)
+
+
+def test_converged_says_whether_the_force_of_a_roller_far_smaller_than_its_patch_is_known():
+    """The transmitted force in other units differs by no more than the residual says, over what friction can give."""
+    cases = random_extremes(1500, 11)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        one, two = (tr.solve(c, "forces") for c in (cases, [scaled(c, 7.3, 0.37) for c in cases]))
+    both = (one.regime.values == ROLLING) & (two.regime.values == ROLLING)
+    mu = np.array([c["friction_coefficient"] for c in cases])
+    both &= mu > 0
+    gap = np.abs(one.transmitted_force.values - two.transmitted_force.values / (7.3**2 * 0.37))
+    gap = (gap / np.where(mu > 0, mu * one.normal_force.values.sum(axis=1), 1))[both]
+    assert np.all(gap < 30 * np.fmax(one.residual.values, two.residual.values)[both] + 1e-9)
+    sure = ((one.converged.values == 1) & (two.converged.values == 1))[both]
+    assert sure.mean() > 0.9 and gap[sure].max() < 3e-9
+
+
+@pytest.mark.parametrize("friction", [5e-324, 1e-300, 1e-99, 1e-50])
+@pytest.mark.parametrize("motor", [0.0, 5e-324, -5e-324, 1e-300])
+def test_vanishing_friction_and_motor_force_are_quiet(friction, motor):
+    ds = solved(tr.Case(friction_coefficient=friction, motor_force=motor))
+    assert ds.regime.values in (ROLLING, FULL_SLIP)
+    assert np.isfinite(ds.normal_force.values).all()

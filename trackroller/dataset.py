@@ -94,7 +94,8 @@ VALIDITY_BITS = {
     "yield": "p_max above 1.6 R_m of a body (R_m taken for the yield strength): plastic flow under the surface",
     "static": "peak stress above R_m of the body: static failure, the Woehler line is run beyond its end",
     "conformal": "the patch reaches the edge of the groove or the middle of the guide",
-    "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, the wedge may lock",
+    "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, or in one that has lifted if "
+    "there were no axial force: the wedge may lock, and the slightest axial force lifts a contact",
     "large_slip": "longitudinal slip above 10 %: friction heat and wear decide",
     "deep_life": "peak stress below the fatigue limit: life rests on the rule chosen beyond the knee",
     "split_pole": "the slip of the sliding model vanishes apart from its spin pole, or twice in a patch: the stress of "

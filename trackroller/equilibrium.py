@@ -14,9 +14,9 @@ import numpy as np
 
 from trackroller.contact.common import Resultants
 from trackroller.contact.sliding import tractions_full_slip
-from trackroller.equilibrium_branch import follow_friction
+from trackroller.equilibrium_branch import follow_friction, self_locking
 from trackroller.equilibrium_falling import first_balance
-from trackroller.equilibrium_newton import bracketed, newton_polish
+from trackroller.equilibrium_newton import bracketed, digits_of_forces, newton_polish
 from trackroller.equilibrium_roller import LAST_SLIP, ContactLaw, Loads, Roller
 
 __all__ = ["FAILED", "FULL_SLIP", "LIFT_OFF", "ROLLING", "ContactLaw", "Equilibrium", "Loads", "solve_equilibrium"]
@@ -28,12 +28,16 @@ class Equilibrium:
     """Solution for n rollers: `regime` (n,), shift (n,) [mm], normal_force (n, 2) [N] and the resultants.
 
     `forces` has the fields of `Resultants`, each of shape (n, 2). `residual` is the largest relative
-    imbalance: forces over the applied loads, torque over what friction and motor can give. Undefined is NaN.
+    imbalance: forces over the applied loads, torque over what friction and motor can give; for rollers small against
+    their patches no less than the uncertainty of the transmitted force over what friction can give. `jamming` marks
+    rollers whose friction alone carries the lateral load; a lifted one, if it did so without axial force. Undefined
+    is NaN.
     """
 
     regime: np.ndarray
     converged: np.ndarray
     residual: np.ndarray
+    jamming: np.ndarray
     shift: np.ndarray
     normal_force: np.ndarray
     forces: Resultants
@@ -49,24 +53,24 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
 
     Regimes: `FULL_SLIP` where even complete slip in the rolling direction (r_Delta0 = -r_A driving: the roller
     spins without travel; r_Delta0 -> inf braking: it is locked) cannot balance the motor force; `LIFT_OFF` where
-    a normal force would be <= 0. ASSUME: without friction the slip is that of the limit mu -> 0 if F_Motor = 0,
-    and every motor force means full slip.
+    a contact would carry no more than 1e-8 of |F_rad| + |F_ax|, or pull. ASSUME: without friction the slip is that
+    of the limit mu -> 0 if F_Motor = 0, and every motor force means full slip.
     """
     # friction whose forces would run out of the range of numbers is none
     loads = replace(loads, friction=np.where(loads.friction < 1e-100, 0.0, loads.friction))
     n = loads.radial_force.size
     regime = np.full(n, FAILED, dtype=np.int8)
-    residual, shift = np.full(n, np.nan), np.full(n, np.nan)
+    residual, shift, jamming = np.full(n, np.nan), np.full(n, np.nan), np.zeros(n, bool)
     normal, forces = np.full((2, n), np.nan), np.full((3, 2, n), np.nan)
     everything = np.arange(n)
     if n == 0:
-        return Equilibrium(regime, regime == 1, residual, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
+        return Equilibrium(regime, jamming, residual, jamming, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
     everything = everything[np.isfinite(loads.shape.lateral)]
     limit = np.abs(loads.motor_force) > 0
     slides = everything[(loads.friction[everything] == 0) & limit[everything]]
     rolls = np.setdiff1d(everything, slides)
     if rolls.size:
-        beyond = _solve_rolling(loads, law, rolls, regime, residual, shift, normal, forces)
+        beyond = _solve_rolling(loads, law, rolls, regime, residual, jamming, shift, normal, forces)
         slides = np.concatenate([slides, beyond])
     if slides.size:
         _solve_full_slip(loads, law, slides, regime, residual, shift, normal, forces)
@@ -75,10 +79,10 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
     residual[regime == LIFT_OFF] = np.nan
     normal[:, lifted], forces[:, :, lifted] = np.nan, np.nan
     converged = np.where(regime == LIFT_OFF, True, residual <= loads.converged)
-    return Equilibrium(regime, converged, residual, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
+    return Equilibrium(regime, converged, residual, jamming, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
 
 
-def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) -> np.ndarray:
+def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, forces) -> np.ndarray:
     """Fills the rolling rows; returns those whose torque cannot be transmitted."""
     friction = np.where(loads.friction[rows] > 0, loads.friction[rows], 1e-12)
     full = np.ones_like(loads.friction)
@@ -110,7 +114,7 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
         w2, n2 = bracketed(again, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
         b2, w2, n2, f2 = newton_polish(again, w2, n2, low[bad], high[bad])
         best[bad], w[bad], n[:, bad], f[:, :, bad] = b2, w2, n2, f2
-    lift = np.any(n <= 1e-8 * roller.load, axis=0)
+    lift = roller.lifts(n)
     bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift)
     if bad.size:
         b3, w3, n3, f3, lift[bad] = follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
@@ -119,7 +123,12 @@ def _solve_rolling(loads, law, rows, regime, residual, shift, normal, forces) ->
     lift |= ~(best <= 1e-6) & np.any(roller.normal_forces(np.zeros((2, go.size))) <= 0, axis=0)
     k = rows[go]
     regime[k] = np.where(lift, LIFT_OFF, np.where(best <= 1e-6, ROLLING, FAILED))
-    residual[k], shift[k], normal[:, k] = best, roller.shift(w), n
+    jamming[k] = roller.grips(n, f) & (loads.friction[k] > 0)
+    up = np.flatnonzero(lift & (loads.friction[k] > 0))
+    if up.size:
+        jamming[k[up]] = self_locking(rolled, law, k[up], low[up], high[up])
+    residual[k] = np.fmax(best, digits_of_forces(roller, w, n, f, best))
+    shift[k], normal[:, k] = roller.shift(w), n
     forces[:, :, k] = np.where(loads.friction[k] > 0, f, 0.0)
     return rows[beyond]
 
@@ -138,7 +147,7 @@ def _solve_full_slip(loads, law, rows, regime, residual, shift, normal, forces) 
     loads = replace(loads, friction=loads.friction * loads.at_high_speed)
     roller = Roller(loads, law, rows)
     n = roller.normal_forces(np.zeros((2, rows.size)))
-    lift = np.any(n <= 0, axis=0)
+    lift = roller.lifts(n)
     regime[rows] = np.where(lift, LIFT_OFF, FULL_SLIP)
     direction = -np.sign(loads.motor_force[rows])
     for i in (0, 1):

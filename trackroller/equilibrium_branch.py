@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from trackroller.equilibrium_newton import bracketed, newton_polish
-from trackroller.equilibrium_roller import Roller
+from trackroller.equilibrium_roller import LIFTED, ContactLaw, Loads, Roller
 
 
 def follow_friction(loads, law, rows, low, high):
@@ -34,7 +34,7 @@ def follow_friction(loads, law, rows, low, high):
         fine = best <= 1e-8
         lost, found = lost | ~fine, found | np.isfinite(best)
         shrunk = np.any(normal < 0.15 * roller.load, axis=0)
-        lifted |= np.where(fine, np.any(n_new < 1e-7 * roller.load, axis=0), shrunk)
+        lifted |= np.where(fine, np.any(n_new <= LIFTED * roller.load, axis=0), shrunk)
         w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
         with np.errstate(invalid="ignore"):
             grip = np.where(fine, np.max(np.abs(f[0] / n_new), axis=0) / tangent, grip)
@@ -43,3 +43,14 @@ def follow_friction(loads, law, rows, low, high):
     light = np.any(normal < 0.2 * roller.load, axis=0)
     lifted |= np.where(lost, ((grip > 0.5) | light) & (loads.axial_force[rows] != 0), ~roller.wedged(normal, f))
     return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing
+
+
+def self_locking(loads: Loads, law: ContactLaw, rows: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Would friction lock the wedge of these rollers without axial force, mu f >= tan(alpha)? Shape (m,).
+
+    Then the even balance is unstable: the lateral friction turns with the load, and the slightest axial force sheds a
+    contact. Judged with the coarse law; one without an answer says no.
+    """
+    roller = Roller(replace(loads, axial_force=np.zeros_like(loads.axial_force)), law, rows)
+    w, normal = bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
+    return roller.grips(normal, roller.contact(roller.shift(w), normal, False))

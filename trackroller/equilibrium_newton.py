@@ -6,6 +6,9 @@ import numpy as np
 
 from trackroller.equilibrium_roller import Roller
 
+SMALL = 0.01  # rolling radius over patch
+EPS = 2.0**-53
+
 
 def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance: float):
     """Root of the torque balance in w by the Illinois rule, the normal forces following along.
@@ -119,3 +122,29 @@ def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
                           np.cross(a[:, :, 0], a[:, :, 1])], axis=1)  # fmt: skip
         x = np.einsum("mij,mj->mi", cross, b) / np.sum(a[:, :, 0] * cross[:, 0], axis=1)[:, None] / columns
     return np.where(np.isfinite(x), x, np.nan)
+
+
+def digits_of_forces(roller: Roller, w, normal, f, residual) -> np.ndarray:
+    """Uncertainty of the transmitted force over what friction can give, of rollers small against their patches; (m,).
+
+    There the drilling torque outweighs the force a thousandfold and more, and a small imbalance of the torque no
+    longer tells that the force is known: it moves it by dF_A/dtorque, taken over a short and the shortest step of the
+    slip, times the imbalance or its rounding. 0 for rollers larger than `SMALL` of their patch.
+    """
+    size = np.hypot(roller.shape.lateral, roller.shape.rolling) * np.cbrt(np.max(normal, axis=0))
+    small = np.flatnonzero((roller.radius < SMALL * size) & np.isfinite(residual))
+    unsure = np.zeros(w.size)
+    if small.size == 0:
+        return unsure
+    taken, turned = f[1].sum(axis=0)[small], roller.torque(f)[small]
+    inward = np.where(w[small] > 0, -1.0, 1.0)
+    moved = [roller.contact(roller.shift(w[small] + inward * step, small), normal[:, small], True, small)
+             for step in (roller.step * (1 - np.abs(w[small])), EPS)]  # fmt: skip
+    given = roller.friction[small] * normal[:, small].sum(axis=0)
+    noise = 4.0 * EPS * roller.torque_scale[small]
+    share = np.zeros(small.size)
+    for g in moved:  # what changes by rounding alone tells nothing
+        change = np.maximum(np.abs(g[1].sum(axis=0) - taken) - 16.0 * EPS * given, 0.0)
+        share = np.fmax(share, change / np.maximum(np.abs(roller.torque(g, small) - turned), noise))
+    unsure[small] = share * np.maximum(np.abs(turned), noise) / given
+    return unsure

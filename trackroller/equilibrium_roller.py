@@ -12,6 +12,7 @@ from trackroller.contact.hertz import HertzShape
 
 LAST_SLIP = 1.0 - 2.0**-53  # largest |w|; beyond, the friction is that of complete slip to the last digit
 TOLERANCE = 0.01  # aimed at, over the residual that counts as converged
+LIFTED = 1e-8  # a contact that carries no more than this share of the load has lifted off
 
 # ellipse, slip, friction, rows -> resultants; `fine` chooses the discretisation
 ContactLaw = Callable[[Ellipse, Slip, np.ndarray, np.ndarray, bool], Resultants]
@@ -116,6 +117,14 @@ class Roller:
 
     def w_of(self, shift: np.ndarray) -> np.ndarray:
         return np.clip(shift / np.hypot(self.slip_scale, shift), -LAST_SLIP, LAST_SLIP)
+
+    def lifts(self, normal: np.ndarray) -> np.ndarray:
+        """Does a contact carry no more than `LIFTED` of the load? Shape (m,)."""
+        return np.any(normal <= LIFTED * self.load, axis=0)
+
+    def grips(self, normal: np.ndarray, f: np.ndarray) -> np.ndarray:
+        """Does friction alone carry the lateral load of a contact, |F_T| >= F_N tan(alpha)? Shape (m,)."""
+        return np.any(np.abs(f[0]) * self.cos >= normal * self.sin, axis=0)
 
     def floored(self, normal: np.ndarray, pick=slice(None)) -> np.ndarray:
         """Normal forces kept positive, for a contact about to lift still needs an ellipse, and finite."""

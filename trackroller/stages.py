@@ -40,6 +40,7 @@ LIFE_CONVENTIONS = (
     "taken as the amplitude (as published); below sigma_D: elementary runs the line on, haibach uses the slope 2k - 1, "
     "unlimited gives inf; roller: one overrolling per revolution; guide: overrollings per hour are the user's input"
 )
+JAMMING = 1 << list(VALIDITY_BITS).index("jamming")
 SIGN_CONVENTIONS = (
     "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
     "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"
@@ -93,7 +94,8 @@ class Results:
         rolls = balance.regime == eq.ROLLING
         converged = balance.converged & (met | ~rolls)
         out = cls(scene, balance, balance.regime, converged, ellipse, slip, two(friction),
-                  np.isfinite(normal), np.zeros(scene.n, np.int32), np.zeros(scene.n, bool))  # fmt: skip
+                  np.isfinite(normal), np.where(balance.jamming, JAMMING, 0).astype(np.int32),
+                  np.zeros(scene.n, bool))  # fmt: skip
         out.values["residual"] = np.where(rolls, np.fmax(balance.residual, unmet), balance.residual)
         return out
 
@@ -467,8 +469,6 @@ def validity(table: CaseTable, block: Block) -> None:
         split = [pole_split(v["semi_axis_lateral"][:, k], sign * np.sin(alpha), np.cos(alpha), r_g,
                                     v["rolling_radius_shift"]) for k, sign in ((0, 1.0), (1, -1.0))]  # fmt: skip
         warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & (np.maximum(*split) > 0.1))
-        grip = np.abs(v["lateral_force"]) >= v["normal_force"] * np.tan(alpha)[:, None]
-        warn("jamming", np.any(grip, axis=1))
         warn("large_slip", np.abs(v["slip"]) > 0.1)
         if "peak_stress" in v:
             limits = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)[:, None, :]
