@@ -4,7 +4,8 @@
 
 Random sliding patches (friction 0 to 1, Poisson's ratio 0 to 0.5, pole inside or outside, some in full slip) are
 sampled at thousands of random points, many on the edge and where the slip turns; from the twelve highest, evaluated
-again with fine quadrature, a random walk climbs. It shares the stress kernels with the search, but neither points nor steps.
+again with fine quadrature, a random walk climbs. It shares the stress kernels with the search, but neither points
+nor steps.
 """
 
 from __future__ import annotations

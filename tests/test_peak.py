@@ -5,8 +5,10 @@ import pytest
 from reference_cases import case_of, published_cases
 
 import trackroller as tr
+from trackroller.accuracy import PRESETS
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
+from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.stress import von_mises
 
 
@@ -119,6 +121,29 @@ def test_published_peaks_where_they_lie_below_the_surface():
                 compared += 1
                 assert ds.peak_stress.values[i, j, 0] == pytest.approx(record["published"]["peak_stress"][j], rel=5e-3)
     assert compared >= 8
+
+
+@pytest.mark.parametrize(
+    ("ellipticity", "mu", "nu", "alpha", "pole", "body", "place"),
+    [
+        (43.06, 0.9909, 0.4165, 13.717, -0.34912, 1, (-0.3628, 0.5006)),
+        (5.912, 0.5022, 0.4258, 25.205, -0.90907, 1, (-0.0188, 0.9998)),
+        (6.881, 0.399, 0.4327, -18.397, 0.83932, 1, (0.0176, 0.9998)),
+        (3.537, 0.9363, 0.3274, -13.544, -0.90624, 1, (-0.0033, -1.0)),
+        (0.04944, 0.3172, 0.4704, 47.382, -0.83635, 0, (-0.1589, -0.3435)),
+        (10.56, 0.7346, 0.41, 11.553, 0.49672, 0, (0.4822, 0.412)),
+        (0.04177, 0.3912, 0.05116, -30.266, -0.98195, 0, (0.0043, -0.0855)),
+    ],
+)
+def test_ridges_that_brute_force_had_found_first(ellipticity, mu, nu, alpha, pole, body, place):
+    """Ridges by the edge and along the turn of the slip: not more than 0.3 % below the highest of random points."""
+    a, sine = np.sqrt(ellipticity) * np.ones(1), np.sin(np.deg2rad(alpha))
+    size = 30 * np.maximum(a, 1.0)
+    slip = Slip(sine * np.ones(1), np.sqrt(1 - sine**2) * np.ones(1), size, 2 * size, pole * a * sine)
+    rows = patch_rows(Ellipse(a, 1 / a, np.ones(1)), slip, mu * np.ones(1), 2)
+    point = np.array([place[0] * a[0], place[1] / a[0], 0.0])
+    known = von_mises(stress(rows[0], point, nu, (1.0, -1.0)[body], 96))[0]
+    assert find_peaks(rows, np.full((1, 2), nu), PRESETS["standard"].peak).stress[0, body] > 0.997 * known
 
 
 def random_cases(n, seed=3):

@@ -144,9 +144,9 @@ class _Climbs:
         c, s = np.where(off, start[:, 0], 1.0), np.where(off, start[:, 1], 0.0)
         r = np.where(off, r, 1.0)
         c, s, zero = c / r, s / r, np.zeros_like(r)
-        # ridges are narrow: inside of the rim an axis lies along them
-        inner = self.u[rows, 0] ** 2 + self.u[rows, 1] ** 2 < 0.998
-        c, s = np.where(inner, self.along[rows, 0], c), np.where(inner, self.along[rows, 1], s)
+        if self.patches.slender:  # ridges are narrow there: inside of the rim an axis lies along them
+            inner = self.u[rows, 0] ** 2 + self.u[rows, 1] ** 2 < 0.998
+            c, s = np.where(inner, self.along[rows, 0], c), np.where(inner, self.along[rows, 1], s)
         axes = np.stack([np.stack([c, s, zero], 1), np.stack([-s, c, zero], 1), np.stack([zero, zero, zero + 1.0], 1)])
         moved = zero
         for k in range(3):
@@ -154,7 +154,8 @@ class _Climbs:
         if ridge:  # one that lies askew to the axes
             far = ((self.u[rows] - start) ** 2).sum(axis=1) > 1e-8
             self.try_points(rows[far], _project(2.0 * self.u[rows[far]] - start[far]), waves, rule)
-        self._turn(rows, start)
+        if self.patches.slender:
+            self._turn(rows, start)
         self.gained[rows] = self.f[rows] - before
         widest = self.step[rows].max(axis=1)
         still = (self.gained[rows] < 1e-6 * self.f[rows]) & (moved < 1e-9) & (widest < 4.0 * smallest)
@@ -206,7 +207,7 @@ class _Climbs:
         worth = round_top & (np.abs(jump) > 0.05 * step) & (np.abs(np.abs(jump) - step) > 0.05 * step)
         self.try_points(rows[worth], _project(u_0[worth] + jump[worth, None] * axis[worth]), waves, rule)
         distance = np.abs(self.u[rows] - u_0).sum(axis=1)
-        longer = np.where(distance > 1.5 * step, 1.5 * step, step)
+        longer = np.where(distance > 1.5 * step, 1.5 * step, step) if self.patches.slender else step
         h[rows] = np.where(distance < 0.5 * step, 0.35 * step, longer)
         return distance / step
 
