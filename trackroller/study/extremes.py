@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from trackroller.equilibrium_roller import LIFTED
 
 CaseDict = dict[str, Any]
 STEEL: CaseDict = {
@@ -26,6 +28,7 @@ BASE: CaseDict = {
 }  # fmt: skip
 ALWAYS = ("finite", "solved", "residual", "scaling", "mirror", "condition")
 FLAT_TAN = math.tan(math.radians(30.0))
+COMPLETE = 0.2 * 200.0 / math.cos(math.radians(30.0))  # what the base case can transmit in complete slip [N]
 
 
 @dataclass(frozen=True)
@@ -35,7 +38,11 @@ class Scene:
     `rising` and `falling` name results that may only rise or fall along the series; `pairs` says that cases come in
     pairs just below and just above a border; `limit` that the last case is what the one before tends to. `models` are
     run; those in `reach` may leave cases failed that lie beyond their reach (patches too slender for their
-    coefficients or grid).
+    coefficients or grid). `close` says that neighbours closer than 1e-4 must have close results.
+
+    Where a case depends on the answer (the force at which a contact lifts, the motor force that puts the spin pole on
+    the edge), `build` makes it from a number between `span`: with `pairs` the border is searched for there and
+    `values` are shares of it, otherwise `values` are places of the pole that numbers are found for.
     """
 
     name: str
@@ -51,18 +58,27 @@ class Scene:
     limit: bool = False
     models: tuple[str, ...] = ("sliding", "kalker", "fastsim")
     reach: tuple[str, ...] = ()
+    close: bool = False
+    build: Callable[[float], CaseDict] | None = None
+    span: tuple[float, float] = (0.0, 0.0)
 
     @property
     def claims(self) -> tuple[str, ...]:
         """Names of the checks that apply."""
         more = [name for name, on in (("monotone", self.rising or self.falling), ("constant", self.constant),
-                                      ("border", self.pairs), ("limit", self.limit)) if on]  # fmt: skip
+                                      ("border", self.pairs), ("limit", self.limit),
+                                      ("close", self.close)) if on]  # fmt: skip
         return (*ALWAYS, *more)
 
 
 def _series(name: str, title: str, quantity: str, unit: str, values: Any, build: Any, **options: Any) -> Scene:
     values = tuple(float(v) for v in values)
     return Scene(name, title, quantity, unit, values, tuple(BASE | build(v) for v in values), **options)
+
+
+def _searched(name: str, title: str, quantity: str, values: Any, build: Any, span: Any, **options: Any) -> Scene:
+    return Scene(name, title, quantity, "1", tuple(map(float, values)), (), build=lambda v: BASE | build(v), span=span,
+                 **options)  # fmt: skip
 
 
 def _material(**changes: Any) -> CaseDict:
@@ -91,7 +107,21 @@ def _loads(force: float) -> CaseDict:
 
 
 def _brake(share: float) -> CaseDict:
-    return {"motor_force": share * 0.2 * 200.0 / math.cos(math.radians(30.0))}
+    return {"motor_force": share * COMPLETE}
+
+
+def _edge(place: float) -> tuple[float, ...]:
+    return tuple(place + d for d in (-1e-2, -1e-5, 0.0, 1e-5, 1e-2))
+
+
+def _over(curvature: float) -> float:
+    return 1.0 / curvature if curvature else math.copysign(math.inf, curvature)
+
+
+def _lift_share() -> float:
+    """Axial force over |F_rad| tan(alpha) at which a frictionless contact carries but `LIFTED` of the load."""
+    share = 2.0 * LIFTED * math.cos(math.radians(30.0))
+    return (1.0 - share) / (1.0 + share * FLAT_TAN)
 
 
 def _border(limit: float, steps: tuple[float, ...] = (1e-3, 1e-6, 1e-9)) -> tuple[float, ...]:
@@ -118,6 +148,10 @@ def _friction_and_load() -> tuple[Scene, ...]:
         _series("spin pole", "motor force from driving to braking: the spin pole crosses the patch",
                 "F_motor", "N", 40.0 * np.array([-0.999, -0.9, -0.5, -0.2, -0.05, 0, 0.05, 0.2, 0.5, 0.9, 0.999]),
                 lambda v: {"motor_force": v, "axial_force": 0.0}, rising=("rolling_radius_shift",)),
+        _searched("spin pole on the edge", "spin pole from far behind to far ahead, at the centre and on the edge",
+                  "x_spin/a", (-50, -3, *_edge(-1.0), -0.5, 0, 0.5, *_edge(1.0), 3, 50),
+                  lambda v: {"motor_force": v * COMPLETE, "axial_force": 0.0}, (-1.0, 1.0),
+                  rising=("rolling_radius_shift",), close=True),
     )  # fmt: skip
 
 
@@ -134,8 +168,11 @@ def _geometry() -> tuple[Scene, ...]:
         _series("outer curve to straight", "curve radius to infinity", "r_Curve", "mm",
                 (1e1, 1e2, 1e4, 1e6, 1e9, math.inf), lambda v: {"guide_curve_radius": v},
                 falling=("max_pressure",), limit=True),
+        _series("outer straight, inner straight", "curve radius +inf beside -inf", "1/r_Curve", "1/mm",
+                (1e-9, 1e-12, 0.0, -0.0, -1e-12, -1e-9), lambda v: {"guide_curve_radius": _over(v)},
+                constant=("max_pressure", "peak_stress", "slip")),
         _series("straight to inner curve", "inner curve to just above conformity", "-r_Curve/r_A - 1", "1",
-                (1e3, 1e1, 1e0, 1e-2, 1e-4, 1e-6),
+                (1e3, 1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
                 lambda v: {"guide_curve_radius": -r_a * (1 + v), **_loads(1e-2)}, falling=("max_pressure",),
                 reach=("kalker", "fastsim")),
         _series("close groove", "profile to just above conformity", "r_C,TR/r_C,G - 1", "1",
@@ -155,7 +192,11 @@ def _materials() -> tuple[Scene, ...]:
                 (0.0, 0.1, 0.3, 0.4, 0.49, 0.4999, 0.5 - 1e-9, 0.5),
                 lambda v: dict.fromkeys(("roller_material", "guide_material"), _material(poisson_ratio=v)),
                 rising=("max_pressure",), limit=True),
-        _series("stiffness ratio", "stiffness of the guide over that of the roller to a million", "E_G/E_TR", "1",
+        _series("soft guide", "stiffness of the guide over that of the roller from a millionth", "E_G/E_TR", "1",
+                10.0 ** np.arange(-6, 0.5),
+                lambda v: {"guide_material": _material(youngs_modulus=210000.0 * v), **_loads(1e-3)},
+                rising=("max_pressure", "peak_stress")),
+        _series("soft roller", "stiffness of the guide over that of the roller to a million", "E_G/E_TR", "1",
                 10.0 ** np.arange(0, 6.5),
                 lambda v: {"roller_material": _material(youngs_modulus=210000.0 / v), **_loads(1e-3)},
                 falling=("max_pressure", "peak_stress")),
@@ -167,10 +208,20 @@ def _borders() -> tuple[Scene, ...]:
     return (
         _series("slip limit, braking", "motor force just below and above what friction can brake", "share of limit",
                 "1", _border(1.0), _brake, pairs=True),
+        _searched("slip limit, driving", "motor force just below and just above what friction can drive",
+                  "share of limit", _border(1.0, (1e-2, 1e-4, 1e-5)), lambda v: {"motor_force": -v * COMPLETE},
+                  (0.5, 1.2), pairs=True),
         _series("lift-off without friction", "axial force just below and above lift-off", "share of limit", "1",
-                _border(1.0, (1e-3, 1e-5, 1e-7)), lambda v: {"axial_force": v * lift, "friction_coefficient":
+                _border(_lift_share()), lambda v: {"axial_force": v * lift, "friction_coefficient":
                 0.0, "motor_force": 0.0},
                 pairs=True),
+        _searched("lift-off with friction", "axial force just below and above lift-off", "share of limit",
+                  _border(1.0, (1e-2, 1e-4, 1e-5)), lambda v: {"axial_force": v * lift, "motor_force": 0.0}, (0.1, 1.2),
+                  pairs=True),
+        _series("self-locking, no axial force", "friction across mu = tan(alpha), no axial force", "mu/tan(alpha)", "1",
+                (0.5, 0.9, 1.1, 1.5, 3.0),
+                lambda v: {"contact_angle": 11.0, "friction_coefficient": v * math.tan(math.radians(11.0)),
+                           "axial_force": 0.0, "motor_force": 0.0}),
         _series("self-locking", "friction across mu = tan(alpha), axial force small", "mu/tan(alpha)", "1",
                 (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 3.0),
                 lambda v: {"contact_angle": 11.0, "friction_coefficient": v * math.tan(math.radians(11.0)),

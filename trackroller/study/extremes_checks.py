@@ -11,6 +11,7 @@ import numpy as np
 
 from trackroller.solver import solve
 from trackroller.study.extremes import FORCES, Scene, mirrored, scaled
+from trackroller.study.extremes_search import located
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,6 +72,7 @@ def run_cases(cases: Any, model: str, accuracy: str) -> tuple[xr.Dataset, int]:
 
 def run_scene(scene: Scene, model: str, accuracy: str) -> Run:
     """The scene, solved."""
+    scene = located(scene, model, accuracy)
     result, warned = run_cases(scene.cases, model, accuracy)
     return Run(scene, model, accuracy, result, warned)
 
@@ -184,12 +186,12 @@ def border(run: Run) -> Finding:
     """Jump between the nearest cases on both sides of a border of regimes.
 
     Into full slip: normal forces, peak stress and transmitted force. Into lift-off: the load of the contact that
-    leaves, over the other's.
+    leaves, over the other's. Infinite unless all cases below are of one regime and all above of another.
     """
     below, above = len(run.scene.cases) - 2, len(run.scene.cases) - 1
     regimes = run.regime()
     jumps = np.zeros(len(regimes))
-    if regimes[below] == regimes[above]:
+    if regimes[below] == regimes[above] or len({*regimes[0::2]}) > 1 or len({*regimes[1::2]}) > 1:
         jumps[above] = np.inf
     elif regimes[above] == LIFT_OFF:
         n = run.result.normal_force.values[below]
@@ -212,6 +214,16 @@ def limit(run: Run) -> Finding:
     return _worst(run, "limit", gaps, 1e-6 if run.model == "sliding" else 1e-3)
 
 
+def close(run: Run) -> Finding:
+    """Relative change of normal forces and peak stress between neighbours closer than 1e-4."""
+    near = np.flatnonzero(np.abs(np.diff(run.scene.values)) < 1e-4)
+    gaps = np.zeros(len(run.scene.cases))
+    for name in ("normal_force", "peak_stress"):
+        x = _rows(run.result[name].values)
+        gaps[near + 1] = np.fmax(gaps[near + 1], np.max(np.abs(x[near + 1] / x[near] - 1), axis=1))
+    return _worst(run, "close", gaps, 5e-3)
+
+
 def estimate(run: Run) -> Finding:
     """Difference of the peaks from those of `reference`, over the estimated errors of both."""
     fine, _ = run_cases(run.scene.cases, run.model, "reference")
@@ -223,7 +235,7 @@ def estimate(run: Run) -> Finding:
 
 CHECKS: dict[str, Callable[[Run], Finding]] = {
     f.__name__: f for f in (finite, solved, residual, scaling, mirror, condition, monotone, constant, border, limit,
-                            estimate)}  # fmt: skip
+                            close, estimate)}  # fmt: skip
 
 
 def examine(scene: Scene, model: str, accuracy: str) -> tuple[Run, list[Finding]]:

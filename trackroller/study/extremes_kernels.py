@@ -1,4 +1,4 @@
-"""Kernels where cancellation lurks against the same quantities in 50 digits (mpmath)."""
+"""Kernels where cancellation lurks against the same quantities in 50 digits (mpmath), and in single precision."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ import numpy as np
 
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.contact.hertz import axis_ratio
+from trackroller.contact.kalker_influence import displacements, pressure_displacements
 from trackroller.contact.sliding import resultants
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
+from trackroller.halfspace.stress import von_mises
 
 DIGITS = 50
 
@@ -25,6 +27,8 @@ class KernelError:
     values: tuple[float, ...]
     errors: tuple[float, ...]
     tolerance: float
+    against: str = f"{DIGITS} digits"
+    single: float | None = None  # worst relative error of the same formula in single precision
 
     @property
     def holds(self) -> bool:
@@ -62,7 +66,26 @@ def axis_ratios() -> KernelError:
     values = (1e-6, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 0.9, 1 - 1e-3, 1 - 1e-6, 1 - 1e-9, 1 - 1e-12)
     found = axis_ratio(np.array([float(_curvature_ratio(mpmath.mpf(v))) for v in values]))
     errors = tuple(float(abs(f / v - 1)) for f, v in zip(found, values, strict=True))
-    return KernelError("axis ratio of the ellipse", "b/a", values, errors, 1e-12)
+    return KernelError("axis ratio of the ellipse", "b/a", values, errors, 1e-12, single=_single_ratio(values))
+
+
+def _single_ratio(values: tuple[float, ...]) -> float:
+    """Worst error of the curvature ratio written with K and E, as books do, in single precision."""
+    from scipy.special import ellipe, ellipkm1
+
+    kappa = np.array(values, np.float32)
+    m_1 = kappa * kappa
+    k, e = ellipkm1(m_1), ellipe(np.float32(1) - m_1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = m_1 * (k - e) / (e - m_1 * k)
+    exact = np.array([float(_curvature_ratio(_many(v))) for v in values])
+    return float(np.max(np.nan_to_num(np.abs(found / exact - 1), nan=1.0, posinf=1.0)))
+
+
+def _many(value: float):
+    import mpmath
+
+    return mpmath.mpf(value)
 
 
 def _on_axis(z):
@@ -76,7 +99,7 @@ def _on_axis(z):
 
 @_digits
 def depth() -> KernelError:
-    """Stresses under the centre of a circle from the surface to a million radii."""
+    """Stresses under the centre of a circle from the surface to a million radii; the closed form in single."""
     import mpmath
 
     values = (0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.5, 1.0, 2.9, 3.1, 30.0, 1e3, 1e6)
@@ -88,7 +111,21 @@ def depth() -> KernelError:
     for v, s in zip(values, stress, strict=True):
         exact_z, exact_r = (float(e) for e in _on_axis(mpmath.mpf(v)))
         errors.append(max(abs(s[2] - exact_z), abs(s[0] - exact_r)) / max(abs(exact_z), abs(exact_r)))
-    return KernelError("plane waves and far field on the axis", "z/a", values, tuple(map(float, errors)), 1e-9)
+    single = _single_axis(np.array([v for v in values if v]))
+    return KernelError("plane waves and far field on the axis", "z/a", values, tuple(map(float, errors)), 1e-9,
+                       single=single)  # fmt: skip
+
+
+def _single_axis(z: np.ndarray) -> float:
+    """Worst error of Johnson's closed form in single precision, over the larger stress."""
+    low = z.astype(np.float32)
+    one, tail = np.float32(1), 1 / (2 * (1 + low * low))
+    found = -np.float32(1.3) * (one - low * np.arctan(1 / low)) + tail, -2 * tail
+    errors = []
+    for i, v in enumerate(z):
+        exact = [float(e) for e in _on_axis(v)][::-1]
+        errors.append(max(abs(float(f[i]) - e) for f, e in zip(found, exact, strict=True)) / max(map(abs, exact)))
+    return float(max(errors))
 
 
 @_digits
@@ -106,7 +143,6 @@ def surface_centre() -> KernelError:
     return KernelError("plane waves at the surface of slender ellipses", "b/a", values, tuple(errors), 1e-8)
 
 
-@_digits
 def pole_positions() -> KernelError:
     """Sliding forces with the pole at the centre, on the edge and far outside, 12 points against 600."""
     values = (0.0, 1e-12, 1e-6, 0.3, 0.999999, 1.0, 1.000001, 3.0, 1e3, 1e6, 1e12)
@@ -119,10 +155,9 @@ def pole_positions() -> KernelError:
     gaps = [np.abs(getattr(coarse, f) - getattr(fine, f)) / scale
             for f in ("lateral_force", "driving_force", "spin_moment")]  # fmt: skip
     worst = tuple(map(float, np.max(gaps, axis=0)))
-    return KernelError("sliding integrals, 12 points", "x_spin/a", values, worst, 1e-5)
+    return KernelError("sliding integrals, 12 points", "x_spin/a", values, worst, 1e-5, "600 points")
 
 
-@_digits
 def far_pole() -> KernelError:
     """Driving force with the pole far outside against the series of F_A in powers of b over its distance."""
     values = (1e3, 1e6, 1e9, 1e12)
@@ -134,7 +169,86 @@ def far_pole() -> KernelError:
     # int tau_y = -mu F_N (1 - <y^2>/(2 x_p^2)) with <y^2> = b^2/5 of the Hertzian pressure
     exact = -bound * (1 - 0.25 / 5 / (2 * np.array(values) ** 2))
     errors = np.abs(r.driving_force / exact - 1)
-    return KernelError("sliding integrals, far pole", "x_spin/a", values, tuple(map(float, errors)), 1e-9)
+    return KernelError("sliding integrals, far pole", "x_spin/a", values, tuple(map(float, errors)), 1e-9,
+                       "its series")  # fmt: skip
 
 
-KERNELS = (axis_ratios, depth, surface_centre, pole_positions, far_pole)
+def _corners(x, y, nu, f) -> list:
+    """Antiderivatives of Kalker's influence functions at a corner; `f` gives sqrt, asinh, log and atan."""
+    along_y = x * f.asinh(y / abs(x))
+    along_x = y * f.asinh(x / abs(y))
+    r = f.sqrt(x * x + y * y)
+    log = f.log(r)
+    return [along_y * (1 - nu) + along_x, along_x * (1 - nu) + along_y, -nu * r, y * log + x * f.atan(y / x),
+            x * log + y * f.atan(x / y)]  # fmt: skip
+
+
+def _over_element(hx, hy, nu, place: tuple[int, int], f, pi) -> list:
+    """xx, yy, xy and the two of the pressure over the element `place` = (i, j)."""
+    (x0, x1), (y0, y1) = (((k - 0.5) * h, (k + 0.5) * h) for k, h in zip(place, (hx, hy), strict=True))
+    four = [_corners(x, y, nu, f) for x, y in ((x1, y1), (x0, y1), (x1, y0), (x0, y0))]
+    total = [a - b - c + d for a, b, c, d in zip(*four, strict=True)]
+    return [t / pi for t in total[:3]] + [-t / pi for t in total[3:]]
+
+
+class _Single:
+    """The functions of `_corners` in single precision."""
+
+    asinh, sqrt, log, atan = (staticmethod(f) for f in (np.arcsinh, np.sqrt, np.log, np.arctan))
+
+
+def _influence_errors(cases) -> tuple[tuple[float, ...], float]:
+    """Errors of double evaluation at each (hx, hy, place) and the worst of single precision.
+
+    Over the largest of the like: displacements by tractions, and by pressure.
+    """
+    import mpmath
+
+    errors, single = [], []
+    for hx, hy, (i, j) in cases:
+        n = max(i, j) + 1
+        found = [*displacements(hx, hy, 0.3, n, n, 0, 0)[:, j + n - 1, i + n - 1],
+                 *pressure_displacements(hx, hy, n, n, 0, 0)[:, j + n - 1, i + n - 1]]  # fmt: skip
+        wide, nu = [mpmath.mpf(v) for v in (hx, hy)], mpmath.mpf(0.3)
+        exact = [float(e) for e in _over_element(*wide, nu, (i, j), mpmath, mpmath.pi)]
+        low = _over_element(*(np.float32(v) for v in (hx, hy, 0.3)), (i, j), _Single, np.float32(np.pi))
+        for values, out in ((found, errors), (low, single)):
+            gap = [abs(float(v) - e) for v, e in zip(values, exact, strict=True)]
+            sizes = [max(map(abs, exact[:3])), max(map(abs, exact[3:])) or np.inf]
+            out.append(max(max(gap[:3]) / sizes[0], max(gap[3:]) / sizes[1]))
+    return tuple(errors), float(max(single))
+
+
+@_digits
+def kalker_distance() -> KernelError:
+    """Kalker's influence functions of square elements from the element itself to 400 elements away."""
+    values = (0, 1, 2, 5, 10, 30, 100, 400)
+    errors, single = _influence_errors([(0.05, 0.05, (v, v)) for v in values])
+    return KernelError("Kalker's influence functions", "distance in elements", values, errors, 1e-9, single=single)
+
+
+@_digits
+def kalker_edges() -> KernelError:
+    """Kalker's influence functions of slender elements, beside the element and along its edges."""
+    values = (1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3)
+    places = ((1, 0), (0, 1), (3, 2), (40, 0), (0, 40))
+    found = [_influence_errors([(0.05, 0.05 * v, place) for place in places]) for v in values]
+    return KernelError("Kalker's influence functions, slender elements", "h_y/h_x", values,
+                       tuple(max(e) for e, _ in found), 1e-9, single=max(s for _, s in found))  # fmt: skip
+
+
+@_digits
+def von_mises_near_hydrostatic() -> KernelError:
+    """Equivalent stress of a nearly hydrostatic state, over its largest stress: only input's digits are lost."""
+    values = (1e-1, 1e-3, 1e-5, 1e-7, 1e-9)
+    state = np.array([[-1.0, -1.0 + v, -1.0 - v, v, 0.0, 0.0] for v in values])
+    exact = np.array(values) * 6**0.5
+    errors = np.abs(von_mises(state) - exact)
+    x, y, z, t = state.astype(np.float32)[:, :4].T
+    low = np.sqrt(np.float32(0.5) * ((x - y) ** 2 + (z - x) ** 2 + (y - z) ** 2) + np.float32(3) * t * t)
+    return KernelError("von Mises stress near a hydrostatic state", "difference of stresses", values,
+                       tuple(map(float, errors)), 1e-14, "closed form", float(np.max(np.abs(low - exact))))  # fmt: skip
+
+
+KERNELS = (axis_ratios, depth, surface_centre, pole_positions, far_pole, kalker_distance, kalker_edges,
+           von_mises_near_hydrostatic)  # fmt: skip

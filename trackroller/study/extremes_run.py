@@ -76,7 +76,8 @@ def run(random: dict[str, int] | None = None, points: int = 61) -> Record:
     return {
         "scenes": rows,
         "kernels": [{"name": k.name, "quantity": k.quantity, "values": list(k.values), "errors": list(k.errors),
-                     "tolerance": k.tolerance, "holds": k.holds} for k in kernels],
+                     "tolerance": k.tolerance, "against": k.against, "single": k.single,
+                     "holds": k.holds} for k in kernels],
         "random": [random_record(m, n) for m, n in (random or RANDOM).items()],
         "map": regime_map(points),
     }  # fmt: skip

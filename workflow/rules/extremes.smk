@@ -25,6 +25,7 @@ rule extremes_run:
             "study/extremes_kernels.py",
             "study/extremes_random.py",
             "study/extremes_run.py",
+            "study/extremes_search.py",
         ),
     output:
         f"{EXTREMES}/extremes.json",
