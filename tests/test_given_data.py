@@ -60,6 +60,7 @@ def test_interactions_of_the_ishigami_function_from_a_plain_sample():
     assert found["fit_share"] > 0.95
     share = found["interaction_share"]
     assert share[0, 2] == pytest.approx(0.244, abs=0.03)
+    np.testing.assert_allclose(found["fit_alone"], [0.314, 0.442, 0.0], atol=0.04)
     assert abs(share[0, 1]) < 0.02 and abs(share[1, 2]) < 0.02 and np.isnan(share[2, 0])
     assert found["interaction_share_low"][0, 2] < 0.244 < found["interaction_share_high"][0, 2]
 

@@ -22,7 +22,8 @@ MEASURES = (
     ("S1", "Sobol index, alone"), ("ST", "Sobol index, total"), ("main_share", "share of variance, alone"),
     ("mu_star", "mean absolute effect μ*"), ("sigma", "spread of effects σ"), ("effect", "change over the range"),
     ("curvature", "curvature of the fit"),
-    ("first", "share of variance, given data"), ("delta", "delta"), ("pawn", "PAWN"),
+    ("first", "share of variance, given data"), ("fit_alone", "share of variance, fitted polynomial"),
+    ("delta", "delta"), ("pawn", "PAWN"),
     ("prcc", "partial rank correlation"),
 )  # fmt: skip
 
@@ -122,7 +123,8 @@ def robust_points(table: xr.Dataset) -> dict[str, Any]:
         text = f"B10 holds the material's own scatter of life, T_N = {style.rounded(10 ** (DECADES * scatter), 3)}."
     return {
         "tables": tables, "sentence": " ".join(words.robustness(table, name) for name in lives[:2]), "scatter": text,
-        "samples": int(table.attrs.get("inner_samples", 0)), "treatment": str(table.attrs.get("treatment", "")),
+        "samples": int(table.attrs.get("inner_samples", 0)),
+        "treatment": words.upper(str(table.attrs.get("treatment", ""))),
         "inner": str(table.attrs.get("inner_factors", "")).replace("_", " "),
     }  # fmt: skip
 

@@ -124,8 +124,13 @@ def _draw(axes, at: np.ndarray, table: np.ndarray, factor: Factor, labels: list[
     axes.vlines(at, table[0], table[4], color=colour, alpha=0.35, linewidth=6)
     axes.vlines(at, table[1], table[3], color=colour, alpha=0.9, linewidth=6)
     axes.plot(at, table[2], color="0.1", marker="_", markersize=9, markeredgewidth=1.5, linestyle="none")
-    shown = [textwrap.fill(text, 17) for text in style.short_levels(labels)]
-    long = max(len(line) for text in shown for line in text.split("\n")) * len(at) > 27
-    axes.set_xticks(at, shown, rotation=35 if long else 0, ha="right" if long else "center", rotation_mode="anchor",
-                    linespacing=0.95)  # fmt: skip
+    whole = [text.replace(" mm", "\u00a0mm").replace(" N", "\u00a0N") for text in style.short_levels(labels)]
+    shown = [textwrap.fill(text, 17) for text in whole]
+    wide = max(len(line) for text in shown for line in text.split("\n")) * len(at)
+    if wide <= 27:
+        axes.set_xticks(at, shown)
+    elif len(at) <= 3:
+        axes.set_xticks(at, shown, rotation=35, ha="right", rotation_mode="anchor", linespacing=0.95)
+    else:  # lines of slanted names would run into each other
+        axes.set_xticks(at, shown, rotation=90, fontsize=6.2, linespacing=0.95)
     axes.set_xlim(-0.6, len(at) - 0.4)

@@ -77,9 +77,13 @@ def tornado(sens: xr.Dataset, output: str) -> Drawn:
     axes.set_xlabel(AXIS[index] + unit)
     style.head(figure, f"{title(sens, output)}: what decides it")
     style.finish(figure)
-    caption = (f"{AXIS[index].capitalize()} of each factor on {words.of_output(sens, output)}; whiskers: 95 % "
+    caption = (f"{_told(index)} of each factor on {words.of_output(sens, output)}; whiskers: 95 % "
                f"intervals. {sens.attrs.get('treatment', '')}.")  # fmt: skip
     return figure, style.FigureInfo(f"tornado-{output}", caption, words.tornado(sens, output))
+
+
+def _told(index: str) -> str:
+    return words.upper(AXIS[index].replace(", alone", " explained alone"))
 
 
 def _bars(axes, place, ranks, height, colour, hatch, label, shares) -> None:  # type: ignore[no-untyped-def]
@@ -111,7 +115,7 @@ def overview(sens: xr.Dataset) -> Drawn:
     outputs = [words.upper(str(n)) for n in sens["output_name"].values[keep]]
     figure = _heat(table[rank].T, outputs, names, "relative to the largest" if index in ("mu_star", "effect")
                    else AXIS[index], "Influence on every output")  # fmt: skip
-    caption = f"{AXIS[index].capitalize()} of every factor (columns) on every output (rows)."
+    caption = f"{_told(index)} of every factor (columns) on every output (rows)."
     return figure, style.FigureInfo("influence-overview", caption, words.overview(sens))
 
 
@@ -161,7 +165,7 @@ def convergence(sens: xr.Dataset, output: str) -> Drawn:
     figure.legend(loc="outside lower center", ncols=2)
     style.head(figure, f"{title(sens, output)}: course of the indices")
     style.finish(figure)
-    caption = f"{AXIS[index].capitalize()} from the first samples up to all of them; bands: 95 % intervals."
+    caption = f"{_told(index)} from the first samples up to all of them; bands: 95 % intervals."
     return figure, style.FigureInfo(f"convergence-{output}", caption, words.convergence(sens, output))
 
 
@@ -215,7 +219,7 @@ def interactions(sens: xr.Dataset, output: str) -> Drawn:
     if name != "interaction":
         table = np.where(np.isfinite(table), np.maximum(table, 0.0), table)  # estimates of nothing fall below 0
     fitted = name == "interaction_share" and "main_share" not in part
-    own = "first" if fitted else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
+    own = "fit_alone" if fitted else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
     np.fill_diagonal(table, np.abs(part[own].values) if own == "effect" else np.maximum(part[own].values, 0.0))
     table = np.where(np.triu(np.ones_like(table, dtype=bool)), np.abs(table), np.nan)
     names = [words.upper(str(n)) for n in part["factor_name"].values]

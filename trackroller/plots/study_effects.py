@@ -81,7 +81,7 @@ def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     colours, ticks, names, place = style.palette(len(found)), [], [], 0.0
     for i, (factor, labels, means) in enumerate(found):
         axes.annotate(
-            _heading(factor),
+            _heading(factor, labels),
             (0.0, place),
             xycoords=("axes fraction", "data"),
             xytext=(2, 0),
@@ -97,7 +97,9 @@ def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
             spots.append(place)
             place += 0.7 * label.count("\n") * 0.5
         place += 1.6
-        axes.plot(10.0**means, spots, color=colours[i % len(colours)], marker=style.MARKERS[i % 10], linewidth=1.0)
+        line = "-" if view.numeric(factor) else "none"  # nothing lies between two materials
+        axes.plot(10.0**means, spots, color=colours[i % len(colours)], marker=style.MARKERS[i % 10], linewidth=1.0,
+                  linestyle=line)  # fmt: skip
         ticks += spots
         names += labels
     raw = view.table[view.life[0]].to_numpy(dtype=float)
@@ -129,9 +131,10 @@ def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     return figure, style.FigureInfo("main_effects", caption, sentence + ".")
 
 
-def _heading(name: str) -> str:
+def _heading(name: str, labels: list[str]) -> str:
     unit = PARAMETERS[name].unit if name in PARAMETERS else "-"
-    bare = name in ("guide_curve_radius", "motor_force") or unit == "-"
+    told = name in ("guide_curve_radius", "motor_force") and not any(" … " in text for text in labels)
+    bare = told or unit == "-"
     return (
         style.capital(style.long_name(name))
         if bare

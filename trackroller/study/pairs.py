@@ -35,11 +35,12 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     Returns
     -------
     interaction_share, interaction_share_low, interaction_share_high: shape (k, k), above the diagonal, NaN elsewhere
-    and where no trusted fit is found; 95 % intervals by a grouped jackknife. fit_share: share of variance that the fit
-    predicts for rows left out of it (NaN without a fit).
+    and where no trusted fit is found; 95 % intervals by a grouped jackknife. fit_alone, shape (k,): share of each
+    factor alone in the same fit. fit_share: share of variance that the fit predicts for rows left out of it (NaN without one).
     """
     count = unit.shape[1]
     out: Estimates = {name: np.full((count, count), np.nan) for name in NAMES} | {"fit_share": np.array(np.nan)}
+    out["fit_alone"] = np.full(count, np.nan)
     good = np.flatnonzero(np.isfinite(y))
     if len(good) > MAX_ROWS:
         good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
@@ -58,7 +59,8 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
     left = np.array([_shares(y[part != g], table[part != g], owner) for g in range(GROUPS)])
     half = Z * np.sqrt((GROUPS - 1) / GROUPS * ((left - left.mean(axis=0)) ** 2).sum(axis=0))
-    for (i, j), value, wide in zip(combinations(range(count), 2), share, half, strict=True):
+    out["fit_alone"] = share[:count]
+    for (i, j), value, wide in zip(combinations(range(count), 2), share[count:], half[count:], strict=True):
         for name, number in zip(NAMES, (value, value - wide, value + wide), strict=True):
             out[name][i, j] = number
     return out
@@ -66,7 +68,7 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
 
 def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray,
          degrees: tuple[int, int]) -> tuple[np.ndarray, np.ndarray, float] | None:  # fmt: skip
-    """Columns, which pair each belongs to (-1: none), and the predicted share of variance (leave one out)."""
+    """Columns, the factor or (after the factors) the pair each belongs to, and the predicted share of variance."""
     alone, joint = degrees
     found = [_functions(unit[:, j], bool(ordered[j]), alone) for j in range(unit.shape[1])]
     bases = [base for base in found if base is not None]
@@ -74,8 +76,10 @@ def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray,
         return None
     columns: list[np.ndarray]
     owner: list[int]
-    columns, owner = [np.ones((len(y), 1)), *bases], [-1] * (1 + sum(b.shape[1] for b in bases))
-    for number, (i, j) in enumerate(combinations(range(len(bases)), 2)):
+    columns, owner = [np.ones((len(y), 1)), *bases], [-1]
+    for j, base in enumerate(bases):
+        owner += [j] * base.shape[1]
+    for number, (i, j) in enumerate(combinations(range(len(bases)), 2), start=len(bases)):
         few = [b if not ordered[p] else b[:, :joint] for p, b in ((i, bases[i]), (j, bases[j]))]
         both = (few[0][:, :, None] * few[1][:, None, :]).reshape(len(y), -1)
         columns.append(both)
@@ -105,7 +109,7 @@ def _functions(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:
 
 
 def _shares(y: np.ndarray, table: np.ndarray, owner: np.ndarray) -> np.ndarray:
-    """Share of variance of each pair: squares of its coefficients, freed of what the fit's own scatter adds."""
+    """Share of variance of each factor and pair: squares of its coefficients less what the fit's scatter adds."""
     inverse = np.linalg.pinv(table.T @ table)
     found = inverse @ (table.T @ y)
     rest = float(((y - table @ found) ** 2).sum() / max(1, len(y) - len(owner)))

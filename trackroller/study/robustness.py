@@ -74,9 +74,9 @@ def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | Non
         "method": "nested", "rows": int(np.prod(shape)), "inner_samples": shape[1], "interval": "95 %",
         "outer_factors": ", ".join(design.meta["outer"]), "inner_factors": ", ".join(design.meta["inner"]),
         "log_life_scatter": _largest(log_life_scatter), "study": ds.attrs.get("study", ""),
-        "treatment": "percentiles and b10 over the rows that roll; b10_safe counts every other row as life 0; "
-                     "the same inner sample at every design point"
-                     + (", the material's own scatter of life in b10" if _largest(log_life_scatter) else ""),
+        "treatment": "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
+                     "other case as life 0; the same inner sample at every design point"
+                     + (", the material's own scatter of life in B10" if _largest(log_life_scatter) else ""),
     }  # fmt: skip
     return out
 

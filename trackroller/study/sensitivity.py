@@ -247,6 +247,7 @@ _WORDS = {
     "higher_share": "share of variance of interactions of three and more factors",
     "effect": "change over the factor's range", "curvature": "quadratic coefficient, coded",
     "interaction": "two-factor interaction effect", "r_squared": "share of variance fitted",
+    "fit_alone": "share of variance alone, by a fitted polynomial",
     "fit_share": "share of variance predicted by the fitted polynomial",
     "first": "share of variance explained alone, from given data", "pawn": "PAWN index", "delta": "delta index",
     "pawn_noise": "PAWN index an inert factor stays below", "delta_noise": "delta index an inert factor stays below",

@@ -318,6 +318,8 @@ def robustness(table: xr.Dataset, output: str) -> str:
     best = int(np.argmax(np.where(safe > 0, safe, np.nan_to_num(part["b10"].values, nan=0.0) * 1e-9)))
     b10, low, high = (float(part[n].values[best]) for n in ("b10", "b10_low", "b10_high"))
     where, unit = point_words(table, best), str(part["output_units"].item())
+    if str(part["output_name"].item()).endswith("overrollings"):
+        unit = "overrollings"
     still = float(table["probability"].sel(regime="rolling").values[best]) == 1.0
     text = (f"At {where} nine of ten {'cases' if still else 'of the rolling cases'} reach {with_unit(b10, unit)} "
             f"({number(low)} to {number(high)}), the best B10 of the {part['output_name'].item()}")  # fmt: skip
