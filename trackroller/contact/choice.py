@@ -131,6 +131,37 @@ def in_range(x: np.ndarray, m: dict[str, np.ndarray]) -> np.ndarray:
     return np.all((x >= m["lower"]) & (x <= m["upper"]), axis=1)
 
 
+def measured_errors(table: CaseTable, options: Options, enough: float = 0.0) -> np.ndarray:
+    """Error of each cheaper model, shape (n, len(CHEAPER)); inf where nothing was measured.
+
+    `enough`: dearer models are not tried where a cheaper one has no larger error. It takes 1 ms a case, and where
+    FASTSIM is tried as long as it takes for the forces at `preview`, 16 ms.
+    """
+    error = np.full((len(table), len(CHEAPER)), np.inf)
+    if options.normal != "hertz" or options.hertz != "exact":
+        return error
+    drawn = (table.friction_law != "") | (table.guide_profile != "") | (table.roller_profile != "")
+    error[~drawn & (table.friction_coefficient == 0.0)] = 0.0  # without friction all are one
+    x = features(table)
+    rows = np.flatnonzero(~drawn & np.all(np.isfinite(x), axis=1))
+    if not rows.size:
+        return error
+    exact, kept = probe(table.take(rows), options), np.arange(rows.size)
+    measured = exact.rolls & in_range(x[rows], stored())
+    kept = kept[measured | ~exact.rolls]
+    for k, name in enumerate(CHEAPER):
+        if name == "sliding" and options.spin_model != "skewed":
+            continue
+        own = table.take(rows[kept])
+        force = force_error(own, options, name, exact.take(kept))
+        found = expected_errors(x[rows[kept]], exact.take(kept), force, k)
+        error[rows[kept], k] = found
+        kept = kept[~(found <= enough) & measured[kept]]
+        if not kept.size:
+            break
+    return error
+
+
 def choose(table: CaseTable, options: Options) -> np.ndarray:
     """Name of the contact model of each case, object array (n,).
 
@@ -139,29 +170,14 @@ def choose(table: CaseTable, options: Options) -> np.ndarray:
     table : cases
     options : with `contact_tolerance`, what the errors named above may reach
 
-    The choice for a case depends on nothing but the case and the tolerance. It takes 1 ms a case, and where the sliding
-    model does not do as long as FASTSIM takes for the forces at `preview`, 16 ms.
+    The choice for a case depends on nothing but the case and the tolerance.
     """
-    model = np.full(len(table), "kalker", dtype=object)
-    if options.normal != "hertz" or options.hertz != "exact":
-        return model
-    drawn = (table.friction_law != "") | (table.guide_profile != "") | (table.roller_profile != "")
-    model[~drawn & (table.friction_coefficient == 0.0)] = CHEAPER[0]  # without friction all are one
-    x = features(table)
-    left = np.flatnonzero(~drawn & np.all(np.isfinite(x), axis=1))
-    if not left.size:
-        return model
-    exact, kept = probe(table.take(left), options), np.arange(left.size)
-    measured = exact.rolls & in_range(x[left], stored())
-    kept = kept[measured | ~exact.rolls]
-    for k, name in enumerate(CHEAPER):
-        if name == "sliding" and options.spin_model != "skewed":
-            continue
-        part = exact.take(kept)
-        force = force_error(table.take(left[kept]), options, name, part)
-        good = expected_errors(x[left[kept]], part, force, k) <= options.contact_tolerance
-        model[left[kept[good]]] = name
-        kept = kept[~good & measured[kept]]
-        if not kept.size:
-            break
+    return cheapest(measured_errors(table, options, options.contact_tolerance), options.contact_tolerance)
+
+
+def cheapest(error: np.ndarray, tolerance: float) -> np.ndarray:
+    """Name of the cheapest model within the tolerance, object array (n,), from errors (n, len(CHEAPER))."""
+    model = np.full(len(error), "kalker", dtype=object)
+    for k in reversed(range(len(CHEAPER))):
+        model[error[:, k] <= tolerance] = CHEAPER[k]
     return model

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 SHADES = ("#ffffff", "#d5d5d5", "#8f8f8f")
 HATCHES = ("", "////", "")
 LABELS = ("sliding", "fastsim", "kalker")
-POINTS = 50
+POINTS = 40
 
 
 def choice_map(tolerance: float = 0.05) -> Figure:
@@ -47,8 +47,10 @@ def _regions(axes: Axes, tolerance: float) -> None:
     table = to_table(cases, None)
     x, y = np.meshgrid(mus, angles)
 
+    error = choice.measured_errors(table, Options(contact_model="auto"))
+
     def chosen(limit: float) -> np.ndarray:
-        names = choice.choose(table, Options(contact_model="auto", contact_tolerance=limit))
+        names = choice.cheapest(error, limit)
         return np.array([LABELS.index(n) for n in names], float).reshape(POINTS, POINTS)
 
     filled = axes.contourf(x, y, chosen(tolerance), levels=[-0.5, 0.5, 1.5, 2.5], colors=SHADES, hatches=HATCHES)
