@@ -36,7 +36,8 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     -------
     interaction_share, interaction_share_low, interaction_share_high: shape (k, k), above the diagonal, NaN elsewhere
     and where no trusted fit is found; 95 % intervals by a grouped jackknife. fit_alone, shape (k,): share of each
-    factor alone in the same fit. fit_share: share of variance that the fit predicts for rows left out of it (NaN without one).
+    factor alone in the same fit. fit_share: share of variance that the fit predicts for rows left out of it (NaN
+    without one).
     """
     count = unit.shape[1]
     out: Estimates = {name: np.full((count, count), np.nan) for name in NAMES} | {"fit_share": np.array(np.nan)}
