@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MANY_LINES = 6  # more lines than this in one panel are not told apart: one panel a drive
-MAX_POINTS = 3000  # of a sample, in one scatter plot
+MAX_POINTS = 1000  # of a sample, in one scatter plot
 
 
 def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
@@ -55,7 +55,10 @@ def series(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any],
     if line:
         axes.plot(rows[x], rows[y], color=colour, linestyle=look.get("linestyle", "-"), zorder=2)
     else:
-        axes.plot(*binned_median(rows[x], rows[y]), color=colour, linestyle=look.get("linestyle", "-"), zorder=4)
+        from matplotlib.patheffects import Normal, Stroke
+
+        axes.plot(*binned_median(rows[x], rows[y]), color=colour, linestyle=look.get("linestyle", "-"), zorder=4,
+                  path_effects=[Stroke(linewidth=3.2, foreground="white"), Normal()])  # fmt: skip
     rolling = (rows["regime"] == 0) if "regime" in rows else np.ones(len(rows), dtype=bool)
     marks(axes, rows, x, y, colour, marker, 14 if line else 7, rolling)
 
@@ -119,6 +122,8 @@ def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | 
     pair = next((f for f in ("material_pair", "roller_material", "guide_material") if f in view.factors), None)
     drive = "motor_force" if "motor_force" in view.factors and len(view.levels("motor_force")) <= 5 else None
     rows, held = view.hold(tuple(f for f in (*view.behind(x), pair, drive) if f))
+    if not view.grid and len(rows) > MAX_POINTS:
+        held = f"{MAX_POINTS} of the {len(rows)} cases of the sample."
     rows = _thinned(rows, view.grid).copy()
     rows["_life"], top = capped(rows[column].to_numpy())
     if not np.isfinite(rows["_life"]).any():

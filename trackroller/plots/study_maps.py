@@ -36,6 +36,8 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     figure = style.new_figure(96)
     axes = figure.subplots()
     cells = view.grid or all(len(view.levels(f)) <= MAX_CELLS for f in pair)
+    if not cells and len(rows) > MAX_POINTS:
+        held = f"{MAX_POINTS} of the {len(rows)} cases of the sample."
     image = _life_cells(axes, view, rows, pair, column) if cells else _life_points(axes, rows, pair, column)
     bar = figure.colorbar(
         image,
