@@ -151,7 +151,7 @@ def _friction_and_load() -> tuple[Scene, ...]:
         _searched("spin pole on the edge", "spin pole from far behind to far ahead, at the centre and on the edge",
                   "x_spin/a", (-50, -3, *_edge(-1.0), -0.5, 0, 0.5, *_edge(1.0), 3, 50),
                   lambda v: {"motor_force": v * COMPLETE, "axial_force": 0.0}, (-1.0, 1.0),
-                  rising=("rolling_radius_shift",), close=True),
+                  close=True),
     )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -183,7 +184,7 @@ def _corners(x, y, nu, f) -> list:
             x * log + y * f.atan(x / y)]  # fmt: skip
 
 
-def _over_element(hx, hy, nu, place: tuple[int, int], f, pi) -> list:
+def _over_element(hx: Any, hy: Any, nu: Any, place: tuple[int, int], f: Any, pi: Any) -> list[Any]:
     """xx, yy, xy and the two of the pressure over the element `place` = (i, j)."""
     (x0, x1), (y0, y1) = (((k - 0.5) * h, (k + 0.5) * h) for k, h in zip(place, (hx, hy), strict=True))
     four = [_corners(x, y, nu, f) for x, y in ((x1, y1), (x0, y1), (x1, y0), (x0, y0))]
@@ -204,14 +205,15 @@ def _influence_errors(cases) -> tuple[tuple[float, ...], float]:
     """
     import mpmath
 
-    errors, single = [], []
+    errors: list[float] = []
+    single: list[float] = []
     for hx, hy, (i, j) in cases:
         n = max(i, j) + 1
         found = [*displacements(hx, hy, 0.3, n, n, 0, 0)[:, j + n - 1, i + n - 1],
                  *pressure_displacements(hx, hy, n, n, 0, 0)[:, j + n - 1, i + n - 1]]  # fmt: skip
-        wide, nu = [mpmath.mpf(v) for v in (hx, hy)], mpmath.mpf(0.3)
-        exact = [float(e) for e in _over_element(*wide, nu, (i, j), mpmath, mpmath.pi)]
-        low = _over_element(*(np.float32(v) for v in (hx, hy, 0.3)), (i, j), _Single, np.float32(np.pi))
+        exact = [float(e) for e in _over_element(mpmath.mpf(hx), mpmath.mpf(hy), mpmath.mpf(0.3), (i, j), mpmath,
+                                                 mpmath.pi)]  # fmt: skip
+        low = _over_element(np.float32(hx), np.float32(hy), np.float32(0.3), (i, j), _Single, np.float32(np.pi))
         for values, out in ((found, errors), (low, single)):
             gap = [abs(float(v) - e) for v, e in zip(values, exact, strict=True)]
             sizes = [max(map(abs, exact[:3])), max(map(abs, exact[3:])) or np.inf]
