@@ -8,11 +8,12 @@ import pandas as pd
 import pytest
 import xarray as xr
 
+from trackroller import expressions
 from trackroller.errors import InputError
 from trackroller.plots.study_view import StudyView
 from trackroller.plots.woehler import curve, woehler
 from trackroller.report_decisions import decisions
-from trackroller.study import expressions, words
+from trackroller.study import words
 from trackroller.study.config import parse_study
 from trackroller.study.delta import delta
 from trackroller.study.givendata import bins, given_data, pawn, pawn_interval

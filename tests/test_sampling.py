@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from trackroller.errors import InputError
+from trackroller.expressions import evaluate, names
 from trackroller.study import designs
-from trackroller.study.expressions import evaluate, names
 from trackroller.study.factors import Factor, parse
 from trackroller.study.sampling import METHODS, sample
 

@@ -57,7 +57,7 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
 
 
 def _comparison(node: ast.expr, text: str) -> Comparison:
-    from trackroller.study.expressions import names
+    from trackroller.expressions import names
 
     if not isinstance(node, ast.Compare) or len(node.ops) != 1 or type(node.ops[0]) not in _COMPARE:
         raise InputError("stop_if", text, "comparisons (> >= < <= == !=) joined by 'or'", _EXAMPLE)
@@ -82,7 +82,7 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
     value : of its name, shape (n,), (n, 2) contacts or (n, 2, 2) contacts and bodies; NaN never holds
     table : `CaseTable` of the n cases
     """
-    from trackroller.study.expressions import evaluate
+    from trackroller.expressions import evaluate
 
     n = len(table)
     names: Mapping[str, Any]

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller import expressions
 from trackroller.case import geometry_problem
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.study import expressions
 from trackroller.study.entries import OPTION_FACTORS
 from trackroller.study.factors import label, parse
 from trackroller.study.goals import check_scatter

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from trackroller import expressions
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.parameters import (
     CONTACT_MODELS,
@@ -16,7 +17,6 @@ from trackroller.parameters import (
     PARAMETERS,
     SPIN_MODELS,
 )
-from trackroller.study import expressions
 from trackroller.study.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)

@@ -148,7 +148,7 @@ def parse(name: str, spec: Any) -> Factor:
     kind = keys[0]
     value, where = spec[kind], f"{field}.{kind}"
     if kind == "expression":
-        from trackroller.study.expressions import names
+        from trackroller.expressions import names
 
         names(value, where)
         return Factor(name, kind, text=value)

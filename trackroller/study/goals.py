@@ -21,10 +21,10 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from trackroller import expressions
 from trackroller.dataset import VARIABLES
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
-from trackroller.study import expressions
 from trackroller.study.entries import choice
 from trackroller.study.outputs import DEFAULTS, FIELDS
 

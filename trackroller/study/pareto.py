@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, nearest
+from trackroller.expressions import condition
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
-from trackroller.study.expressions import condition
 from trackroller.study.factors import label
 from trackroller.study.goals import aliased, names_in
 from trackroller.study.outputs import case_dims, flat, outputs, read_study, regimes

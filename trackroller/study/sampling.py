@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from trackroller import expressions
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.parameters import PARAMETERS
-from trackroller.study import expressions
 from trackroller.study.draws import DRAW, MAX_ROWS, table
 from trackroller.study.factors import Factor, parse
 

@@ -6,7 +6,7 @@ ANALYSIS = [
     "study/delta.py",
     "study/designs.py",
     "study/draws.py",
-    "study/expressions.py",
+    "expressions.py",
     "study/factors.py",
     "study/givendata.py",
     "study/goals.py",
