@@ -22,9 +22,10 @@ NOTES = (
     "(r_Delta0 = -r_A); there the drilling still adds to the torque, and full slip, defined without it, begins with a "
     "jump. Measured at a/r_A = 0.02 (0.1): limit over mu sum F_N 1 + 4e-6 (8e-5), transmitted force 4e-6 (9e-5), peak "
     "stress 3e-8 (3e-7), spin moment 6e-4 (3e-3) of mu F_N a; normal and lateral forces do not jump.",
-    "Where the spin pole enters the patch the lateral force of `sliding` grows as the square root of the way in (that is "
-    "its pole's path, an ellipse), and the normal forces with it. Driven, the torque therefore folds there: within 4e-6 "
-    "of one motor force stand two slips, 1e-5 apart; the slip jumps by so much. `kalker` and `fastsim` have no fold.",
+    "Where the spin pole enters the patch the lateral force of `sliding` grows as the square root of the way in (its "
+    "pole runs along the ellipse), and the normal forces with it. Driven, the torque therefore folds there: within "
+    "4e-6 of one motor force stand two slips, about 1e-5 apart, and the slip jumps so far. `kalker` and "
+    "`fastsim` showed no fold.",
     "Patches a hundred times larger than the rolling radius (bit `half_space`): the drilling torque outweighs the "
     "transmitted force, whose digits a small imbalance no longer tells. There `residual` is no less than the "
     "uncertainty of the transmitted force over mu sum F_N, and `converged` says no above 1e-10: 5 % of the rolling "
