@@ -23,7 +23,7 @@ from trackroller.plots.style import (
 
 Record = dict[str, Any]
 CHECKS = {"finite": "finite", "solved": "solved", "residual": "residual", "scaling": "units", "mirror": "mirror",
-          "condition": "condition", "monotone": "monotone", "constant": "constant", "border": "border",
+          "condition": "cond.", "monotone": "monot.", "constant": "constant", "border": "border",
           "limit": "limit", "close": "close", "estimate": "estimate"}  # fmt: skip
 
 
