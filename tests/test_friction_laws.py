@@ -204,3 +204,33 @@ def test_complete_slip_has_the_friction_of_high_speed(roller):
     for ds in roller.values():
         assert ds.regime[4] == 1
         np.testing.assert_allclose(ds.driving_force[4], 0.4 * 0.3 * ds.normal_force[4], rtol=1e-4)
+
+
+NEAR_THE_MOST = dict(
+    radial_force=-150, axis_distance=20, velocity=120, contact_angle=35, friction_coefficient=0.202, axial_force=29.1,
+    roller_profile_radius=-7.366, motor_force=-14.5, friction_law={"kind": "exponential", "speed": 20},
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", ["sliding", "fastsim", "kalker"])
+def test_a_balance_that_the_rough_search_misplaces_is_found(kind):
+    """The rough law brackets the balance beside that of the fine law, which has to be searched itself."""
+    ds = tr.solve([NEAR_THE_MOST, tr.Case()], contact_model=kind, accuracy="preview", outputs=("forces",))
+    assert ds.regime[0] == 0 and ds.converged[0] == 1 and ds.residual[0] < 1e-6
+    assert ds.rolling_radius_shift[0] == pytest.approx(-0.09, abs=0.012)
+    alone = tr.solve(NEAR_THE_MOST, contact_model=kind, accuracy="preview", outputs=("forces",))
+    assert alone.rolling_radius_shift.item() == ds.rolling_radius_shift[0].item()
+
+
+def test_most_falling_laws_of_a_sample_are_solved():
+    """Sliding friction is continuous in the slip: no case without an answer."""
+    rng = np.random.default_rng(20)
+    cases = []
+    for _ in range(40):
+        force, mu = rng.uniform(80, 250), rng.uniform(0.1, 0.35)
+        law = {"kind": "exponential", "speed": np.exp(rng.uniform(0, 5.3)), "lowest": rng.uniform(0.2, 0.8)}
+        cases.append(tr.Case(radial_force=-force, friction_coefficient=mu, velocity=np.exp(rng.uniform(4, 8)),
+                             motor_force=rng.uniform(-0.6, 0.6) * mu * force, friction_law=law,
+                             axial_force=rng.uniform(-0.25, 0.25) * force))  # fmt: skip
+    ds = tr.solve(cases, accuracy="preview", outputs=("forces",))
+    assert np.all(ds.regime != 3) and np.all(ds.converged == 1)

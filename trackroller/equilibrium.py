@@ -15,12 +15,15 @@ import numpy as np
 from trackroller.contact.common import Resultants
 from trackroller.contact.sliding import tractions_full_slip
 from trackroller.equilibrium_branch import follow_friction, self_locking
-from trackroller.equilibrium_falling import first_balance
+from trackroller.equilibrium_falling import balance_again, first_balance
 from trackroller.equilibrium_newton import bracketed, digits_of_forces, newton_polish
 from trackroller.equilibrium_roller import LAST_SLIP, ContactLaw, Loads, Roller
 
 __all__ = ["FAILED", "FULL_SLIP", "LIFT_OFF", "ROLLING", "ContactLaw", "Equilibrium", "Loads", "solve_equilibrium"]
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
+# largest residual of what is called a solution; where friction falls the forces of a discretised patch jump by
+# little as elements change between stick and slip, and the balance may lie within such a jump
+SOLVED, SOLVED_FALLING = 1e-6, 1e-4
 
 
 @dataclass(frozen=True)
@@ -89,14 +92,16 @@ def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, f
     full[rows] = friction
     rolled = replace(loads, friction=full)
     roller = Roller(rolled, law, rows)
-    w_low, w_high = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
+    whole = w_low, w_high = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
+    unsure = np.zeros(rows.size, bool)
     # locked, the friction along the track is complete and there is no other, as in full slip
     complete = friction * np.sum(roller.normal_forces(np.zeros((2, rows.size))), axis=0)
     beyond = roller.motor_force > complete
     drives = np.flatnonzero(roller.motor_force < 0)
     spins = Roller(rolled, law, rows[drives])
     if loads.falling:
-        w_low, w_high, beyond = first_balance(roller, w_low, w_high)
+        w_low, w_high, beyond, unsure = first_balance(roller, w_low, w_high)
+        beyond &= ~unsure
     else:
         torque = spins.torque(_forces_at(spins, w_low[drives]))
         # a law without an answer for this patch leaves what friction can give at most
@@ -108,22 +113,31 @@ def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, f
     low, high = w_low[go], w_high[go]
     w, n = bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
     best, w, n, f = newton_polish(roller, w, n, low, high)
-    bad = np.flatnonzero(~(best <= loads.converged))
-    if bad.size:  # slow and sure
+    bad = np.flatnonzero(~(best <= loads.converged) | unsure[go])
+    if bad.size and loads.falling:
+        *found, low[bad], high[bad], none = balance_again(rolled, law, rows[go][bad], *(v[go][bad] for v in whole))
+        best[bad], w[bad], n[:, bad], f[:, :, bad] = found
+        beyond[go[bad[none]]] = True
+    elif bad.size:  # slow and sure
         again = Roller(rolled, law, rows[go][bad])
         w2, n2 = bracketed(again, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
-        b2, w2, n2, f2 = newton_polish(again, w2, n2, low[bad], high[bad])
-        best[bad], w[bad], n[:, bad], f[:, :, bad] = b2, w2, n2, f2
-    lift = roller.lifts(n)
-    bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift)
+        best[bad], w[bad], n[:, bad], f[:, :, bad] = newton_polish(again, w2, n2, low[bad], high[bad])
+    slides = beyond[go]
+    lift = roller.lifts(n) & ~slides
+    bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift & ~slides)
+    if loads.falling:  # far from self-locking there is one branch only: what failed has no balance
+        bad = bad[(friction[go][bad] >= 0.5 * np.tan(loads.contact_angle[rows[go][bad]])) | (best[bad] <= SOLVED)]
     if bad.size:
-        b3, w3, n3, f3, lift[bad] = follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
-        best[bad], w[bad], n[:, bad], f[:, :, bad] = b3, w3, n3, f3
+        *found, lift[bad] = follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
+        take = ~((found[0] > best[bad]) & (best[bad] > loads.converged) & loads.falling)
+        b = bad[take]
+        best[b], w[b], n[:, b], f[:, :, b] = (v[..., take] for v in found)
     # without a solution, what holds without friction decides
-    lift |= ~(best <= 1e-6) & np.any(roller.normal_forces(np.zeros((2, go.size))) <= 0, axis=0)
+    solved = best <= (SOLVED_FALLING if loads.falling else SOLVED)
+    lift |= ~solved & ~slides & np.any(roller.normal_forces(np.zeros((2, go.size))) <= 0, axis=0)
     k = rows[go]
-    regime[k] = np.where(lift, LIFT_OFF, np.where(best <= 1e-6, ROLLING, FAILED))
-    jamming[k] = roller.grips(n, f) & (loads.friction[k] > 0)
+    regime[k] = np.where(lift, LIFT_OFF, np.where(solved, ROLLING, FAILED))
+    jamming[k] = roller.grips(n, f) & (loads.friction[k] > 0) & ~slides
     up = np.flatnonzero(lift & (loads.friction[k] > 0))
     if up.size:
         jamming[k[up]] = self_locking(rolled, law, k[up], low[up], high[up])

@@ -2,31 +2,40 @@
 
 Such friction may transmit most at a moderate slip and less beyond. Of several slips that balance the torque the one
 nearest to none is taken: it is the one that starting gently reaches, and the one that is stable.
+
+The search runs with the coarse contact law. Near the most that friction transmits, the coarse and the fine law may
+differ in where the balance lies and even in whether there is one; then the fine law is searched itself.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from trackroller.equilibrium_newton import bracketed, newton_polish
+from trackroller.equilibrium_roller import Roller
+
 POINTS = 24  # of the search away from no slip
 FIRST, LAST = -1.5, 3.5  # decades of slip over its scale between which it looks
 GOLDEN, REFINEMENTS = 0.381966011250105, 12
+NEAR = 0.1  # of the torque scale by which the coarse law may miss a balance that the fine one has
 
 
-def first_balance(roller, w_low: np.ndarray, w_high: np.ndarray):
+def first_balance(roller: Roller, w_low: np.ndarray, w_high: np.ndarray, fine: bool = False):
     """Bounds in w of the balance nearest to no slip, for rollers that are driven or braked.
 
-    roller : as `equilibrium_roller.Roller`; w_low, w_high : the whole range, (m,)
+    w_low, w_high : the whole range, (m,); fine : by the fine contact law
 
-    Returns w_low and w_high narrowed to that balance, and where there is none (m,).
+    Returns w_low and w_high narrowed to that balance, where there is none (m,), and whether it was missed by so
+    little there that the fine law may have one (m,).
     """
     way = np.sign(roller.motor_force)  # driving needs slip < 0
     normal = roller.floored(roller.normal_forces(np.zeros((2, way.size))))
 
     def excess(w, pick):
         """Torque beyond the one asked for, > 0 once friction suffices; the normal forces follow."""
-        f = roller.contact(roller.shift(w, pick), normal[:, pick], False, pick)
-        normal[:, pick] = roller.floored(roller.normal_forces(f[0] / normal[:, pick], pick), pick)
+        for _ in range(2 if fine else 1):
+            f = roller.contact(roller.shift(w, pick), normal[:, pick], fine, pick)
+            normal[:, pick] = roller.floored(roller.normal_forces(f[0] / normal[:, pick], pick), pick)
         return -way[pick] * roller.torque(f, pick)
 
     low, high = w_low.copy(), w_high.copy()
@@ -42,10 +51,28 @@ def first_balance(roller, w_low: np.ndarray, w_high: np.ndarray):
         _narrow(low, high, way, found, points[k - 1, found], w[found], at_rest=k == 1)
         open_ = np.setdiff1d(open_, found)
         if open_.size == 0:
-            return low, high, beyond
+            return low, high, beyond, beyond.copy()
     summit = np.stack([points[np.clip(place[open_] + step, 1, POINTS + 1), open_] for step in (-1, 0, 1)])
     beyond[open_] = ~_climb(excess, open_, summit, way, low, high)
-    return low, high, beyond
+    return low, high, beyond, beyond & (best > -NEAR * roller.torque_scale)
+
+
+def balance_again(loads, law, rows: np.ndarray, w_low: np.ndarray, w_high: np.ndarray):
+    """Balances found by the fine law alone, for rollers where the coarse one misleads.
+
+    w_low, w_high : the whole range, (m,)
+
+    Returns what `newton_polish` does, bounds of w that reach from no slip to beyond the balance, and where there is
+    none (m,).
+    """
+    roller = Roller(loads, law, rows)
+    low, high, beyond, _ = first_balance(roller, w_low, w_high, fine=True)
+    w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=40, tolerance=1e-9)
+    # the normal forces lagged behind the search, so that the balance may lie a little beside its bounds
+    room = 0.5 * (high - low)
+    low, high = np.maximum(low - room, w_low), np.minimum(high + room, w_high)
+    found = newton_polish(roller, w, normal, low, high)
+    return *found, np.minimum(low, 0.0), np.maximum(high, 0.0), beyond
 
 
 def _narrow(low, high, way, rows, before, after, at_rest: bool) -> None:
