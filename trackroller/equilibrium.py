@@ -126,7 +126,9 @@ def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, f
     lift = roller.lifts(n) & ~slides
     bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift & ~slides)
     if loads.falling:  # far from self-locking there is one branch only: what failed has no balance
-        bad = bad[(friction[go][bad] >= 0.5 * np.tan(loads.contact_angle[rows[go][bad]])) | (best[bad] <= SOLVED)]
+        bad = bad[
+            (friction[go][bad] >= 0.5 * np.tan(loads.contact_angle[rows[go][bad]])) | (best[bad] <= SOLVED_FALLING)
+        ]
     if bad.size:
         *found, lift[bad] = follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
         take = ~((found[0] > best[bad]) & (best[bad] > loads.converged) & loads.falling)
