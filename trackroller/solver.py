@@ -173,8 +173,11 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarra
         model = choose(table, options)
     bare = requirements.is_frictionless(table) & options.shortcuts
     keys = list(zip(model, bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
-    for key in dict.fromkeys(keys):
-        yield str(key[0]), np.array([i for i, own in enumerate(keys) if own == key])
+    rows: dict[tuple, list[int]] = {}
+    for i, key in enumerate(keys):
+        rows.setdefault(key, []).append(i)
+    for key, own in rows.items():
+        yield str(key[0]), np.array(own)
     if not keys:
         yield "sliding" if options.contact_model == "auto" else options.contact_model, np.arange(0)
 

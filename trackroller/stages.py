@@ -75,6 +75,7 @@ class Results:
     stopped: np.ndarray  # (n,) the condition of stop_if holds
     values: dict[str, np.ndarray] = field(default_factory=dict)
     surface: SurfaceTractions | None = None  # of the existing patches, once asked for
+    share: np.ndarray | None = None  # their traction over its bound, once asked for
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
@@ -253,7 +254,9 @@ def _traction_fields(results: Results) -> np.ndarray | None:
     """Traction over its bound on the grid of each existing patch; None where full sliding needs no grid."""
     if results.scene.model.full_sliding or results.scene.frictionless:
         return None
-    return traction_share(surface_tractions(results), results.friction[results.good])
+    if results.share is None:
+        results.share = traction_share(surface_tractions(results), results.friction[results.good])
+    return results.share
 
 
 def stop(results: Results, options: Options) -> None:

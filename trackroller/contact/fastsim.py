@@ -23,6 +23,7 @@ from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
+from trackroller.contact.knots import interval
 from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
 from trackroller.threads import share_rows
 
@@ -79,17 +80,11 @@ def _relaxed(friction, speed, h, stiffness, knots, factors):
     order of the elastic displacement times the slope of the law (Vollebregt & Schuttelaars 2012); `stiffness` = L g.
     """
     last = knots.size - 1
-    low, high = 0, last
-    while high - low > 1:
-        middle = (low + high) // 2
-        if knots[middle] <= speed:
-            low = middle
-        else:
-            high = middle
     if speed >= knots[last]:
         target, slope = factors[last], 0.0
     else:
-        slope = (factors[high] - factors[low]) / (knots[high] - knots[low])
+        low = interval(speed, knots, 0, last)
+        slope = (factors[low + 1] - factors[low]) / (knots[low + 1] - knots[low])
         target = factors[low] + slope * (speed - knots[low])
     return friction + (target - friction) / (1.0 + 2.0 * stiffness * abs(slope) / h), abs(target - friction)
 

@@ -18,6 +18,7 @@ from numba import njit
 
 from trackroller.contact.kalker_columns import apply_inverse, column_ranges, column_slips, factorise
 from trackroller.contact.kalker_influence import FAST, Influence, differences, leading_rows
+from trackroller.contact.knots import interval
 
 
 @dataclass(frozen=True)
@@ -55,14 +56,8 @@ def law_of_slip(slip, height, scale, knots, factors, bound, slope):
             elif speed >= knots[last]:
                 bound[i, j] = height[i, j] * factors[last]
             else:
-                low, high = 0, last
-                while high - low > 1:
-                    middle = (low + high) // 2
-                    if knots[middle] <= speed:
-                        low = middle
-                    else:
-                        high = middle
-                steep = (factors[high] - factors[low]) / (knots[high] - knots[low])
+                low = interval(speed, knots, 0, last)
+                steep = (factors[low + 1] - factors[low]) / (knots[low + 1] - knots[low])
                 bound[i, j] = height[i, j] * (factors[low] + steep * (speed - knots[low]))
                 slope[i, j] = height[i, j] * steep * scale
 

@@ -14,6 +14,7 @@ from numba import njit
 
 from trackroller.contact.common import Ellipse, Resultants, Slip
 from trackroller.contact.friction_laws import FrictionLaw
+from trackroller.contact.knots import interval
 from trackroller.contact.sliding import (
     _TINY,
     _breakpoints,
@@ -35,15 +36,9 @@ def factor_at(speed, knots, factors):
         return factors[0]
     if speed >= knots[last]:
         return factors[last]
-    low, high = 0, last
-    while high - low > 1:
-        middle = (low + high) // 2
-        if knots[middle] <= speed:
-            low = middle
-        else:
-            high = middle
-    t = (speed - knots[low]) / (knots[high] - knots[low])
-    return (1.0 - t) * factors[low] + t * factors[high]
+    low = interval(speed, knots, 0, last)
+    t = (speed - knots[low]) / (knots[low + 1] - knots[low])
+    return (1.0 - t) * factors[low] + t * factors[low + 1]
 
 
 @njit(cache=True)

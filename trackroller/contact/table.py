@@ -23,6 +23,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants
+from trackroller.contact.knots import interval
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.threads import share_rows
 
@@ -59,14 +60,7 @@ class TableSolution:
 @njit(cache=True, nogil=True)
 def _basis(knots, x, out):
     """The four cubic B-splines that do not vanish at x, in `out`; returns the index of the first (de Boor)."""
-    count = knots.size - 4
-    low, high = 3, count
-    while high - low > 1:
-        middle = (low + high) // 2
-        if x >= knots[middle]:
-            low = middle
-        else:
-            high = middle
+    low = interval(x, knots, 3, knots.size - 4)
     out[0] = 1.0
     for degree in range(1, 4):
         saved = 0.0

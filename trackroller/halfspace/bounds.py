@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import NO_FIELD, near_parts, unit_rule
+from trackroller.halfspace.ellipse import NO_FIELD, near_parts, refinement, unit_rule
 from trackroller.halfspace.stress import von_mises
 
 # Depths over the smaller semi-axis: the surface, and where the frictionless peak lies for nu 0 to 0.5 from the
@@ -34,8 +34,7 @@ def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndar
     points = np.zeros((len(patches), count + 4, 3))
     points[:, :count, 2] = _DEPTHS * semi.min(axis=1)[:, None]
     points[:, count:, :2] = semi[:, None, :] * _VERTICES
-    slender = semi.max(axis=1) / semi.min(axis=1)
-    finer = np.clip(np.rint(np.sqrt(slender / 2.0)), 1, 6).astype(int)
+    finer = refinement(patches)
     out = np.empty((len(patches), 2))
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)

@@ -111,6 +111,15 @@ def unit_rule(order: int) -> np.ndarray:
     return np.stack(clustered_rule(order))
 
 
+def refinement(patches: np.ndarray) -> np.ndarray:
+    """How many times finer the rules of each patch are, 1 to 6: slender ones turn their slip within a short length.
+
+    `patches` are rows of `patch_rows`, shape (n, 12).
+    """
+    long, short = patches[:, :2].max(axis=1), patches[:, :2].min(axis=1)
+    return np.clip(np.rint(np.sqrt(long / short / 2.0)), 1, 6).astype(int)
+
+
 NO_FIELD = np.zeros((2, 1, 1))
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import near_parts, unit_rule
+from trackroller.halfspace.ellipse import near_parts, refinement, unit_rule
 from trackroller.halfspace.ellipse_kernels import FRICTION, A, B
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
 from trackroller.threads import share_rows
@@ -266,8 +266,7 @@ def find_peaks(
     patches = np.ascontiguousarray(patches)
     out = np.empty((len(patches), 2, 5))
     long, short = np.maximum(patches[:, A], patches[:, B]), np.minimum(patches[:, A], patches[:, B])
-    # a slender patch turns its slip within a small part of its length
-    finer = np.clip(np.rint(np.sqrt(long / short / 2.0)), 1, 6).astype(int)
+    finer = refinement(patches)
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
         orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
