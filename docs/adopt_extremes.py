@@ -7,34 +7,30 @@ data and ends with 1 if the page is not up to date.
 from __future__ import annotations
 
 import json
-import shutil
-import sys
 from pathlib import Path
 
-from trackroller.study.extremes_page import markdown, read
+from adopt import DATA, copy_figures, main
 
-FOLDER = Path(__file__).parent
-KEPT = FOLDER / "data" / "extremes.json"
+from trackroller.pages import markdown
+from trackroller.study.extremes_page import blocks, read
+
+KEPT = DATA / "extremes.json"
+MADE_BY = "made by docs/adopt_extremes.py from docs/data/extremes.json"
 
 
 def page() -> str:
     """The page from the kept data."""
     kept = json.loads(KEPT.read_text(encoding="utf-8"))
-    return markdown(kept["record"], kept["figures"])
+    return markdown(blocks(kept["record"], kept["figures"]), MADE_BY)
 
 
 def adopt(results: Path) -> None:
     """Copy data (without the regime map, which the figure shows) and figures."""
     record, figures = read(results)
     record.pop("map")
-    KEPT.parent.mkdir(exist_ok=True)
     KEPT.write_text(json.dumps({"record": record, "figures": figures}) + "\n", encoding="utf-8")
-    for figure in figures:
-        shutil.copy(results / "figures" / f"{figure['name']}.png", FOLDER / "figures")
+    copy_figures(results, [figure["name"] for figure in figures])
 
 
 if __name__ == "__main__":
-    if "--check" in sys.argv:
-        sys.exit((FOLDER / "extremes.md").read_text(encoding="utf-8") != page())
-    adopt(FOLDER.parent / "results" / "extremes")
-    (FOLDER / "extremes.md").write_text(page(), encoding="utf-8")
+    main("extremes", page, adopt)

@@ -14,7 +14,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-FOLDER = Path(__file__).parent
+from adopt import DATA, FOLDER, copy_figures
+
 LADDERS = FOLDER.parent / "trackroller" / "data" / "accuracy.json"
 
 
@@ -26,11 +27,10 @@ def adopt(results: Path) -> None:
     told = {"made_by": "python docs/adopt_tradeoff.py, from snakemake tradeoff", "sample": summary["sample"],
             "ladders": summary["ladders"]}  # fmt: skip
     LADDERS.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
-    (FOLDER / "data").mkdir(exist_ok=True)
-    shutil.copy(results / "tradeoff.json", FOLDER / "data" / "tradeoff.json")
-    shutil.copy(results / "figures" / "index.json", FOLDER / "data" / "tradeoff_figures.json")
-    for picture in (results / "figures").glob("tradeoff_*.png"):
-        shutil.copy(picture, FOLDER / "figures" / picture.name)
+    DATA.mkdir(exist_ok=True)
+    shutil.copy(results / "tradeoff.json", DATA / "tradeoff.json")
+    shutil.copy(results / "figures" / "index.json", DATA / "tradeoff_figures.json")
+    copy_figures(results, [picture.stem for picture in (results / "figures").glob("tradeoff_*.png")])
     subprocess.run([sys.executable, str(FOLDER / "generate.py")], check=True)
 
 

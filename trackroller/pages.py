@@ -1,7 +1,8 @@
 """Pages of headings, paragraphs, tables and figures, as Markdown for the documentation and as one HTML file.
 
 A page is a list of blocks (kind, value): 'h1' to 'h3' and 'p' hold text with `code`, *emphasis* and links as in
-Markdown; 'table' holds (heads, rows); 'figure' a mapping with name, caption and sentence of a PNG.
+Markdown, 'list' several such texts; 'table' holds (heads, rows); 'figure' a mapping with name, caption and sentence of
+a PNG.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ def markdown(content: Sequence[Block], made_by: str, folder: str = "figures") ->
             lines += [f"{'#' * int(kind[1])} {value}", ""]
         elif kind == "p":
             lines += [value, ""]
+        elif kind == "list":
+            lines += [*(f"- {text}" for text in value), ""]
         elif kind == "figure":
             lines += [f"![{value['caption']}]({folder}/{value['name']}.png)", "", f"*{value['sentence']}*", ""]
         else:
@@ -46,6 +49,8 @@ def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
     for kind, value in content:
         if kind in ("h1", "h2", "h3", "p"):
             body.append(f"<{kind}>{inline(value)}</{kind}>")
+        elif kind == "list":
+            body.append("<ul>" + "".join(f"<li>{inline(text)}</li>" for text in value) + "</ul>")
         elif kind == "figure":
             data = base64.b64encode((figures / f"{value['name']}.png").read_bytes()).decode()
             body.append(

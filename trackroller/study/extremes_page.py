@@ -1,11 +1,13 @@
-"""The extremes in words and tables: a page of the documentation (Markdown) and one HTML file with its figures."""
+"""The extremes in words and tables, as a page of the documentation (Markdown) and as one HTML file."""
 
 from __future__ import annotations
 
-import base64
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from trackroller.pages import Block, page_html
 
 Record = dict[str, Any]
 NOTES = (
@@ -43,95 +45,80 @@ KERNEL_WORDS = (
     "the same places. 1 means that no digit is left: these formulas cannot be had in single precision, and in double "
     "keep what the columns before say (the axis ratio and the stresses by formulas without their cancellation)."
 )
+RANDOM_WORDS = (
+    "Log-uniform over all parameters at once (loads 1 mN to 1 MN, moduli 1 kPa to 300 GPa, contours 1 µm to 10 m, "
+    "contact angles 0.01 to 89.99 deg, mu 1e-12 to 2), most of them far from anything that can be built. *failed, "
+    "small patch*: without solution though the patch is small against all radii."
+)
 
 
-def _rows(record: Record) -> list[dict[str, Any]]:
-    broken = []
+def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
+    """The page as headings, paragraphs, tables and figures."""
+    scenes, broken = _scenes(record), _broken(record)
+    claims = [f["holds"] for row in record["scenes"] for f in row["findings"]]
+    return [
+        ("h1", "At the ends of the parameters"),
+        ("p", f"{sum(claims)} of {len(claims)} claims on {len(scenes)} edge scenes hold. A scene is a series of cases "
+              "that runs to an end of the parameters; the claims are: finite or flagged, solved, small residual, the "
+              "same in other units, the same in a mirror, well conditioned, monotone where physics says so, continuous "
+              "across borders of regimes and towards limits, and peaks within the estimated error. "
+              "`snakemake --cores all extremes` makes this page."),
+        *[("figure", f) for f in figures],
+        ("h2", "Claims not met"),
+        ("table", (("scene", "model", "check", "deviation", "tolerated", "where"), broken)) if broken
+        else ("p", "None."),
+        ("h2", "The scenes"),
+        ("table", (("scene", "what", "from, to", "models"), scenes)),
+        ("h2", "Kernels against many digits"),
+        ("p", KERNEL_WORDS),
+        ("table", (("kernel", "from", "to", "against", "worst relative error", "tolerated", "in single precision"),
+                   [_kernel(k) for k in record["kernels"]])),
+        ("h2", "Random extremes"),
+        ("p", RANDOM_WORDS),
+        ("table", (("model", "cases", "regimes", "undefined numbers", "warnings", "failed, small patch",
+                    "other regime in other units", "change of normal forces in other units"),
+                   [_random(r) for r in record["random"]])),
+        ("h2", "To know"),
+        ("list", NOTES),
+    ]  # fmt: skip
+
+
+def _broken(record: Record) -> list[tuple[str, ...]]:
+    """Claims that do not hold."""
+    return [(row["scene"], row["model"], f["check"], f"{float(f['deviation']):.2g}", f"{f['tolerance']:.2g}",
+             f"{row['quantity']} = {float(f['where']):g}")
+            for row in record["scenes"] for f in row["findings"] if not f["holds"]]  # fmt: skip
+
+
+def _scenes(record: Record) -> list[tuple[str, ...]]:
+    """Each scene once, with the models that run it."""
+    runs: dict[str, list[Record]] = {}
     for row in record["scenes"]:
-        for f in row["findings"]:
-            if not f["holds"]:
-                broken.append({"scene": row["scene"], "model": row["model"], "check": f["check"],
-                               "deviation": f"{float(f['deviation']):.2g}", "tolerance": f"{f['tolerance']:.2g}",
-                               "where": f"{row['quantity']} = {float(f['where']):g}"})  # fmt: skip
-    return broken
-
-
-def content(record: Record, figures: list[dict[str, str]]) -> dict[str, Any]:
-    """What both pages show."""
-    claims = [f for row in record["scenes"] for f in row["findings"]]
-    scenes: dict[str, Any] = {}
-    for row in record["scenes"]:
+        runs.setdefault(row["scene"], []).append(row)
+    found: list[tuple[str, ...]] = []
+    for name, rows in runs.items():
+        row, models = rows[0], ", ".join(r["model"] for r in rows)
         first, last = float(row["values"][0]), float(row["values"][-1])
         unit = row["unit"] if row["unit"] != "1" else ""
-        new = {"name": row["scene"], "title": row["title"], "models": [],
-               "range": f"{row['quantity']} = {first:g} ... {last:g} {unit}".strip()}  # fmt: skip
-        scene = scenes.setdefault(row["scene"], new)
-        scene["models"].append(row["model"])
-    kernels = [k | {"low": "" if k["single"] is None else f"{k['single']:.0e}",
-                    "worst": f"{max(k['errors']):.1e}", "from": f"{k['values'][0]:g}", "to": f"{k['values'][-1]:g}"}
-               for k in record["kernels"]]  # fmt: skip
-    random = [r | {"regimes": ", ".join(f"{n} {name}" for name, n in r["regimes"].items()),
-                   "scaling": f"{r['scaling']:.1e}"} for r in record["random"]]  # fmt: skip
-    return {"claims": len(claims), "held": sum(f["holds"] for f in claims), "broken": _rows(record),
-            "scenes": list(scenes.values()), "kernels": kernels, "random": random, "figures": figures,
-            "notes": NOTES}  # fmt: skip
+        found.append((name, row["title"], f"{row['quantity']} = {first:g} ... {last:g} {unit}".strip(), models))
+    return found
 
 
-def _table(heads: tuple[str, ...], rows: list[tuple[Any, ...]]) -> list[str]:
-    line = lambda cells: "| " + " | ".join(str(c).replace("|", "\\|") for c in cells) + " |"  # noqa: E731
-    return [line(heads), line(["---"] * len(heads)), *(line(r) for r in rows), ""]
+def _kernel(k: dict[str, Any]) -> tuple[str, ...]:
+    low = "" if k["single"] is None else f"{k['single']:.0e}"
+    return (k["name"], f"{k['quantity']} = {k['values'][0]:g}", f"{k['values'][-1]:g}", k["against"],
+            f"{max(k['errors']):.1e}", f"{k['tolerance']:g}", low)  # fmt: skip
 
 
-def markdown(record: Record, figures: list[dict[str, str]], folder: str = "figures") -> str:
-    """The page of the documentation."""
-    c = content(record, figures)
-    lines = ["# At the ends of the parameters", "",
-             "*Made by `python docs/adopt_extremes.py` from what `snakemake --cores all extremes` found; do not edit.*",
-             "", f"{c['held']} of {c['claims']} claims on {len(c['scenes'])} edge scenes hold. A scene is a series of "
-             "cases that runs to an end of the parameters; the claims are: finite or flagged, solved, small residual, "
-             "the same in other units, the same in a mirror, well conditioned, monotone where physics says so, "
-             "continuous across borders of regimes and towards limits, and peaks within the estimated error.",
-             ""]  # fmt: skip
-    for figure in c["figures"]:
-        lines += [f"![{figure['caption']}]({folder}/{figure['name']}.png)", "", f"*{figure['sentence']}*", ""]
-    lines += ["## Claims not met", ""]
-    lines += _table(("scene", "model", "check", "deviation", "tolerated", "where"),
-                    [tuple(b.values()) for b in _ordered(c["broken"])]) if c["broken"] else ["None.", ""]  # fmt: skip
-    lines += ["## The scenes", ""]
-    lines += _table(("scene", "what", "from, to", "models"),
-                    [(s["name"], s["title"], s["range"], ", ".join(s["models"])) for s in c["scenes"]])  # fmt: skip
-    lines += ["## Kernels against many digits", ""]
-    lines += [KERNEL_WORDS, ""]
-    lines += _table(("kernel", "from", "to", "against", "worst relative error", "tolerated", "in single precision"),
-                    [(k["name"], f"{k['quantity']} = {k['from']}", k["to"], k["against"], k["worst"],
-                      f"{k['tolerance']:g}", k["low"]) for k in c["kernels"]])  # fmt: skip
-    lines += ["## Random extremes", "",
-              "Log-uniform over all parameters at once (loads 1 mN to 1 MN, moduli 1 kPa to 300 GPa, contours 1 µm to "
-              "10 m, contact angles 0.01 to 89.99 deg, mu 1e-12 to 2), most of them far from anything that can be "
-              "built. *failed, small patch*: without solution though the patch is small against all radii.",
-              ""]  # fmt: skip
-    lines += _table(("model", "cases", "regimes", "undefined numbers", "warnings", "failed, small patch",
-                     "other regime in other units", "change of normal forces in other units"),
-                    [(r["model"], r["count"], r["regimes"], r["undefined"], r["warnings"], r["failed_small_patch"],
-                      r["other_regime"], r["scaling"]) for r in c["random"]])  # fmt: skip
-    lines += ["## To know", "", *(f"- {note}" for note in NOTES), ""]
-    return "\n".join(lines)
+def _random(r: dict[str, Any]) -> tuple[Any, ...]:
+    regimes = ", ".join(f"{n} {name}" for name, n in r["regimes"].items())
+    return (r["model"], r["count"], regimes, r["undefined"], r["warnings"], r["failed_small_patch"],
+            r["other_regime"], f"{r['scaling']:.1e}")  # fmt: skip
 
 
-def _ordered(broken: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    return [{k: b[k] for k in ("scene", "model", "check", "deviation", "tolerance", "where")} for b in broken]
-
-
-def html(record: Record, figures: list[dict[str, str]], folder: Path) -> str:
+def html(record: Record, figures: Sequence[dict[str, str]], folder: Path) -> str:
     """One file with its figures inside, that can be sent by mail."""
-    from jinja2 import Environment, PackageLoader, select_autoescape
-
-    def image(name: str) -> str:
-        return "data:image/png;base64," + base64.b64encode((folder / f"{name}.png").read_bytes()).decode()
-
-    shown = [f | {"image": image(f["name"])} for f in figures]
-    environment = Environment(loader=PackageLoader("trackroller"), autoescape=select_autoescape(["html", "j2"]))
-    return environment.get_template("extremes.html.j2").render(**content(record, shown))
+    return page_html(blocks(record, figures), folder, "Track rollers: at the ends of the parameters")
 
 
 def read(path: Path, figures: bool = True) -> tuple[Record, list[dict[str, str]]]:

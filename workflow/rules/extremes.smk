@@ -45,7 +45,7 @@ rule extremes_show:
             "plots/extremes.py",
             "plots/style.py",
             "study/extremes_page.py",
-            "templates",
+            "pages.py",
         ),
     output:
         figures=directory(f"{EXTREMES}/figures"),
