@@ -22,15 +22,14 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.fastsim_point import enter, step
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.knots import interval
 from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
 from trackroller.threads import share_rows
 
 # Between linear theory and full sliding the flexibilities change with the creepages; fitted to the exact theory.
 SLIDING_FORCE = 2.5  # forces of the linear theory over mu F_N at which half of the change is done
 POLE_INSIDE = 0.9  # flexibility of sliding about the middle of the patch over that with the pole far away
-NEWTON = 30  # most steps of the root of one point; three or four are usual
 SUBSTEPS = 4  # between the points of a grid of tractions
 
 
@@ -39,7 +38,7 @@ class FastsimSettings:
     """strips across the patch, steps along each (a second pass with twice as many serves extrapolation),
 
     points of a traction grid, `parabolic` for the traction bound of the original algorithm, friction law and the
-    travel speed [mm/s] where a call does not give its own.
+    travel speed [mm/s] where a call does not give its own; profile_slip as in `kalker.KalkerSettings`.
     """
 
     strips: int = 32
@@ -48,76 +47,7 @@ class FastsimSettings:
     parabolic: bool = False
     law: FrictionLaw | None = None
     travel_speed: float = 1.0
-
-
-@njit(cache=True)
-def _shortened(zx, zy, l_x, l_y, g):
-    """(x, y) of length g with (x - z) L along it: the traction that slides under the trial traction z, |z| > g.
-
-    x = L z/(L + k), k the root of |x| = g by Newton's method from the mean of L; k >= 0.
-    """
-    mean = 0.5 * (l_x + l_y)
-    k = mean * (math.hypot(zx, zy) / g - 1.0)
-    for _ in range(NEWTON):
-        px, py = l_x * zx / (l_x + k), l_y * zy / (l_y + k)
-        size = math.sqrt(px * px + py * py)
-        slope = -(px * px / (l_x + k) + py * py / (l_y + k)) / size
-        # of 1/|x| - 1/g, which is nearly linear in k
-        change = size * (size - g) / (g * slope)
-        k = max(k - change, 0.0)
-        if abs(change) <= 1e-13 * (k + mean):
-            break
-    px, py = l_x * zx / (l_x + k), l_y * zy / (l_y + k)
-    share = g / math.sqrt(px * px + py * py)
-    return share * px, share * py
-
-
-@njit(cache=True)
-def _relaxed(friction, speed, h, stiffness, knots, factors):
-    """Friction one step further towards that of its slip speed; and how far it was from it.
-
-    Friction that falls at once with the slip of an elastic spring is unstable, so it follows over a length of the
-    order of the elastic displacement times the slope of the law (Vollebregt & Schuttelaars 2012); `stiffness` = L g.
-    """
-    last = knots.size - 1
-    if speed >= knots[last]:
-        target, slope = factors[last], 0.0
-    else:
-        low = interval(speed, knots, 0, last)
-        slope = (factors[low + 1] - factors[low]) / (knots[low + 1] - knots[low])
-        target = factors[low] + slope * (speed - knots[low])
-    return friction + (target - friction) / (1.0 + 2.0 * stiffness * abs(slope) / h), abs(target - friction)
-
-
-@njit(cache=True)
-def _step(wx, wy, h, flexibility, bound, knots, factors, state):
-    """One step h against the rolling direction with rigid slip (wx, wy).
-
-    state = tau_x, tau_y, s_x, s_y, friction over its value at rest, and what it lacked: the old, then the new.
-    """
-    l_x, l_y = flexibility[0], flexibility[1]
-    zx, zy = state[0] - h * wx / l_x, state[1] - h * wy / l_y
-    g = bound * state[4]
-    if zx * zx + zy * zy <= g * g:
-        state[0], state[1], state[2], state[3] = zx, zy, 0.0, 0.0
-    elif g <= 0.0:
-        state[2], state[3] = -l_x * zx / h, -l_y * zy / h
-        state[0] = state[1] = 0.0
-    else:
-        tx, ty = _shortened(zx, zy, l_x, l_y, g)
-        state[0], state[1] = tx, ty
-        state[2], state[3] = l_x * (tx - zx) / h, l_y * (ty - zy) / h
-    state[5] = 0.0
-    if knots.size > 1:
-        speed = math.hypot(state[2], state[3])
-        state[4], state[5] = _relaxed(state[4], speed, h, max(l_x, l_y) * bound, knots, factors)
-
-
-@njit(cache=True)
-def _enter(wx, wy, knots, factors, state):
-    """The state at the leading edge: no traction, friction of the rigid slip."""
-    state[:] = 0.0
-    state[4] = np.interp(math.hypot(wx, wy), knots, factors)
+    profile_slip: bool = False
 
 
 @njit(cache=True)
@@ -140,12 +70,12 @@ def _patch(a, b, scale, rigid, flexibility, steps, nodes, weights, parabolic, kn
         length = math.sqrt(1.0 - u * u)
         x, h = a * u, 2.0 * b * length / steps
         wy = rigid[0] + rigid[2] * x
-        _enter(rigid[1] - rigid[2] * b * length, wy, knots, factors, state)
+        enter(rigid[1] - rigid[2] * b * length, wy, knots, factors, state)
         for j in range(steps):
             y = b * length * (1.0 - 2.0 * (j + 1.0) / steps)
             before_x, before_y = state[0], state[1]
             g = scale * _bound(u, y / b, parabolic)
-            _step(rigid[1] - rigid[2] * (y + 0.5 * h), wy, h, flexibility, g, knots, factors, state)
+            step(rigid[1] - rigid[2] * (y + 0.5 * h), wy, h, flexibility, g, knots, factors, state)
             area = weights[i] * a * h
             mean_x, mean_y, middle = 0.5 * (before_x + state[0]), 0.5 * (before_y + state[1]), y + 0.5 * h
             total[0] += area * mean_x
@@ -175,7 +105,7 @@ def _all_fields(rows, a, b, scale, rigid, flexibility, travel, points, parabolic
             u = (2.0 * k + 1.0) / points - 1.0
             y, x = b[i] * math.sqrt(1.0 - u * u), a[i] * u
             wy = rigid[i, 0] + rigid[i, 2] * x
-            _enter(rigid[i, 1] - rigid[i, 2] * y, wy, speeds, factors, state)
+            enter(rigid[i, 1] - rigid[i, 2] * y, wy, speeds, factors, state)
             for j in range(points - 1, -1, -1):
                 target = b[i] * ((2.0 * j + 1.0) / points - 1.0)
                 if target >= y or 1.0 - u * u <= (target / b[i]) ** 2:
@@ -185,7 +115,7 @@ def _all_fields(rows, a, b, scale, rigid, flexibility, travel, points, parabolic
                     y -= h
                     g = scale[i] * _bound(u, y / b[i], parabolic)
                     wx = rigid[i, 1] - rigid[i, 2] * (y + 0.5 * h)
-                    _step(wx, wy, h, flexibility[i], g, speeds, factors, state)
+                    step(wx, wy, h, flexibility[i], g, speeds, factors, state)
                 shear[i, 0, j, k], shear[i, 1, j, k] = state[0], state[1]
                 slip[i, 0, j, k], slip[i, 1, j, k] = state[2], state[3]
 
@@ -203,11 +133,19 @@ class FastsimSolution:
     friction_change: np.ndarray
 
 
-def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic):
-    """Arrays a, b, mu p_max, rigid slips (n, 3) and flexibilities (n, 2: x, y) [mm/MPa] of n patches."""
-    a, b, p, xi, eta, phi, mu, g, nu = (np.array(v, float, order="C") for v in np.broadcast_arrays(
-        ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure, longitudinal, lateral, spin,
-        friction, elastic.shear_modulus, elastic.poisson_ratio))  # fmt: skip
+def flexibilities(a, b, limit, rigid, shear_modulus, poisson_ratio) -> tuple[np.ndarray, np.ndarray]:
+    """Flexibilities of x and y (n, 2) [mm/MPa], and that of x over the one under lateral creepage alone, (n,) [-].
+
+    Parameters
+    ----------
+    a, b : semi-axes across and along the rolling direction [mm], (n,)
+    limit : mu F_N [N], (n,)
+    rigid : xi, eta [-] and phi [1/mm] about the middle of the ellipse, (n, 3)
+    shear_modulus, poisson_ratio : combined constants [MPa], [-], (n,)
+
+    Raises `InputError` for axis ratios beyond the linear coefficients.
+    """
+    (xi, eta, phi), g, nu = rigid.T, shear_modulus, poisson_ratio
     c = creepage_coefficients(b / a, nu)
     l_1, l_2 = 8.0 * b / (3.0 * g * c.c11), 8.0 * b / (3.0 * g * c.c22)
     l_3 = np.pi * b * np.sqrt(b / a) / (4.0 * g * c.c23)
@@ -216,15 +154,24 @@ def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: E
     l_x = np.where(both > 0, (across * l_2 + turn * l_3) / np.where(both > 0, both, 1.0), l_2)
     sticking = np.stack([l_x, l_1], axis=1)
     # the forces of the linear theory over the largest: a measure of how much slides
-    square, limit = a * b * g, 2.0 / 3.0 * np.pi * a * b * mu * p
+    square = a * b * g
     forces = np.hypot(square * c.c11 * xi, square * (c.c22 * eta - np.sqrt(a * b) * c.c23 * phi))
     with np.errstate(divide="ignore", invalid="ignore"):
         slides = 1.0 / (1.0 + (SLIDING_FORCE * limit / forces) ** 2)
         pole = 1.0 / (1.0 + (phi * a) ** 2 / (xi**2 + eta**2))  # 1 far away, 0 in the middle
     share = np.where(forces > 0, slides, 0.0)[:, None]
     far = sliding_flexibility(b / a, nu) * (b / g * (POLE_INSIDE + (1.0 - POLE_INSIDE) * np.nan_to_num(pole)))[:, None]
-    flexibility = sticking + share * (far - sticking)
-    return a, b, mu * p, np.stack([xi, eta * l_x / l_2, phi], axis=1), flexibility
+    return sticking + share * (far - sticking), l_x / l_2
+
+
+def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic):
+    """Arrays a, b, mu p_max, rigid slips (n, 3) and flexibilities (n, 2: x, y) [mm/MPa] of n patches."""
+    a, b, p, xi, eta, phi, mu, g, nu = (np.array(v, float, order="C") for v in np.broadcast_arrays(
+        ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure, longitudinal, lateral, spin,
+        friction, elastic.shear_modulus, elastic.poisson_ratio))  # fmt: skip
+    limit = 2.0 / 3.0 * np.pi * a * b * mu * p
+    flexibility, across = flexibilities(a, b, limit, np.stack([xi, eta, phi], axis=1), g, nu)
+    return a, b, mu * p, np.stack([xi, eta * across, phi], axis=1), flexibility
 
 
 def _rows_of(function, rest: tuple, first: int, last: int) -> None:
