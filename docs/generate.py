@@ -33,6 +33,7 @@ OPTIONS = (
     ("stress_bodies", p.STRESS_BODIES, "both", "each body with its own Poisson's ratio, or one with the mean"),
     ("life_rule", p.LIFE_RULES, "elementary", "what happens below the fatigue limit"),
     ("normal", p.NORMAL, "hertz", "pressures of Hertz, or patch and pressure solved on a grid (drawn profiles)"),
+    ("slip_terms", tuple(p.SLIP_TERMS), "none", "what the slip of `fastsim` and `kalker` counts beyond the tangent"),
     ("contact_tolerance", ("a number in (0, 1)",), "0.05", "relative tolerance of the contact forces, for `auto`"),
     ("stop_if", ("a condition",), "none", "cases for which it holds are not searched for peak stresses"),
     ("shortcuts", ("true", "false"), "true", "spare what symmetry and repetition make superfluous"),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 OPTIONS = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
-           "contact_tolerance", "stop_if", "shortcuts")
+           "contact_tolerance", "stop_if", "shortcuts", "slip_terms")
 
 
 def settings_of(words: list[str]) -> dict[str, Any]:
@@ -38,8 +38,9 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
         if key not in (*FIELDS, *OPTIONS):
             raise unknown_name("case field", key, (*FIELDS, *OPTIONS))
     options = {key: values.pop(key) for key in OPTIONS if key in values}
-    if isinstance(options.get("outputs"), str):
-        options["outputs"] = [part.strip() for part in options["outputs"].split(",")]
+    for key in ("outputs", "slip_terms"):
+        if isinstance(options.get(key), str):
+            options[key] = [part.strip() for part in options[key].split(",")]
     return Case.from_dict(values), options
 
 

@@ -26,6 +26,17 @@ class Stage:
     why: str
 
 
+def _model(options: Options) -> str:
+    told = f"contact model {options.contact_model}"
+    if not options.slip_terms:
+        return told
+    if options.contact_model == "auto":
+        told += ", which is kalker here"
+    elif options.contact_model == "sliding":
+        return told + ", whose slip is the profile's anyway"
+    return told + f"; the slip counts {' and '.join(options.slip_terms)}"
+
+
 def explain(table: CaseTable, options: Options) -> list[Stage]:
     """Stages of `solve` for the cases of `table`, in their order.
 
@@ -44,7 +55,7 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     told = [
         Stage("geometry, Hertz or half-space pressure", True, m, n, "cases",
               f"{n - m} cases repeat the mechanics of others" if m < n else "every case has mechanics of its own"),
-        Stage("equilibrium", True, patches, 2 * n, "patches", f"contact model {options.contact_model}" + sides),
+        Stage("equilibrium", True, patches, 2 * n, "patches", _model(options) + sides),
     ]  # fmt: skip
 
     def stage(name: str, need: set[str], unit: str, count: int, total: int, why: str) -> None:

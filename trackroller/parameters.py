@@ -99,6 +99,10 @@ SPIN_MODELS = ("concentric", "edge", "skewed")
 ACCURACIES = ("preview", "standard", "reference")
 HERTZ = ("exact", "published")
 STRESS_BODIES = ("both", "published")
+SLIP_TERMS = {  # what the rigid slip of the rolling contact models may count, see docs/theory.md ("Slip field")
+    "profile": "the rolling slip of the guide's profile, eq. (20), instead of its tangent",
+    "curve": "the roller turns with the curve of the guide, which adds to its spin",
+}
 LIFE_RULES = ("elementary", "haibach", "unlimited")
 OUTPUT_GROUPS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 DEFAULT_OUTPUTS = ("forces", "contact", "peak_stress", "life")

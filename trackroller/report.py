@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 SAMPLED = ("lhs", "sobol", "morris", "saltelli", "nested")  # designs that `samples` counts for
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
-OPTIONS = ("contact_model", "spin_model", "hertz", "stress_bodies", "life_rule", "accuracy", "normal", "stop_if")
+OPTIONS = ("contact_model", "spin_model", "slip_terms", "hertz", "stress_bodies", "life_rule", "accuracy", "normal",
+           "stop_if")  # fmt: skip
 _TOLD = {
     "study",
     "materials",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +24,7 @@ from trackroller.parameters import (
     MAPPING_FIELDS,
     NORMAL,
     OUTPUT_GROUPS,
+    SLIP_TERMS,
     SPIN_MODELS,
     STRESS_BODIES,
 )
@@ -59,6 +60,7 @@ class Options:
     contact_tolerance: float = 0.05
     stop_if: str | None = None
     shortcuts: bool = True
+    slip_terms: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         outputs = (self.outputs,) if isinstance(self.outputs, str) else tuple(self.outputs)
@@ -73,6 +75,7 @@ class Options:
                                ("normal", NORMAL)):  # fmt: skip
             if getattr(self, field) not in options:
                 raise unknown_name(field, str(getattr(self, field)), options)
+        self._check_slip()
         accuracy_settings(self.accuracy, self.contact_model, self.outputs)
         tolerance = self.contact_tolerance
         if isinstance(tolerance, bool) or not isinstance(tolerance, (int, float)) or not 0 < tolerance < 1:
@@ -82,10 +85,32 @@ class Options:
         if self.stop_if is not None:
             parse_condition(self.stop_if)
 
+    def _check_slip(self) -> None:
+        given = self.slip_terms
+        if not isinstance(given, (str, list, tuple, set, frozenset)):
+            raise InputError("slip_terms", given, "a list of " + ", ".join(SLIP_TERMS) + ", which may be empty")
+        terms = (given,) if isinstance(given, str) else tuple(given)
+        for name in terms:
+            if name not in SLIP_TERMS:
+                raise unknown_name("slip_terms", str(name), SLIP_TERMS)
+        check_slip_terms(terms, self.contact_model)
+        object.__setattr__(self, "slip_terms", tuple(name for name in SLIP_TERMS if name in terms))
+
     @property
     def settings(self) -> Accuracy:
         """What the accuracy means for each stage."""
         return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
+
+
+def check_slip_terms(terms: Collection[str], contact_model: str) -> None:
+    """`InputError` for terms of the slip that a contact model cannot have."""
+    if "profile" in terms and contact_model == "fastsim":
+        raise InputError("slip_terms", list(terms), "'profile' for sliding (which has it anyway), kalker and auto only",
+                         "Take contact_model: kalker, or leave 'profile' out.")  # fmt: skip
+    if "curve" in terms and contact_model == "sliding":
+        raise InputError("slip_terms", list(terms), "'curve' for fastsim, kalker and auto only",
+                         "Take contact_model: kalker, or leave 'curve' out: where everything slides it would leave all "
+                         "forces as they are and only lengthen slip and friction work.")  # fmt: skip
 
 
 def solve(
@@ -93,7 +118,7 @@ def solve(
     spin_model: str = "skewed", accuracy: str | float | Accuracy = "standard", hertz: str = "exact",
     stress_bodies: str = "both", life_rule: str = "elementary", normal: str = "hertz",
     contact_tolerance: float = 0.05, stop_if: str | None = None, shortcuts: bool = True,
-    database: MaterialDatabase | None = None,
+    slip_terms: Collection[str] | str = (), database: MaterialDatabase | None = None,
 ) -> xr.Dataset:  # fmt: skip
     """Contact forces, tractions, stresses and life of track rollers.
 
@@ -113,6 +138,10 @@ def solve(
     stop_if : a condition such as 'peak_stress > R_m' on which the search for peak stresses is not worth while; such
         cases are marked `stopped` and have no peak stress and life (see `trackroller.stop`)
     shortcuts : spare what symmetry and repetition make superfluous; numbers are the same to rounding
+    slip_terms : what the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: 'profile', the
+        slip of the guide's profile, eq. (20), which sliding has anyway, and 'curve', the turning of the roller with the
+        guide's curve, 1/(r_Curve + r_C,G cos(alpha)) added to 1/r_A in the spin, not for sliding; with any of them
+        `auto` takes kalker. A contact beyond the axis of a concave guide is a failed row with 'curve'
     database : materials; the built-in and the user's own if not given
 
     Returns
@@ -122,7 +151,8 @@ def solve(
     Raises `InputError` for bad input only: a case that cannot be solved is a row with `regime` failed.
     """
     options = Options(tuple([outputs] if isinstance(outputs, str) else outputs), contact_model, spin_model, accuracy,
-                      hertz, stress_bodies, life_rule, normal, contact_tolerance, stop_if, shortcuts)  # fmt: skip
+                      hertz, stress_bodies, life_rule, normal, contact_tolerance, stop_if, shortcuts,
+                      slip_terms)  # type: ignore[arg-type]  # fmt: skip
     single = isinstance(cases, Case) or (hasattr(cases, "keys") and not hasattr(cases, "data_vars"))
     if hasattr(cases, "data_vars"):
         single = "case" not in cases.dims
@@ -179,12 +209,12 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarra
     for key, own in rows.items():
         yield str(key[0]), np.array(own)
     if not keys:
-        yield "sliding" if options.contact_model == "auto" else options.contact_model, np.arange(0)
+        yield "kalker" if options.contact_model == "auto" else options.contact_model, np.arange(0)
 
 
 def _solve_group(table: CaseTable, options: Options) -> Block:
     scene = stages.prepare(table, options)
-    balance = eq.solve_equilibrium(scene.loads, scene.mirror.law(scene.model.law))
+    balance = eq.solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
     results = stages.Results.start(scene, balance)
     wanted = set(options.outputs)
     stages.forces(results)
@@ -219,6 +249,7 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         "stress_bodies": options.stress_bodies,
         "life_rule": options.life_rule,
         "normal": options.normal,
+        "slip_terms": ", ".join(options.slip_terms) or "none",
         "life_conventions": stages.LIFE_CONVENTIONS,
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }

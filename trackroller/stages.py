@@ -14,12 +14,12 @@ from trackroller import equilibrium as eq
 from trackroller import fatigue, stages_grid
 from trackroller.case import CaseTable
 from trackroller.contact import sliding
-from trackroller.contact.common import Elastic, Ellipse, Slip, SurfaceTractions
+from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.models import ContactModel, contact_model, traction_share
 from trackroller.contact.normal_patch import GridPatch
-from trackroller.contact.slip import pole_split
+from trackroller.contact.slip import pole_split, turning_of
 from trackroller.contact.table_model import TableModel
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
@@ -57,6 +57,18 @@ class Scene:
     mirror: Mirror
     frictionless: bool  # none of the cases has friction: no tractions to look for
     n: int
+    turning: np.ndarray | None = None  # of the rollers with the guide's curve [1/mm], (n,), if it counts
+
+    def kinematics(self, slip: Slip, rows: np.ndarray) -> Slip:
+        """The slip with the turning of the rollers `rows` in the curve, where that counts."""
+        if self.turning is None:
+            return slip
+        return DetailedSlip(slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius, slip.shift,
+                            self.turning[rows], np.full(len(rows), None))  # fmt: skip
+
+    def law(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+        """The contact law of the equilibrium."""
+        return self.model.law(ellipse, self.kinematics(slip, rows), friction, rows, fine)
 
 
 @dataclass
@@ -87,6 +99,7 @@ class Results:
         slip = Slip(np.concatenate([sine, -sine]), two(np.cos(scene.loads.contact_angle)),
                     two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius),
                     two(balance.shift))  # fmt: skip
+        slip = scene.kinematics(slip, np.tile(np.arange(scene.n), 2))
         if isinstance(scene.model, stages_grid.GRID_MODELS):
             ellipse = scene.model.patch(ellipse, slip, np.tile(np.arange(scene.n), 2))
         friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
@@ -130,6 +143,11 @@ def prepare(table: CaseTable, options: Options) -> Scene:
     bodies = (table.roller.youngs_modulus, table.roller.poisson_ratio,
               table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
     hertz = shape(k_x, k_y, contact_modulus(*bodies), options.hertz)
+    turning = None
+    if "curve" in options.slip_terms:
+        turning = turning_of(table.guide_curve_radius, table.guide_profile_radius, np.cos(alpha))
+        # without a turning no solution is sought
+        hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     # the cases of a group share their law
     law, travel = law_of(table.friction_law[0] if len(table) else None), table.velocity * (1000.0 / 60.0)
     model: ContactModel
@@ -137,13 +155,13 @@ def prepare(table: CaseTable, options: Options) -> Scene:
         model = stages_grid.halfspace_model(table, options, r_a, law, travel)
     else:
         model = contact_model(options.contact_model, options.settings, Elastic.of_pair(*bodies), options.spin_model,
-                              law, travel)  # fmt: skip
+                              law, travel, options.slip_terms)  # fmt: skip
     loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
                      table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual,
                      falling=not law.is_constant, at_high_speed=law.at_high_speed)  # fmt: skip
     bare = options.shortcuts and bool(is_frictionless(table).all())
     twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
-    return Scene(table, loads, model, Mirror(twins), bare, len(table))
+    return Scene(table, loads, model, Mirror(twins), bare, len(table), turning)
 
 
 def forces(results: Results) -> None:
@@ -223,13 +241,17 @@ def _energy_balance(results: Results, local: np.ndarray) -> None:
     """Dissipation that the resultants imply, -(xi F_A + phi M_R), and how far the local one is from the work put in.
 
     Work of the motor less that of the transmitted force per distance: -F_Motor - (1 + xi) (F_A1 + F_A2), which the
-    balance of the drive torque makes equal to the sum over both contacts.
+    balance of the drive torque makes equal to the sum over both contacts. Where the roller turns with the guide's
+    curve, the drilling torque (M_R1 - M_R2) sin(alpha) works on that turning too; whatever leads the roller round the
+    curve puts that in.
     """
     v, loads = results.values, results.scene.loads
     xi = v["slip"]
     spin = results.by_contact(results.slip.spin)
     v["friction_energy_balance"] = -(xi[:, None] * v["driving_force"] + spin * v["spin_moment"])
     put_in = -loads.motor_force - (1.0 + xi) * v["transmitted_force"]
+    if results.scene.turning is not None:
+        put_in = put_in + results.scene.turning * v["drilling_torque"]
     with np.errstate(divide="ignore", invalid="ignore"):
         residual = np.abs(local.sum(axis=1) - put_in) / np.abs(put_in)
     v["energy_residual"] = np.where(loads.friction > 0, residual, np.nan)

@@ -138,7 +138,7 @@ def measured_errors(table: CaseTable, options: Options, enough: float = 0.0) -> 
     FASTSIM is tried as long as it takes for the forces at `preview`, 16 ms.
     """
     error = np.full((len(table), len(CHEAPER)), np.inf)
-    if options.normal != "hertz" or options.hertz != "exact":
+    if options.normal != "hertz" or options.hertz != "exact" or options.slip_terms:
         return error
     drawn = (table.friction_law != "") | (table.guide_profile != "") | (table.roller_profile != "")
     error[~drawn & (table.friction_coefficient == 0.0)] = 0.0  # without friction all are one

@@ -63,6 +63,45 @@ class Slip(_Rows):
         """x_spin = r_Delta0 / sin(alpha) [mm], eq. (23)."""
         return self.shift / self.sine
 
+    def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
+        """Rolling slip of the circular guide profile, eq. (20), less that of its tangent, xi + spin x [1].
+
+        x, result : (n, m) lateral positions [mm]. Beyond the equator of the contour ASSUME the slip stays that of it.
+        """
+        s, c, r = self.sine[:, None], self.cosine[:, None], self.guide_profile_radius[:, None]
+        deep = x * c * (2.0 * r * s + x * c)
+        root = np.sqrt(np.maximum(r * r * c * c - deep, 0.0))
+        drop = np.where(root > 0.0, deep / (root + r * c), r * c)
+        return (x * s - drop) / self.rolling_radius[:, None]
+
+
+@dataclass(frozen=True)
+class DetailedSlip(Slip):
+    """Kinematics with what the rigid slip leaves out by default, see docs/theory.md ("Slip field").
+
+    turning : 1/(r_Curve + r_C,G cos(alpha)) [1/mm], how far the roller turns with the guide's curve per distance
+        travelled, which adds to its spin; 0 if that is left out
+    contour : of the guide's own shape, callables from lateral positions (m,) [mm], outward, to the height over the
+        tangent along the radial direction [mm]; None for the circle
+    """
+
+    turning: np.ndarray
+    contour: np.ndarray
+
+    @property
+    def spin(self) -> np.ndarray:
+        """Spin creepage -sin(alpha) (1/r_A + turning) [1/mm]."""
+        return -self.sine * (1.0 / self.rolling_radius + self.turning)
+
+    def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
+        """As for the circle, or of the guide's own contour."""
+        out = super().beyond_tangent(x)
+        for i, height in enumerate(self.contour):
+            if height is not None:
+                outward = 1.0 if self.sine[i] > 0 else -1.0
+                out[i] = height(outward * x[i]) / self.rolling_radius[i]
+        return out
+
 
 @dataclass(frozen=True)
 class Resultants(_Rows):

@@ -17,7 +17,6 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Surfa
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker_grid import cells, unit_cells
 from trackroller.contact.normal_patch import GridPatch
-from trackroller.contact.sliding import rolling_slip
 
 BLOCK = 256  # patches whose tractions are held at once
 # Two grids h and 2h: F = F_h + weight (F_h - F_2h). The observed order is near 2 in sliding and 1 in full stick,
@@ -81,13 +80,8 @@ class Creepage:
 
     def along(self, x: np.ndarray) -> np.ndarray:
         """Rolling part of the rigid slip at lateral positions x (n, nx) [mm]."""
-        if self.slip is None:
-            return self.longitudinal[:, None] + self.spin[:, None] * x
-        s, column = self.slip, np.s_[:, None]
-        rest = np.empty_like(x)
-        for i in range(x.shape[0]):
-            rest[i] = [rolling_slip(v, s.sine[i], s.cosine[i], s.guide_profile_radius[i], s.shift[i]) for v in x[i]]
-        return rest / s.rolling_radius[column] + (self.spin - s.spin)[:, None] * x
+        tangent = self.longitudinal[:, None] + self.spin[:, None] * x
+        return tangent if self.slip is None else tangent + self.slip.beyond_tangent(x)
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ A model gives the contact law of the equilibrium, and the tractions of given pat
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -93,11 +94,12 @@ class KalkerModel:
     difference_step = 1e-3
     residual = 1e-7
 
-    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray) -> None:
+    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
+                 profile_slip: bool = False) -> None:  # fmt: skip
         from trackroller.contact.kalker import KalkerSettings
         from trackroller.contact.kalker_law import KalkerLaw
 
-        chosen = KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law)
+        chosen = KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, chosen, travel_speed)
 
     def law(self, ellipse, slip, friction, rows, fine):
@@ -180,7 +182,7 @@ class FastsimModel:
 
 def contact_model(
     name: str, settings: Accuracy, elastic: Elastic, spin_model: str = "skewed", law: FrictionLaw | None = None,
-    travel_speed: np.ndarray | float = 1000.0,
+    travel_speed: np.ndarray | float = 1000.0, slip_terms: Collection[str] = (),
 ) -> ContactModel:  # fmt: skip
     """The model `name` for n rollers.
 
@@ -191,17 +193,19 @@ def contact_model(
     spin_model : for sliding only
     law : friction over its value at rest by slip speed; constant if not given
     travel_speed : of the rollers [mm/s], (n,) or scalar
+    slip_terms : with 'profile', slip of the guide's profile instead of its tangent; sliding has it anyway, and 'curve'
+        is a matter of the slip that a model is given (`common.DetailedSlip`)
     """
-    law = law or constant()
+    law, profile = law or constant(), "profile" in slip_terms
     travel = np.array(np.broadcast_to(np.asarray(travel_speed, float), np.shape(elastic.shear_modulus)))
     if name == "sliding":
         return SlidingModel(settings, spin_model, law, travel)
     if name == "kalker":
-        if settings.name == "preview" and law.is_constant:
+        if settings.name == "preview" and law.is_constant and not profile:  # the table knows tangents only
             from trackroller.contact.table_model import TableModel
 
             return TableModel(elastic, lambda: KalkerModel(settings, elastic, law, travel))
-        return KalkerModel(settings, elastic, law, travel)
+        return KalkerModel(settings, elastic, law, travel, profile)
     if name == "fastsim":
         return FastsimModel(settings, elastic, law, travel)
     raise InputError("contact_model", name, "sliding, fastsim or kalker")

@@ -20,6 +20,7 @@ from trackroller.parameters import (
     LIFE_RULES,
     MATERIAL_FIELDS,
     OUTPUT_GROUPS,
+    SLIP_TERMS,
     STRESS_BODIES,
 )
 from trackroller.stop import parse_condition
@@ -75,6 +76,7 @@ class StudyFile(BaseModel):
     pareto: dict[str, str] = Field({}, description="outputs or factors with max or min: the designs no other beats")
     constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
     normal: str | tuple[str, ...] = Field("hertz", description="Hertz pressures, or solved on a grid (drawn profiles)")
+    slip_terms: tuple[str, ...] = Field((), description="profile, curve: what the rigid slip counts beyond the tangent")
     contact_tolerance: float = Field(0.05, gt=0, lt=1, description="of the forces, for contact_model: auto")
     stop_if: str | None = Field(None, description="condition on which no peak stress is searched for")
     chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases a job; chosen if not given")
@@ -99,6 +101,16 @@ class StudyFile(BaseModel):
         if len(set(value)) < len(value):
             raise InputError("outputs", list(value), "each group may stand once")
         return value
+
+    @field_validator("slip_terms", mode="before")
+    @classmethod
+    def _slip_terms(cls, value: Any) -> Any:
+        several = (value,) if isinstance(value, str) else value
+        if not isinstance(several, (list, tuple)):
+            raise InputError("slip_terms", value, "a list of " + ", ".join(SLIP_TERMS) + ", which may be empty")
+        for name in several:
+            choice(name, "slip_terms", tuple(SLIP_TERMS))
+        return tuple(name for name in SLIP_TERMS if name in several)
 
     @field_validator("stop_if")
     @classmethod
@@ -207,7 +219,7 @@ class Study:
     def options(self) -> dict[str, Any]:
         """Keyword arguments of `solve`; those that are factors are missing."""
         names = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
-                 "contact_tolerance", "stop_if")
+                 "contact_tolerance", "stop_if", "slip_terms")
         values = {name: getattr(self.config, name) for name in names if name not in self.factors}
         return values
 
@@ -253,6 +265,14 @@ def load_study(path: str | Path, database: Any = None) -> Study:
     return parse_study(parse_mapping(read_text(path, "study file"), "study file"), path, database)
 
 
+def _check_slip_terms(study: Study) -> None:
+    from trackroller.solver import check_slip_terms
+
+    models = study.factors.get("contact_model", {}).get("values", [study.config.contact_model])
+    for model in models:
+        check_slip_terms(study.config.slip_terms, model)
+
+
 def _cross_check(study: Study) -> None:
     config = study.config
     for name in OPTION_FACTORS:
@@ -273,6 +293,7 @@ def _cross_check(study: Study) -> None:
                 raise InputError(f"factors.{name}", spec, "a grid needs values, linspace or logspace",
                                  "Or choose a sampled design: lhs, sobol, saltelli, morris.")  # fmt: skip
     check(config, study.factors)
+    _check_slip_terms(study)
     from trackroller.study.design import check_geometry, check_materials
 
     check_materials(study)

@@ -2,9 +2,9 @@
 
 A fingerprint is the SHA-256 (first 128 bits, as hex) of: `RESULTS_VERSION`, the options of the solver
 (outputs, contact model, spin model where it matters, accuracy, hertz, stress_bodies, life_rule, normal,
-stop_if), the numeric parameters of the case with the friction coefficient resolved, friction law and profiles,
-and the *values* (not the names) of both materials. Two cases with the same fingerprint have the same results, so a
-case that is in the store is never solved again, whatever study, chunk or order it came from.
+stop_if, slip_terms where they matter), the numeric parameters of the case with the friction coefficient resolved,
+friction law and profiles, and the *values* (not the names) of both materials. Two cases with the same fingerprint have
+the same results, so a case that is in the store is never solved again, whatever study, chunk or order it came from.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ def _prefix(options: Mapping[str, Any]) -> bytes:
     if told.get("contact_model") != "auto":
         told.pop("contact_tolerance", None)
     told.pop("shortcuts", None)
+    if not told.get("slip_terms") or told.get("contact_model") == "sliding":  # which has the profile's slip anyway
+        told.pop("slip_terms", None)
     told["results_version"] = RESULTS_VERSION
     return json.dumps(told, sort_keys=True).encode()
 

@@ -38,8 +38,8 @@ class Repeat:
         """A command that solves the case without the study."""
         words = ["trackroller", "solve"]
         for key, value in (self.case | self.options).items():
-            if key == "outputs":
-                value = ",".join(value)
+            if isinstance(value, (list, tuple)):
+                value = ",".join(value) or None
             if value is not None and not (isinstance(value, float) and np.isnan(value)):
                 words += ["--set", f"{key}={value!r}" if isinstance(value, float) else f"{key}={value}"]
         return " ".join(shlex.quote(word) for word in words)

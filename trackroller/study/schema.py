@@ -14,6 +14,7 @@ from trackroller.parameters import (
     MATERIAL_FIELDS,
     OUTPUT_GROUPS,
     PARAMETERS,
+    SLIP_TERMS,
     STRESS_BODIES,
 )
 from trackroller.study.config import NAME, StudyFile
@@ -51,6 +52,7 @@ def schema() -> dict[str, Any]:
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
     properties["design"]["enum"] = list(METHODS)
     properties["outputs"]["items"] = {"enum": list(OUTPUT_GROUPS)}
+    properties["slip_terms"] |= {"items": {"enum": list(SLIP_TERMS)}, "uniqueItems": True}
     options = {"hertz": HERTZ, "stress_bodies": STRESS_BODIES, "life_rule": LIFE_RULES}
     for name, words in options.items():
         properties[name]["enum"] = list(words)
