@@ -67,6 +67,7 @@ def stress_at(scene: str, points: list[list[float]]) -> list[float]:
     from trackroller.geometry import rolling_radius
     from trackroller.halfspace.ellipse import patch_rows, stress_parts
     from trackroller.halfspace.stress import von_mises
+    from trackroller.materials import load_database
 
     ds, case = solved(scene, "sliding"), case_of(scene)
     alpha = np.deg2rad(case.contact_angle) * np.array([1.0, -1.0])
@@ -75,7 +76,7 @@ def stress_at(scene: str, points: list[list[float]]) -> list[float]:
     ellipse = Ellipse(*(ds[n].values for n in ("semi_axis_lateral", "semi_axis_rolling", "max_pressure")))
     slip = Slip(np.sin(alpha), np.cos(alpha), full(case.guide_profile_radius), r_a, full(ds.rolling_radius_shift))
     rows = patch_rows(ellipse, slip, full(case.friction_coefficient), spin_model_index("skewed"))
-    nu, found = 0.33, []
+    nu, found = load_database().material(case.roller_material).poisson_ratio, []
     for row, point, pressure in zip(rows, points, ellipse.max_pressure, strict=True):
         parts = stress_parts(row, np.array([point]), 48, 48)
         found.append(float(von_mises(parts[:, 0] + nu * parts[:, 1] + parts[:, 2] + nu * parts[:, 3])[0] * pressure))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,6 +48,13 @@ def _panels(ds: xr.Dataset, rows: int, height: float) -> tuple[Figure, Any]:
     return figure, axes
 
 
+def _curves(ds: xr.Dataset) -> Iterator[tuple[int, str, xr.Dataset]]:
+    """Column of the drive, contact model and the cases of each line over friction."""
+    for column, drive in enumerate(ds["motor_force"].values):
+        for model in models(ds):
+            yield column, model, ds.sel(motor_force=drive, contact_model=model)
+
+
 def _line(axes: Axes, ds: xr.Dataset, name: str, model: str, hollow: bool = False, **more: Any) -> Any:
     look = LOOKS[model]
     face = "white" if hollow else look["color"]
@@ -54,8 +62,13 @@ def _line(axes: Axes, ds: xr.Dataset, name: str, model: str, hollow: bool = Fals
                      **(look | more))[0]  # fmt: skip
 
 
-def _legend(figure: Figure, handles: list[Any], labels: list[str], columns: int = 3) -> None:
-    figure.legend(handles, labels, loc="outside lower center", ncols=columns, handlelength=2.6, columnspacing=1.2)
+def _finish(figure: Figure, handles: dict[str, Any], title: str, words: str, columns: int = 3) -> Figure:
+    """The figure with its legend (label -> line) and its heading."""
+    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns, handlelength=2.6,
+                  columnspacing=1.2)  # fmt: skip
+    style.head(figure, title, words)
+    style.finish(figure)
+    return figure
 
 
 def forces(ds: xr.Dataset) -> Figure:
@@ -69,17 +82,14 @@ def forces(ds: xr.Dataset) -> Figure:
     handles: dict[str, Any] = {}
     for row, (name, label) in enumerate(wanted):
         axes[row, 0].set_ylabel(label)
-        for column, drive in enumerate(ds["motor_force"].values):
-            for model in models(ds):
-                part = ds.sel(motor_force=drive, contact_model=model)
-                for contact in (1, 2):
-                    handles[model] = _line(axes[row, column], part.sel(contact=contact), name, model, contact == 2)
-    marks = [Line2D([], [], color="0.3", marker="o", linestyle="", markersize=3.5, markerfacecolor=face)
-             for face in ("0.3", "white")]  # fmt: skip
-    _legend(figure, [*handles.values(), *marks], [*handles, "contact 1", "contact 2"])
-    style.head(figure, "Forces by contact model", "Paper's roller, 200 N radial, 30 N axial, outer curve 220 mm.")
-    style.finish(figure)
-    return figure
+        for column, model, part in _curves(ds):
+            for contact in (1, 2):
+                handles[model] = _line(axes[row, column], part.sel(contact=contact), name, model, contact == 2)
+    for contact, face in ((1, "0.3"), (2, "white")):
+        mark = Line2D([], [], color="0.3", marker="o", linestyle="", markersize=3.5, markerfacecolor=face)
+        handles[f"contact {contact}"] = mark
+    return _finish(figure, handles, "Forces by contact model",
+                   "Paper's roller, 200 N radial, 30 N axial, outer curve 220 mm.")  # fmt: skip
 
 
 def energy(ds: xr.Dataset) -> Figure:
@@ -87,22 +97,19 @@ def energy(ds: xr.Dataset) -> Figure:
     figure, axes = _panels(ds, 1, 66.0)
     axes[0, 0].set_ylabel("Friction energy of both\ncontacts per distance [J/m]")
     handles: dict[str, Any] = {}
-    for column, drive in enumerate(ds["motor_force"].values):
-        for model in models(ds):
-            part = ds.sel(motor_force=drive, contact_model=model).sum("contact", skipna=False)
-            part = part.assign_coords({FRICTION: ds[FRICTION]})
-            label = f"{model}, local product" if model == "sliding" else model
-            handles[label] = _line(axes[0, column], part, "friction_energy_per_distance", model)
-            if model == "sliding":
-                own = _line(axes[0, column], part, "friction_energy_balance", model, True, linestyle="-.")
-                handles["sliding, from the resultants"] = own
-        axes[0, column].set_yscale("log")
+    for column, model, cases in _curves(ds):
+        part = cases.sum("contact", skipna=False).assign_coords({FRICTION: ds[FRICTION]})
+        label = f"{model}, local product" if model == "sliding" else model
+        handles[label] = _line(axes[0, column], part, "friction_energy_per_distance", model)
+        if model == "sliding":
+            own = _line(axes[0, column], part, "friction_energy_balance", model, True, linestyle="-.")
+            handles["sliding, from the resultants"] = own
+    for panel in axes[0]:
+        panel.set_yscale("log")
     shown = ds["friction_energy_per_distance"].sum("contact", skipna=False).values
     style.log_ticks(axes[0, 0].yaxis, 0.8 * float(np.nanmin(shown)), float(np.nanmax(shown)))
-    _legend(figure, list(handles.values()), list(handles), 2)
-    style.head(figure, "Friction energy by contact model", "Rolling only; missing points slip altogether.")
-    style.finish(figure)
-    return figure
+    return _finish(figure, handles, "Friction energy by contact model",
+                   "Rolling only; missing points slip altogether.", 2)  # fmt: skip
 
 
 def peak_and_life(ds: xr.Dataset) -> Figure:
@@ -114,17 +121,13 @@ def peak_and_life(ds: xr.Dataset) -> Figure:
     axes[1, 0].set_ylabel("Life of the\nroller [h]")
     worst = ds.assign(worst=ds["peak_stress"].sel(body="roller").max("contact"))
     handles: dict[str, Any] = {}
-    for column, drive in enumerate(ds["motor_force"].values):
-        for model in models(ds):
-            part = worst.sel(motor_force=drive, contact_model=model)
-            handles[model] = _line(axes[0, column], part, "worst", model)
-            life = part.assign(shown=(FRICTION, capped(part["roller_life_hours"].values)[0]))
-            _line(axes[1, column], life, "shown", model)
-        axes[1, column].set_yscale("log")
-    _legend(figure, list(handles.values()), list(handles))
-    style.head(figure, "Peak stress and life by contact model", "The more loaded of the two contacts.")
-    style.finish(figure)
-    return figure
+    for column, model, part in _curves(worst):
+        handles[model] = _line(axes[0, column], part, "worst", model)
+        life = part.assign(shown=(FRICTION, capped(part["roller_life_hours"].values)[0]))
+        _line(axes[1, column], life, "shown", model)
+    for panel in axes[1]:
+        panel.set_yscale("log")
+    return _finish(figure, handles, "Peak stress and life by contact model", "The more loaded of the two contacts.")
 
 
 def error(found: xr.Dataset, tolerance: float) -> Figure:
@@ -137,16 +140,13 @@ def error(found: xr.Dataset, tolerance: float) -> Figure:
         axes[row, 0].set_ylabel(f"{label}\nerror [%]")
         axes[row, 0].set_yscale("log")
         axes[row, 0].set_ylim(0.05, 100)
-        for column, drive in enumerate(found["motor_force"].values):
-            axes[row, column].axhline(100 * tolerance, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
-            for model in models(found):
-                part = 100 * found[[name]].sel(motor_force=drive, contact_model=model).clip(6e-4)
-                handles[model] = _line(axes[row, column], part, name, model)
-    _legend(figure, list(handles.values()), [f"{m} against kalker" for m in handles], 2)
-    style.head(figure, "What the cheaper models miss", f"Dotted: {style.number(100 * tolerance)} %. The worse contact; "
-               "rolling only.")  # fmt: skip
-    style.finish(figure)
-    return figure
+        for panel in axes[row]:
+            panel.axhline(100 * tolerance, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
+        for column, model, part in _curves(found[[name]]):
+            line = _line(axes[row, column], 100 * part.clip(6e-4), name, model)
+            handles[f"{model} against kalker"] = line
+    words = f"Dotted: {style.number(100 * tolerance)} %. The worse contact; rolling only."
+    return _finish(figure, handles, "What the cheaper models miss", words, 2)
 
 
 def stick(ds: xr.Dataset) -> Figure:
@@ -154,14 +154,9 @@ def stick(ds: xr.Dataset) -> Figure:
     figure, axes = _panels(ds, 1, 58.0)
     axes[0, 0].set_ylabel("Share of the patch\nthat sticks [%]")
     handles: dict[str, Any] = {}
-    for column, drive in enumerate(ds["motor_force"].values):
-        for model in models(ds):
-            part = 100.0 * ds[["stick_area_fraction"]].sel(motor_force=drive, contact_model=model).max("contact")
-            handles[model] = _line(axes[0, column], part, "stick_area_fraction", model)
-    _legend(figure, list(handles.values()), list(handles))
-    style.head(figure, "Stick by contact model", "The larger share of the two contacts.")
-    style.finish(figure)
-    return figure
+    for column, model, part in _curves(100.0 * ds[["stick_area_fraction"]].max("contact")):
+        handles[model] = _line(axes[0, column], part, "stick_area_fraction", model)
+    return _finish(figure, handles, "Stick by contact model", "The larger share of the two contacts.")
 
 
 def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
