@@ -232,8 +232,6 @@ accuracy: preview
 def test_options_that_do_not_fit_are_refused():
     with pytest.raises(tr.InputError, match="halfspace"):
         tr.solve(tr.Case(**PARABOLAS))
-    with pytest.raises(tr.InputError, match="fastsim"):
-        tr.solve(tr.Case(), contact_model="fastsim", normal="halfspace")
     assert Options(normal="halfspace").normal == "halfspace"
 
 

@@ -1,4 +1,4 @@
-"""Contact models on patches and pressures solved on a grid: sliding and Kalker's, for any cross-sections.
+"""Contact models on patches and pressures solved on a grid: sliding, FASTSIM and Kalker's, for any cross-sections.
 
 The equilibrium hands over Hertz's ellipse, which stands here for its normal force only.
 """
@@ -11,12 +11,13 @@ from collections.abc import Callable
 import numpy as np
 
 from trackroller.contact import normal_sliding
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.normal import TOLERANCE
 from trackroller.contact.normal_family import Family
 from trackroller.contact.normal_patch import GridPatch, rim_means
+from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import InputError
 
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
@@ -78,6 +79,11 @@ class Patches:
         a, b, p, force, centre, approach, area, reaches, residual = np.ascontiguousarray(numbers.T)
         return GridPatch(a, b, p, force, centre, pressure, approach, area, reaches == 1.0, residual)
 
+    def contour(self, row: int, sine: float) -> Callable[[np.ndarray], np.ndarray] | None:
+        """`slip.contour_over_tangent` of the guide beside contact 1 (sine > 0) or 2 of a roller; None without a gap."""
+        family = self._places[row, 1 if sine > 0 else 2]
+        return None if family is None else contour_over_tangent(family.gap.guide, family.gap.alpha)
+
 
 def _cell(box, shares: np.ndarray) -> float:
     return 2.0 * box.half * (box.high - box.low) / shares.size
@@ -96,8 +102,8 @@ class _OnGrid:
     difference_step = 1e-3
     residual = 1e-7
 
-    def __init__(self, patches: Patches) -> None:
-        self.patches = patches
+    def __init__(self, patches: Patches, profile_slip: bool = False) -> None:
+        self.patches, self._profile_slip = patches, profile_slip
         self._found: dict[int, tuple[float, bool]] = {}
 
     def patch(self, ellipse: Ellipse, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
@@ -105,6 +111,16 @@ class _OnGrid:
         if isinstance(ellipse, GridPatch):
             return ellipse
         return self.patches.at(ellipse.normal_force, slip.sine, rows, fine)
+
+    def _drawn(self, slip: Slip, rows: np.ndarray) -> Slip:
+        """The slip on the contour of the guide as it is drawn, where the profile counts in the slip."""
+        if not self._profile_slip:
+            return slip
+        contour = np.full(len(rows), None)
+        contour[:] = [self.patches.contour(row, sine) for row, sine in zip(rows.tolist(), slip.sine, strict=True)]
+        turning = slip.turning if isinstance(slip, DetailedSlip) else np.zeros(len(rows))
+        return DetailedSlip(slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius, slip.shift, turning,
+                            contour)  # fmt: skip
 
     def _remember(self, patch: GridPatch, slip: Slip, rows: np.ndarray) -> None:
         for row, sine, residual in zip(rows, slip.sine, patch.residual, strict=True):
@@ -148,15 +164,50 @@ class GridSlidingModel(_OnGrid):
         return self._solved(patch, slip, friction, rows).power / slip.rolling_radius
 
 
+class GridFastsimModel(_OnGrid):
+    """Kalker's simplified theory, strip by strip over solved patches."""
+
+    def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
+                 profile_slip: bool = False) -> None:  # fmt: skip
+        from trackroller.contact import fastsim_grid
+        from trackroller.contact.fastsim import FastsimSettings
+
+        super().__init__(patches, profile_slip)
+        self.elastic, self.travel, self._grid = elastic, travel_speed, fastsim_grid
+        self.settings = FastsimSettings(steps=6 * patches.elements // 5, law=law, profile_slip=profile_slip)
+
+    def _solved(self, patch, slip, friction, rows):
+        return self._grid.solve_grid(patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings,
+                                     self.travel[rows])  # fmt: skip
+
+    def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
+        """Resultants on the roller, shape (n,)."""
+        patch = self.patch(ellipse, slip, rows, fine)
+        if fine:
+            self._remember(patch, slip, rows)
+        return _known(self._solved(patch, slip, friction, rows).resultants, patch)
+
+    def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
+        """Tractions on the grid of elements."""
+        patch = self.patch(ellipse, slip, rows)
+        return self._grid.tractions(patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings,
+                                    self.travel[rows])  # fmt: skip
+
+    def power(self, ellipse, slip, friction, rows) -> np.ndarray:
+        """Dissipation per distance travelled [N], shape (n,)."""
+        return self._solved(self.patch(ellipse, slip, rows), slip, friction, rows).friction_energy_per_distance
+
+
 class GridKalkerModel(_OnGrid):
     """Kalker's theory of rolling with the traction bound of solved pressures."""
 
-    def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray) -> None:
+    def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
+                 profile_slip: bool = False) -> None:  # fmt: skip
         from trackroller.contact.kalker import KalkerSettings
         from trackroller.contact.kalker_law import KalkerLaw
 
-        super().__init__(patches)
-        settings = KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law)
+        super().__init__(patches, profile_slip)
+        settings = KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, settings, travel_speed)
 
     def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
@@ -164,18 +215,19 @@ class GridKalkerModel(_OnGrid):
         patch = self.patch(ellipse, slip, rows, fine)
         if fine:
             self._remember(patch, slip, rows)
-        return _known(self._law(patch, slip, friction, rows, fine), patch)
+        return _known(self._law(patch, self._drawn(slip, rows), friction, rows, fine), patch)
 
     def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
         """Tractions on the grid of elements."""
         from trackroller.contact import kalker
 
         patch = self.patch(ellipse, slip, rows)
-        return kalker.to_tractions(patch, friction, self._law.kept(patch, slip, friction, rows))
+        return kalker.to_tractions(patch, friction, self._law.kept(patch, self._drawn(slip, rows), friction, rows))
 
     def power(self, ellipse, slip, friction, rows) -> np.ndarray:
         """Dissipation per distance travelled [N], shape (n,)."""
-        solution = self._law.kept(self.patch(ellipse, slip, rows), slip, friction, rows)
+        patch = self.patch(ellipse, slip, rows)
+        solution = self._law.kept(patch, self._drawn(slip, rows), friction, rows)
         return solution.friction_energy_per_distance * (1.0 + solution.energy_residual)
 
     def state(self, n):
@@ -183,13 +235,18 @@ class GridKalkerModel(_OnGrid):
         return np.maximum(normal[0], tangential[0]), normal[1] & tangential[1]
 
 
+GridModel = GridSlidingModel | GridFastsimModel | GridKalkerModel
+
+
 def grid_model(
-    name: str, patches: Patches, elastic: Elastic, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray
-) -> GridSlidingModel | GridKalkerModel:
-    """The contact model `name` on solved patches; `InputError` for one that knows ellipses only."""
+    name: str, patches: Patches, elastic: Elastic, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray,
+    profile_slip: bool = False,
+) -> GridModel:  # fmt: skip
+    """The contact model `name` on solved patches."""
     if name == "sliding":
         return GridSlidingModel(patches, spin_model, law, travel_speed)
+    if name == "fastsim":
+        return GridFastsimModel(patches, elastic, law, travel_speed)
     if name == "kalker":
-        return GridKalkerModel(patches, elastic, law, travel_speed)
-    raise InputError("contact_model", name, "sliding or kalker with normal: halfspace",
-                     "The flexibilities of fastsim are those of ellipses.")  # fmt: skip
+        return GridKalkerModel(patches, elastic, law, travel_speed, profile_slip)
+    raise InputError("contact_model", name, "sliding, fastsim or kalker")
