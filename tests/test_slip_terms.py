@@ -87,14 +87,28 @@ def test_a_contact_beyond_the_axis_of_the_curve_is_a_failed_row():
     assert ds.regime.values.tolist() == [3, 0]
 
 
-def test_fastsim_follows_kalker_in_the_curve():
+@pytest.mark.parametrize(("terms", "least", "apart"), [(("profile",), 0.01, 0.002), (("curve",), 0.1, 0.04),
+                                                     (BOTH, 0.1, 0.04)])  # fmt: skip
+def test_fastsim_follows_kalker(terms, least, apart):
+    """The terms change its lateral forces nearly as they do the exact ones."""
     change = {}
     for model in ("fastsim", "kalker"):
-        one, two = (tr.solve(tr.Case(**TIGHT), outputs="forces", contact_model=model, slip_terms=t)
-                    for t in ((), ("curve",)))  # fmt: skip
+        one, two = (tr.solve(tr.Case(**TIGHT), outputs=OUTPUTS, contact_model=model, slip_terms=t) for t in ((), terms))
         change[model] = two.lateral_force.values / one.lateral_force.values - 1.0
-    np.testing.assert_allclose(change["fastsim"], change["kalker"], atol=0.05)
-    assert np.all(change["kalker"] < -0.1)
+        assert float(two.energy_residual) < 6e-3
+    np.testing.assert_allclose(change["fastsim"], change["kalker"], atol=apart)
+    assert np.all(np.abs(change["kalker"]) > least)
+
+
+def test_fastsim_tractions_have_the_slip_of_the_profile():
+    """The profile changes the sums over the grid of tractions as it changes the forces, by 2 %."""
+    ratio = []
+    for terms in ((), ("profile",)):
+        ds = tr.solve(tr.Case(), outputs=("forces", "contact", "tractions"), contact_model="fastsim",
+                      slip_terms=terms)  # fmt: skip
+        area = ds.semi_axis_lateral * ds.semi_axis_rolling
+        ratio.append((ds.shear_lateral.values.sum(axis=(1, 2)) * area / ds.lateral_force).values)
+    np.testing.assert_allclose(ratio[1], ratio[0], rtol=2e-3)
 
 
 def test_preview_serves_the_curve_by_table_and_the_profile_by_elements():

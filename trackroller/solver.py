@@ -104,9 +104,6 @@ class Options:
 
 def check_slip_terms(terms: Collection[str], contact_model: str) -> None:
     """`InputError` for terms of the slip that a contact model cannot have."""
-    if "profile" in terms and contact_model == "fastsim":
-        raise InputError("slip_terms", list(terms), "'profile' for sliding (which has it anyway), kalker and auto only",
-                         "Take contact_model: kalker, or leave 'profile' out.")  # fmt: skip
     if "curve" in terms and contact_model == "sliding":
         raise InputError("slip_terms", list(terms), "'curve' for fastsim, kalker and auto only",
                          "Take contact_model: kalker, or leave 'curve' out: where everything slides it would leave all "

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from trackroller import equilibrium as eq
 from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
-from trackroller.contact.normal_models import GridKalkerModel, GridSlidingModel, Patches, grid_model
+from trackroller.contact.normal_models import GridModel, Patches, grid_model
 from trackroller.contact.normal_patch import GridPatch
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import von_mises
@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from trackroller.solver import Options
     from trackroller.stages import Results
 
-GRID_MODELS = (GridSlidingModel, GridKalkerModel)
+GRID_MODELS = get_args(GridModel)
 NEAR = 4.0  # elements of depth down to which subsurface fields need the full grid
 
 
 def halfspace_model(
     table: CaseTable, options: Options, rolling_radius: np.ndarray, law: FrictionLaw, travel_speed: np.ndarray
-) -> GridSlidingModel | GridKalkerModel:
+) -> GridModel:
     """The contact model on solved patches for the cases of `table`; r_A [mm], travel speed [mm/s], (n,)."""
     columns = np.stack([table.guide_profile_radius, table.roller_profile_radius, np.deg2rad(table.contact_angle),
                         rolling_radius, table.guide_curve_radius], axis=1).tolist()  # fmt: skip
@@ -45,7 +45,8 @@ def halfspace_model(
               table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
     elements = 2 * -(-options.settings.elements // 2)
     patches = Patches(gaps, contact_modulus(*bodies), elements)
-    return grid_model(options.contact_model, patches, Elastic.of_pair(*bodies), options.spin_model, law, travel_speed)
+    return grid_model(options.contact_model, patches, Elastic.of_pair(*bodies), options.spin_model, law, travel_speed,
+                      "profile" in options.slip_terms)  # fmt: skip
 
 
 def contact(results: Results, patch: GridPatch, conformal: int) -> None:

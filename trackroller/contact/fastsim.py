@@ -57,10 +57,10 @@ def _bound(x, y, parabolic):
 
 
 @njit(cache=True)
-def _patch(a, b, scale, rigid, flexibility, steps, nodes, weights, parabolic, knots, factors, total):
+def _patch(a, b, scale, rigid, bend, flexibility, steps, nodes, weights, parabolic, knots, factors, total):
     """F_T, F_A, M_R, dissipation per distance, share of stick and lack of friction of one patch into `total` (6,).
 
-    rigid = (xi, eta, phi): rigid slip w = (eta - phi y, xi + phi x).
+    rigid = (xi, eta, phi): rigid slip w = (eta - phi y, xi + phi x + bend), bend of each strip.
     """
     state = np.zeros(6)
     for k in range(6):
@@ -69,7 +69,7 @@ def _patch(a, b, scale, rigid, flexibility, steps, nodes, weights, parabolic, kn
         u = nodes[i]
         length = math.sqrt(1.0 - u * u)
         x, h = a * u, 2.0 * b * length / steps
-        wy = rigid[0] + rigid[2] * x
+        wy = rigid[0] + rigid[2] * x + bend[i]
         enter(rigid[1] - rigid[2] * b * length, wy, knots, factors, state)
         for j in range(steps):
             y = b * length * (1.0 - 2.0 * (j + 1.0) / steps)
@@ -88,15 +88,15 @@ def _patch(a, b, scale, rigid, flexibility, steps, nodes, weights, parabolic, kn
 
 
 @njit(cache=True, nogil=True)
-def _all_patches(rows, a, b, scale, rigid, flexibility, travel, steps, nodes, weights, parabolic, knots, factors,
+def _all_patches(rows, a, b, scale, rigid, bend, flexibility, travel, steps, nodes, weights, parabolic, knots, factors,
                  totals):  # fmt: skip
     for i in range(rows[0], rows[1]):
-        _patch(a[i], b[i], scale[i], rigid[i], flexibility[i], steps, nodes, weights, parabolic, knots / travel[i],
-               factors, totals[i])  # fmt: skip
+        _patch(a[i], b[i], scale[i], rigid[i], bend[i], flexibility[i], steps, nodes, weights, parabolic,
+               knots / travel[i], factors, totals[i])  # fmt: skip
 
 
 @njit(cache=True, nogil=True)
-def _all_fields(rows, a, b, scale, rigid, flexibility, travel, points, parabolic, knots, factors, shear, slip):
+def _all_fields(rows, a, b, scale, rigid, bend, flexibility, travel, points, parabolic, knots, factors, shear, slip):
     """Tractions and slip (n, 2, points, points) at element centres, marched from the leading edge of each strip."""
     for i in range(rows[0], rows[1]):
         speeds = knots / travel[i]
@@ -104,7 +104,7 @@ def _all_fields(rows, a, b, scale, rigid, flexibility, travel, points, parabolic
         for k in range(points):
             u = (2.0 * k + 1.0) / points - 1.0
             y, x = b[i] * math.sqrt(1.0 - u * u), a[i] * u
-            wy = rigid[i, 0] + rigid[i, 2] * x
+            wy = rigid[i, 0] + rigid[i, 2] * x + bend[i, k]
             enter(rigid[i, 1] - rigid[i, 2] * y, wy, speeds, factors, state)
             for j in range(points - 1, -1, -1):
                 target = b[i] * ((2.0 * j + 1.0) / points - 1.0)
@@ -174,6 +174,13 @@ def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: E
     return a, b, mu * p, np.stack([xi, eta * across, phi], axis=1), flexibility
 
 
+def _bend(profile: Slip | None, a: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Rolling slip that the guide's profile adds in the strips at `places` (m,) over a, shape (n, m)."""
+    if profile is None:
+        return np.zeros((a.size, places.size))
+    return np.ascontiguousarray(profile.beyond_tangent(a[:, None] * places))
+
+
 def _rows_of(function, rest: tuple, first: int, last: int) -> None:
     function((first, last), *rest)
 
@@ -185,7 +192,7 @@ def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
 
 def solve_patch(
     ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic,
-    settings: FastsimSettings | None = None, travel_speed=None,
+    settings: FastsimSettings | None = None, travel_speed=None, profile: Slip | None = None,
 ) -> FastsimSolution:  # fmt: skip
     """Simplified theory for n patches with rigid slip w = (eta - phi y, xi + phi x).
 
@@ -196,6 +203,7 @@ def solve_patch(
     friction : coefficient mu [-], (n,) or scalar
     elastic : combined constants; the coupling constant is not used
     travel_speed : [mm/s], (n,) or scalar, for friction laws; that of the settings if not given
+    profile : adds the rolling slip of the guide's profile beyond its tangent, `Slip.beyond_tangent`, (n,)
 
     Errors against the exact theory, axis ratios of 0.2 to 5, creepages from stick to sliding (root mean square, worst):
     2.4 and 8 % of mu F_N in the lateral force, 1.4 and 5 % in the driving force, 1.2 and 6 % of mu F_N sqrt(ab) in
@@ -205,10 +213,10 @@ def solve_patch(
     law = settings.law or constant()
     a, b, scale, rigid, flexibility = _problem(ellipse, longitudinal, lateral, spin, friction, elastic)
     nodes, weights = np.polynomial.legendre.leggauss(settings.strips)
-    totals = np.empty((2, a.size, 6))
+    totals, bend = np.empty((2, a.size, 6)), _bend(profile, a, nodes)
     travel = _travel(travel_speed, settings, a.size)
     for k, steps in enumerate((settings.steps, 2 * settings.steps)):
-        rest = (a, b, scale, rigid, flexibility, travel, steps, nodes, weights, settings.parabolic, law.speed,
+        rest = (a, b, scale, rigid, bend, flexibility, travel, steps, nodes, weights, settings.parabolic, law.speed,
                 law.factor, totals[k])  # fmt: skip
         share_rows(partial(_rows_of, _all_patches, rest), a.size, 8)
     force = 2.0 / 3.0 * np.pi * a * b * scale
@@ -221,7 +229,9 @@ def resultants(
     ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None
 ) -> Resultants:
     """Friction forces [N] and spin moment [N mm] on the roller, shape (n,); see `solve_patch`."""
-    return solve_patch(ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic, settings).resultants
+    profile = slip if settings is not None and settings.profile_slip else None
+    return solve_patch(ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic, settings,
+                       profile=profile).resultants  # fmt: skip
 
 
 def tractions(
@@ -234,10 +244,11 @@ def tractions(
     a, b, scale, rigid, flexibility = _problem(ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic)
     points = settings.points
     shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
-    rest = (a, b, scale, rigid, flexibility, _travel(travel_speed, settings, a.size), points, settings.parabolic,
+    u = (2.0 * np.arange(points) + 1.0) / points - 1.0
+    bend = _bend(slip if settings.profile_slip else None, a, u)
+    rest = (a, b, scale, rigid, bend, flexibility, _travel(travel_speed, settings, a.size), points, settings.parabolic,
             law.speed, law.factor, shear, moved)  # fmt: skip
     share_rows(partial(_rows_of, _all_fields, rest), a.size, 4)
-    u = (2.0 * np.arange(points) + 1.0) / points - 1.0
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - u[:, None] ** 2, 0.0))
     pressure = np.broadcast_to(ellipse.max_pressure, a.shape)[:, None, None] * root
     stick = (root > 0) & (moved[:, 0] == 0.0) & (moved[:, 1] == 0.0)

@@ -126,13 +126,15 @@ class FastsimModel:
     difference_step = 1e-3
     residual = 1e-7
 
-    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray) -> None:
+    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
+                 profile_slip: bool = False) -> None:  # fmt: skip
         from trackroller.contact import fastsim
 
         self.elastic, self.travel = elastic, travel_speed
         n = settings.elements  # strips and steps in the proportion of the default settings
         self._fastsim = fastsim
-        self.settings = fastsim.FastsimSettings(strips=4 * n // 5, steps=6 * n // 5, points=n, law=law)
+        self.settings = fastsim.FastsimSettings(strips=4 * n // 5, steps=6 * n // 5, points=n, law=law,
+                                                profile_slip=profile_slip)  # fmt: skip
 
     def _solution(self, ellipse, slip, friction, rows):
         from trackroller.contact.linear import LARGEST_RATIO
@@ -142,7 +144,7 @@ class FastsimModel:
         part = slip.take(known)
         solution = self._fastsim.solve_patch(
             ellipse.take(known), part.longitudinal, 0.0, part.spin, friction[known], self.elastic.take(rows[known]),
-            self.settings, self.travel[rows[known]],
+            self.settings, self.travel[rows[known]], part if self.settings.profile_slip else None,
         )  # fmt: skip
 
         def spread(values):
@@ -207,7 +209,7 @@ def contact_model(
             return TableModel(elastic, lambda: KalkerModel(settings, elastic, law, travel))
         return KalkerModel(settings, elastic, law, travel, profile)
     if name == "fastsim":
-        return FastsimModel(settings, elastic, law, travel)
+        return FastsimModel(settings, elastic, law, travel, profile)
     raise InputError("contact_model", name, "sliding, fastsim or kalker")
 
 
