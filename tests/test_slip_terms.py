@@ -133,10 +133,11 @@ def test_auto_takes_the_exact_theory_where_nothing_was_measured():
     assert tr.solve([], outputs="forces", contact_model="auto", slip_terms="curve").sizes["case"] == 0
 
 
-def test_patches_solved_on_a_grid_take_the_contour_as_it_is_drawn():
+@pytest.mark.parametrize("model", ["fastsim", "kalker"])
+def test_patches_solved_on_a_grid_take_the_contour_as_it_is_drawn(model):
     """The circle gives Hertz's answer."""
-    hertz = tr.solve(tr.Case(), outputs=OUTPUTS, contact_model="kalker", slip_terms=BOTH)
-    grid = tr.solve(tr.Case(), outputs=OUTPUTS, contact_model="kalker", slip_terms=BOTH, normal="halfspace")
+    hertz = tr.solve(tr.Case(), outputs=OUTPUTS, contact_model=model, slip_terms=BOTH)
+    grid = tr.solve(tr.Case(), outputs=OUTPUTS, contact_model=model, slip_terms=BOTH, normal="halfspace")
     np.testing.assert_allclose(grid.lateral_force, hertz.lateral_force, rtol=2e-2)
     np.testing.assert_allclose(grid.rolling_radius_shift, hertz.rolling_radius_shift, rtol=1e-2)
     assert float(grid.energy_residual) < 1e-2

@@ -246,7 +246,7 @@ def grid_model(
     if name == "sliding":
         return GridSlidingModel(patches, spin_model, law, travel_speed)
     if name == "fastsim":
-        return GridFastsimModel(patches, elastic, law, travel_speed)
+        return GridFastsimModel(patches, elastic, law, travel_speed, profile_slip)
     if name == "kalker":
         return GridKalkerModel(patches, elastic, law, travel_speed, profile_slip)
     raise InputError("contact_model", name, "sliding, fastsim or kalker")
