@@ -71,23 +71,24 @@ def test_fastsim_is_a_step_towards_kalker(contact_records, kalker):
 
 def test_gridded_tractions_give_the_stress_of_the_formula():
     """The kernel fed with sliding tractions on a grid finds the peak of the closed slip field."""
-    from trackroller import stages
+    from trackroller import stages, stages_stress
     from trackroller.case import to_table
     from trackroller.contact.models import traction_share
     from trackroller.equilibrium import solve_equilibrium
     from trackroller.halfspace.peak import find_peaks
+    from trackroller.scene import Results
     from trackroller.solver import Options
 
     options = Options()
     scene = stages.prepare(to_table([tr.Case()]), options)
-    results = stages.Results.start(scene, solve_equilibrium(scene.loads, scene.model.law))
+    results = Results.start(scene, solve_equilibrium(scene.loads, scene.model.law))
     from trackroller.contact import sliding
 
     t = sliding.tractions(results.ellipse, results.slip, results.friction, points=201)
     # cell centres of a grid of 200: the mean of the corners' directions is good enough far from the pole
     share = traction_share(t, results.friction)
     share = 0.25 * (share[:, :, 1:, 1:] + share[:, :, :-1, 1:] + share[:, :, 1:, :-1] + share[:, :, :-1, :-1])
-    rows, nu = stages._patches(results, options), stages._poisson(results, options)
+    rows, nu = stages_stress._patches(results, options), stages_stress._poisson(results, options)
     exact = find_peaks(rows, nu, options.settings.peak).stress
     gridded = find_peaks(rows, nu, options.settings.peak, np.ascontiguousarray(share)).stress
     np.testing.assert_allclose(gridded, exact, rtol=5e-3)

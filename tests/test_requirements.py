@@ -4,12 +4,21 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller import requirements, stages
+from trackroller import requirements, stages, stages_stress
 from trackroller.case import to_table
 from trackroller.explain import explain
+from trackroller.scene import Results
 from trackroller.solver import Options
 
 EVERYTHING = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
+
+
+def searched_patches(monkeypatch):
+    """Grows by the number of patches with every search for peaks."""
+    seen, search = [], stages_stress.find_peaks
+    watched = lambda patches, *more: seen.append(len(patches)) or search(patches, *more)  # noqa: E731
+    monkeypatch.setattr(stages_stress, "find_peaks", watched)
+    return seen
 
 
 def scenes(n=10, seed=3):
@@ -51,9 +60,7 @@ def test_shortcuts_change_no_number_of_the_iterating_models_beyond_their_residua
 
 def test_symmetric_and_repeated_scenes_are_solved_once(monkeypatch):
     """Six cases of one mechanics without axial force ask for one patch instead of twelve."""
-    seen = []
-    search = stages.find_peaks
-    monkeypatch.setattr(stages, "find_peaks", lambda patches, *a: seen.append(len(patches)) or search(patches, *a))
+    seen = searched_patches(monkeypatch)
     cases = [{"axial_force": 0.0, "velocity": float(v)} for v in (10, 20, 30, 40, 50, 60)]
     spared = tr.solve(cases)
     whole = tr.solve(cases, shortcuts=False)
@@ -64,9 +71,7 @@ def test_symmetric_and_repeated_scenes_are_solved_once(monkeypatch):
 
 def test_frictionless_loads_share_one_search(monkeypatch):
     """Without friction the stress over p_max depends on ellipticity and material alone, whatever the load."""
-    seen = []
-    search = stages.find_peaks
-    monkeypatch.setattr(stages, "find_peaks", lambda patches, *a: seen.append(len(patches)) or search(patches, *a))
+    seen = searched_patches(monkeypatch)
     cases = [{"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.01 * f, "radial_force": -float(f)}
              for f in (50, 200, 900)]  # fmt: skip
     found = tr.solve(cases, outputs=("contact", "peak_stress"))
@@ -101,10 +106,10 @@ def test_the_bound_that_stops_is_below_the_peak(model):
               "roller_profile_radius": float(rng.choice([-6.3, -8.0, 40.0]))} for _ in range(12)]  # fmt: skip
     options = Options(contact_model=model)
     scene = stages.prepare(to_table(cases), options)
-    results = stages.Results.start(scene, stages.eq.solve_equilibrium(scene.loads, scene.model.law))
+    results = Results.start(scene, stages.eq.solve_equilibrium(scene.loads, scene.model.law))
     stages.contact(results, options)
-    bound = stages._peak_bound(results, options)
-    stages.peak_stress(results, options)
+    bound = stages_stress._peak_bound(results, options)
+    stages_stress.peak_stress(results, options)
     share = bound / results.values["peak_stress"]
     assert np.nanmax(share) <= 1.002, "within the accuracy of the search"
     assert np.nanmedian(share) > 0.8, "and of use"
@@ -128,9 +133,7 @@ def test_bad_conditions_are_refused_by_name(text, told):
 
 def test_explained_counts_are_those_that_run(monkeypatch):
     """The printed plan tells the number of patches that the search really gets."""
-    seen = []
-    search = stages.find_peaks
-    monkeypatch.setattr(stages, "find_peaks", lambda patches, *a: seen.append(len(patches)) or search(patches, *a))
+    seen = searched_patches(monkeypatch)
     cases = [{"axial_force": 0.0}, {"axial_force": 0.0, "velocity": 10.0}, {"axial_force": 20.0}]
     told = {stage.name: stage for stage in explain(to_table(cases), Options())}
     tr.solve(cases)
@@ -142,5 +145,5 @@ def test_explained_counts_are_those_that_run(monkeypatch):
 
 
 def test_no_stress_without_a_stress_output(monkeypatch):
-    monkeypatch.setattr(stages, "find_peaks", lambda *a: pytest.fail("searched for a peak nobody asked for"))
+    monkeypatch.setattr(stages_stress, "find_peaks", lambda *a: pytest.fail("searched for a peak nobody asked for"))
     assert "peak_stress" not in tr.solve(tr.Case(), outputs=("forces", "contact", "friction_work"))

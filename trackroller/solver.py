@@ -11,7 +11,7 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from trackroller import equilibrium as eq
-from trackroller import requirements, stages
+from trackroller import requirements, stages, stages_case, stages_stress
 from trackroller.accuracy import Accuracy, accuracy_settings, error_attributes
 from trackroller.blocks import Block, join
 from trackroller.case import Case, CaseTable, to_table
@@ -28,6 +28,7 @@ from trackroller.parameters import (
     SPIN_MODELS,
     STRESS_BODIES,
 )
+from trackroller.scene import Results
 from trackroller.stop import parse_condition
 
 if TYPE_CHECKING:
@@ -178,7 +179,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
         rows, number = requirements.distinct_mechanics(table)
     found = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
     block = found.take(number)
-    stages.finish(table, block, options)
+    stages_case.finish(table, block, options)
     return block
 
 
@@ -212,19 +213,19 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarra
 def _solve_group(table: CaseTable, options: Options) -> Block:
     scene = stages.prepare(table, options)
     balance = eq.solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
-    results = stages.Results.start(scene, balance)
+    results = Results.start(scene, balance)
     wanted = set(options.outputs)
     stages.forces(results)
     stages.contact(results, options)
     if "friction_work" in wanted:
         stages.friction_work(results, options)
-    stages.stop(results, options)
+    stages_stress.stop(results, options)
     if wanted & {"peak_stress", "life", "subsurface"}:
-        stages.peak_stress(results, options)
+        stages_stress.peak_stress(results, options)
     if "tractions" in wanted:
         stages.tractions(results, options)
     if "subsurface" in wanted:
-        stages.subsurface(results, options)
+        stages_stress.subsurface(results, options)
     model = np.full(len(table), CONTACT_MODELS.index(options.contact_model), dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
 
@@ -247,7 +248,7 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         "life_rule": options.life_rule,
         "normal": options.normal,
         "slip_terms": ", ".join(options.slip_terms) or "none",
-        "life_conventions": stages.LIFE_CONVENTIONS,
+        "life_conventions": stages_case.LIFE_CONVENTIONS,
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }
     flags = {"regime": block.regime, "converged": block.converged, "validity": block.bits}

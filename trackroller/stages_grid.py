@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,15 +15,14 @@ from trackroller.contact.normal_patch import GridPatch
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import von_mises
 from trackroller.profiles import gap, treats_sides_alike
+from trackroller.scene import Results, surface_tractions
 from trackroller.threads import share_rows
 
 if TYPE_CHECKING:
     from trackroller.case import CaseTable
     from trackroller.halfspace.peak import Peak
     from trackroller.solver import Options
-    from trackroller.stages import Results
 
-GRID_MODELS = get_args(GridModel)
 NEAR = 4.0  # elements of depth down to which subsurface fields need the full grid
 
 
@@ -70,8 +69,6 @@ def shift_of_pressure(results: Results, patch: GridPatch) -> None:
 
 def _load(results: Results, row: int) -> GridLoad:
     """Tractions of the existing patch number `row`."""
-    from trackroller.stages import surface_tractions
-
     t = surface_tractions(results)
     fields = np.stack([t.shear_lateral[row], t.shear_rolling[row], t.pressure[row]], axis=-1)
     return GridLoad(t.x[row], t.y[row], fields)

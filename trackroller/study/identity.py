@@ -23,7 +23,8 @@ RESULTS_VERSION = 9  # raise it with every change of the solver that changes num
 
 _MATERIAL_VALUES = ("youngs_modulus", "poisson_ratio", "tensile_strength", "fatigue_limit",
                     "cycles_at_tensile_strength", "cycles_at_fatigue_limit")  # fmt: skip
-_PHYSICS = ("solver.py", "equilibrium.py", "equilibrium_branch.py", "equilibrium_falling.py", "equilibrium_newton.py",
+_PHYSICS = ("solver.py", "scene.py", "stages.py", "stages_case.py", "stages_grid.py", "stages_stress.py",
+            "equilibrium.py", "equilibrium_branch.py", "equilibrium_falling.py", "equilibrium_newton.py",
             "equilibrium_roller.py", "geometry.py", "fatigue.py", "accuracy.py", "contact", "halfspace")  # fmt: skip
 
 

@@ -12,7 +12,11 @@ rule extremes_run:
     input:
         code=sources(
             "solver.py",
+            "scene.py",
             "stages.py",
+            "stages_case.py",
+            "stages_grid.py",
+            "stages_stress.py",
             "equilibrium.py",
             "equilibrium_branch.py",
             "equilibrium_falling.py",

@@ -6,7 +6,11 @@ rule paper:
     input:
         code=sources(
             "solver.py",
+            "scene.py",
             "stages.py",
+            "stages_case.py",
+            "stages_grid.py",
+            "stages_stress.py",
             "equilibrium.py",
             "equilibrium_branch.py",
             "equilibrium_falling.py",

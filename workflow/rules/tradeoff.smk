@@ -16,7 +16,11 @@ rule tradeoff_part:
         sizes=TRADEOFF_SIZES,
         code=sources(
             "solver.py",
+            "scene.py",
             "stages.py",
+            "stages_case.py",
+            "stages_grid.py",
+            "stages_stress.py",
             "equilibrium.py",
             "equilibrium_branch.py",
             "equilibrium_falling.py",
