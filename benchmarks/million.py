@@ -55,8 +55,9 @@ def hand_out() -> None:
     """Fill every chunk with the results of the first one, over and over."""
     import numpy as np
 
+    from trackroller.study.caselists import load_list
     from trackroller.study.config import load_study
-    from trackroller.study.plan import load_list, make_plan
+    from trackroller.study.plan import make_plan
     from trackroller.study.solve import finish, solve_rows
 
     made = make_plan(load_study("study.yaml"), "results")

@@ -14,19 +14,9 @@ from trackroller.plots import style
 from trackroller.plots.study_loads import surface_share
 from trackroller.plots.study_view import StudyView, study_settings
 from trackroller.report_decisions import decisions
+from trackroller.report_inputs import base_table, factor_table, materials_table, record_table
 from trackroller.report_papers import conventions, papers
-from trackroller.report_tables import (
-    base_table,
-    causes,
-    design_rows,
-    factor_table,
-    materials_table,
-    ranked,
-    reasons,
-    record_table,
-    regime_table,
-    validity_table,
-)
+from trackroller.report_tables import causes, design_rows, ranked, reasons, regime_table, validity_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,7 +99,7 @@ def contents(ds: xr.Dataset) -> dict[str, Any]:
         "date": str(attrs.get("date_created") or attrs.get("date") or attrs.get("created") or ""),
         "factors": factor_table(view),
         "base": base_table(view, ds),
-        "options": [(style.capital(style.plain(k)), str(merged[k])) for k in OPTIONS if str(merged.get(k, ""))]
+        "options": [(style.capital(style.long_name(k)), told) for k in OPTIONS if (told := _told(merged.get(k, "")))]
         + models_used(ds),
         "materials": materials_table(attrs),
         "regimes": regime_table(view),
@@ -126,6 +116,11 @@ def contents(ds: xr.Dataset) -> dict[str, Any]:
         "record": record_table(attrs, _TOLD),
         "study_text": str(attrs.get("study", "")),
     }
+
+
+def _told(value: Any) -> str:
+    """An option as a reader wants it: a list, as of a factor or of terms, as its entries."""
+    return ", ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
 
 
 def summary(view: StudyView) -> list[str]:

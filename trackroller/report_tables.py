@@ -1,17 +1,15 @@
-"""What the report says in tables: factors, regimes and warnings with their causes, best and worst designs."""
+"""What the report says of results in tables: regimes and warnings with their causes, best and worst designs."""
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.parameters import PARAMETERS
 from trackroller.plots import style
-from trackroller.plots.study_view import StudyView, study_settings
+from trackroller.plots.study_view import StudyView
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,106 +19,6 @@ SPREAD = 0.1  # a factor whose levels differ less than this in the share of case
 FEWEST = 5  # rare events tell no cause
 BEST = 5  # designs in the tables of best and worst
 Table = list[dict[str, Any]]
-
-
-def factor_table(view: StudyView) -> Table:
-    """One row a factor: name, symbol, unit, values as set in the study file (or as found), number of them."""
-    given = study_settings(view.attrs).get("factors", {})
-    rows = []
-    for name in view.factors:
-        levels, p = view.levels(name), PARAMETERS.get(name)
-        few = view.grid or len(levels) <= 12 or not view.numeric(name)
-        if few:
-            words = name in ("motor_force", "guide_curve_radius")
-            values = ", ".join(style.level_text(name, v, unit=words) for v in levels)
-        else:
-            values = _range(levels)
-        rows.append(
-            {
-                "name": style.capital(style.long_name(name)),
-                "symbol": _symbol(p.symbol) if p else ("", ""),
-                "unit": style.unit_text(p.unit) if p else "",
-                "values": values,
-                "count": len(levels),
-                "spec": _spec(given.get(name)) if isinstance(given, Mapping) else "",
-            }
-        )
-    return rows + _derived(view, given if isinstance(given, Mapping) else {})
-
-
-def _derived(view: StudyView, given: Mapping[str, Any]) -> Table:
-    """Rows of parameters that follow from the factors: their range and the expression."""
-    rows = []
-    for name, spec in given.items():
-        if name in view.factors or name not in view.table or not _spec(spec).startswith("="):
-            continue
-        levels, p = view.levels(name), PARAMETERS.get(name)
-        if not levels:
-            continue
-        rows.append(
-            {
-                "name": style.capital(style.long_name(name)),
-                "symbol": _symbol(p.symbol) if p else ("", ""),
-                "unit": style.unit_text(p.unit) if p else "",
-                "values": _range(levels) if view.numeric(name) else ", ".join(map(str, levels[:6])),
-                "count": len(levels),
-                "spec": _spec(spec),
-            }
-        )
-    return rows
-
-
-def _range(levels: list[float]) -> str:
-    return " … ".join(style.near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
-
-
-def _symbol(symbol: str) -> tuple[str, str]:
-    """Letter and index: 'r_C,TR' as ('r', 'C,TR')."""
-    letter, _, index = {"alpha": "α", "mu": "μ"}.get(symbol, symbol).partition("_")
-    return letter, index
-
-
-def _spec(spec: Any) -> str:
-    """A factor of the study file in words: 'uniform 0.1, 0.3'."""
-    if not isinstance(spec, Mapping):
-        return ""
-    for kind, value in spec.items():
-        if kind in ("uniform", "loguniform", "normal", "truncnormal", "triangular", "linspace", "logspace"):
-            return f"{kind} {', '.join(f'{v:g}' for v in value)}"
-        if kind == "expression":
-            return f"= {value}"
-    return ""
-
-
-def base_table(view: StudyView, ds: xr.Dataset) -> Table:
-    """Parameters that are the same in all cases."""
-    rows = []
-    for name, p in PARAMETERS.items():
-        if name in view.factors or name in view.table:
-            continue
-        value = view.base.get(name)
-        if isinstance(value, (int, float)) and not np.isnan(value):
-            rows.append(
-                {
-                    "name": style.capital(p.long_name),
-                    "symbol": _symbol(p.symbol),
-                    "value": style.number(float(value)),
-                    "unit": style.unit_text(p.unit),
-                }
-            )
-    if "material_pair" not in view.factors:
-        for name in ("roller_material", "guide_material"):
-            value = view.base.get(name)
-            if name not in view.factors and value is not None:
-                value = value.get("name", "inline") if isinstance(value, Mapping) else value
-                rows.append(
-                    {"name": style.capital(style.plain(name)), "symbol": ("", ""), "value": str(value), "unit": ""}
-                )
-    for name in MAPPING_FIELDS:
-        if name not in view.table and view.base.get(name):
-            text = style.level_text(name, str(view.base[name]))
-            rows.append({"name": style.capital(style.plain(name)), "symbol": ("", ""), "value": text, "unit": ""})
-    return rows
 
 
 def causes(view: StudyView, hit: np.ndarray) -> list[str]:
@@ -267,46 +165,4 @@ def design_rows(view: StudyView, designs: pd.DataFrame) -> list[tuple[str, list[
         rows.append(("Peak stress of the roller", [places.get(v, "–") for v in designs["at_surface_roller"]]))
     if "regime" in designs:
         rows.append(("Regime", [style.REGIME_LABELS[int(v)] for v in designs["regime"]]))
-    return rows
-
-
-def materials_table(attrs: Mapping[str, Any]) -> Table:
-    """Values of the materials used, as stored in the result."""
-    try:
-        stored = json.loads(str(attrs.get("materials", "{}")))
-    except ValueError:
-        return []
-    columns = (
-        ("youngs_modulus", 1),
-        ("poisson_ratio", 1),
-        ("tensile_strength", 1),
-        ("fatigue_strength_ratio", 1),
-        ("cycles_at_tensile_strength", 1),
-        ("cycles_at_fatigue_limit", 1),
-    )
-    rows = []
-    for name, values in stored.items() if isinstance(stored, Mapping) else ():
-        if isinstance(values, Mapping):
-            row = {key: style.number(float(values[key])) for key, _ in columns if _is_number(values.get(key))}
-            rows.append({"name": name, **row})
-    return rows
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def record_table(attrs: Mapping[str, Any], skip: set[str]) -> list[tuple[str, str]]:
-    """What is needed to repeat the result: every other global attribute, mappings taken apart."""
-    rows = []
-    for key, value in attrs.items():
-        if key in skip:
-            continue
-        text = str(value)
-        if text.startswith("{"):
-            try:
-                text = ", ".join(f"{k} {v}" for k, v in json.loads(text).items())
-            except (ValueError, AttributeError):
-                pass
-        rows.append((style.capital(style.plain(str(key))), text))
     return rows

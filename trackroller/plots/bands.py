@@ -12,7 +12,7 @@ from trackroller.study import words
 from trackroller.study.factors import Factor, label
 from trackroller.study.outputs import Output, outputs
 from trackroller.study.restore import design_of
-from trackroller.study.sensitivity import factor_name
+from trackroller.study.sensitivity_labels import factor_name
 
 if TYPE_CHECKING:
     import xarray as xr

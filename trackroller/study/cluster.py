@@ -10,9 +10,10 @@ import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.study import store
+from trackroller.study.caselists import CaseList, load_list
 from trackroller.study.files import WorkError, locked
 from trackroller.study.mend import Tell
-from trackroller.study.plan import CaseList, Plan, load_list, read_parts
+from trackroller.study.plan import Plan, read_parts
 from trackroller.study.solve import check_identity, finish, missing_rows, solve_rows, write_part
 
 BATCH_SECONDS = 2.0

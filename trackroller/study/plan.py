@@ -22,7 +22,8 @@ import numpy as np
 
 from trackroller.case import to_table
 from trackroller.study import store
-from trackroller.study.design import build, case_columns, table_path
+from trackroller.study.caselists import load_list, save_list, sound_cases, write_list
+from trackroller.study.design import build, table_path
 from trackroller.study.entries import OPTION_FACTORS
 from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
 from trackroller.study.growth import with_history
@@ -38,23 +39,6 @@ SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: starting a job (1-2
 MOST_CHUNKS = 400
 SMALLEST_CHUNK = 100
 LARGEST_CHUNK = 20_000
-
-
-@dataclass(frozen=True)
-class CaseList:
-    """The cases of a chunk: fingerprints (n,), the design's rows and the solver's options."""
-
-    name: str
-    cases: np.ndarray
-    columns: dict[str, np.ndarray]
-    options: dict[str, Any]
-
-    def design(self, index: np.ndarray | None = None) -> xr.Dataset:
-        """Rows as a design that `solve` takes."""
-        import xarray as xr
-
-        rows = slice(None) if index is None else index
-        return xr.Dataset({name: ("case", values[rows]) for name, values in self.columns.items()})
 
 
 @dataclass(frozen=True)
@@ -100,9 +84,9 @@ def chunk_size(study: Study, cases: int) -> int:
     """Cases a job: some seconds of solving, but at least two chunks when there is work for two cores."""
     if study.config.chunk_size:
         return study.config.chunk_size
-    from trackroller.study.cost import rate
+    from trackroller.study.cost import study_rate
 
-    speed = rate(study.options)
+    speed = study_rate(study)
     wanted = math.ceil(speed * min(max(cases / speed / 16, SHORTEST), LONGEST))
     wanted = max(min(wanted, math.ceil(cases / 2)), SMALLEST_CHUNK, math.ceil(cases / MOST_CHUNKS))
     return min(wanted, LARGEST_CHUNK)
@@ -142,7 +126,7 @@ def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | Non
         if check:
             drop_corrupt(folder, tell)
             for path in sorted((folder.root / "plan").glob("*.npz")):
-                _listed(path, tell)
+                sound_cases(path, tell)
             tell_changed_code(folder, tell)
         ready = _kept_plan(study, folder)
         if ready is None and study.config.grown_from:
@@ -171,7 +155,7 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
     covered = np.zeros(len(wanted), dtype=bool)
     for path in sorted((folder.root / "plan").glob("*.npz")):
         name = path.stem
-        listed = _listed(path, tell)
+        listed = sound_cases(path, tell)
         if listed is None:
             continue
         place = np.searchsorted(wanted, listed).clip(max=max(len(wanted) - 1, 0))
@@ -196,7 +180,7 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
         for part in np.array_split(rows, count):
             if len(part):
                 told = options if isinstance(options, dict) else options[part[0]]
-                chunks[_write_list(folder, design, cases, part, told)] = len(part)
+                chunks[write_list(folder, design, cases, part, told)] = len(part)
     data = {"key": plan_key(study), "study": study.name, "size": len(cases), "chunks": chunks}
     _write_text(folder.plan_file, json.dumps(data))
     _write_text(folder.root / "study.yaml", study.merged(whole_paths=True))
@@ -205,52 +189,6 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
 
 def _write_text(path: Path, text: str) -> None:
     write_whole(path, lambda beside: Path(beside).write_text(text, encoding="utf-8"))
-
-
-def _listed(path: Path, tell: Tell) -> np.ndarray | None:
-    """Fingerprints of a case list; a corrupt list is named and removed."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            cases = file["cases"]
-            for key in file.files:  # reading compares each with its checksum
-                file[key]
-        if chunk_name(cases) == path.stem:
-            return cases
-        why = "its content does not fit its name"
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as exc:
-        why = str(exc)
-    tell(f"{path}: corrupt case list ({why}); its cases are planned anew")
-    path.unlink(missing_ok=True)
-    return None
-
-
-def _write_list(
-    folder: StudyFolder, design: xr.Dataset, cases: np.ndarray, rows: np.ndarray, options: dict[str, Any]
-) -> str:
-    listed = cases[rows]
-    name = chunk_name(listed)
-    path = folder.case_list(name)
-    if not path.is_file():
-        columns = {key: design[key].values[rows] for key in case_columns(design)}
-        _save_list(path, listed, columns, options)
-    return name
-
-
-def _save_list(path: Path, cases: np.ndarray, columns: dict[str, np.ndarray], options: dict[str, Any]) -> None:
-    def save(beside: Path) -> None:
-        plain = {k: v.astype(str) if v.dtype == object else v for k, v in columns.items()}
-        with open(beside, "wb") as stream:
-            np.savez_compressed(stream, cases=cases, options=np.array(json.dumps(options)), allow_pickle=False, **plain)
-
-    write_whole(path, save)
-
-
-def load_list(folder: StudyFolder, name: str) -> CaseList:
-    """The case list of a chunk."""
-    with np.load(folder.case_list(name), allow_pickle=False) as file:
-        columns = {key: file[key] for key in case_columns(file)}
-        columns = {k: v.astype(object) if v.dtype.kind == "U" else v for k, v in columns.items()}
-        return CaseList(name, file["cases"], columns, json.loads(str(file["options"])))
 
 
 def read_parts(folder: StudyFolder, name: str, tell: Tell) -> list[store.Block]:
@@ -279,7 +217,7 @@ def _relist(folder: StudyFolder, design: xr.Dataset, cases: np.ndarray, options:
             block = block.take(kept)
             rows = np.array([where[case] for case in block.cases.tolist()])
             told = options if isinstance(options, dict) else options[rows[0]]
-            name = _write_list(folder, design, cases, rows, told)
+            name = write_list(folder, design, cases, rows, told)
             if name != path.stem:
                 keep(folder, name, block)
                 path.unlink()
@@ -299,7 +237,7 @@ def _seal(folder: StudyFolder, name: str, tell: Tell) -> tuple[str, np.ndarray]:
         where = {case: i for i, case in enumerate(listed.cases.tolist())}
         rows = np.array([where[case] for case in block.cases.tolist()])
         new = chunk_name(block.cases)
-        _save_list(folder.case_list(new), block.cases, {k: v[rows] for k, v in listed.columns.items()},
+        save_list(folder.case_list(new), block.cases, {k: v[rows] for k, v in listed.columns.items()},
                    listed.options)  # fmt: skip
         keep(folder, new, block)
         sealed = (new, block.cases)

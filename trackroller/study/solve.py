@@ -12,10 +12,11 @@ import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.study import store
+from trackroller.study.caselists import CaseList, load_list
 from trackroller.study.files import StudyFolder, WorkError, link_or_copy, locked
 from trackroller.study.identity import fingerprints, physics_code
 from trackroller.study.mend import Tell
-from trackroller.study.plan import CaseList, keep, load_list, read_parts
+from trackroller.study.plan import keep, read_parts
 
 log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # at most so much work is lost when a process is killed

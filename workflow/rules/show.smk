@@ -15,10 +15,12 @@ ANALYSIS = [
     "study/outputs.py",
     "study/pairs.py",
     "study/pareto.py",
+    "study/phrases.py",
     "study/restore.py",
     "study/robustness.py",
     "study/sampling.py",
     "study/sensitivity.py",
+    "study/sensitivity_labels.py",
     "study/sobol.py",
     "study/words.py",
 ]
@@ -61,6 +63,7 @@ rule report:
         code=sources(
             "report.py",
             "report_decisions.py",
+            "report_inputs.py",
             "report_papers.py",
             "report_tables.py",
             "templates",
