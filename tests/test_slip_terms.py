@@ -212,3 +212,12 @@ def test_a_spectrum_takes_them():
 def test_the_plan_tells_what_the_slip_counts():
     stage = explain(to_table([tr.Case()]), Options(contact_model="kalker", slip_terms=BOTH))[1]
     assert "slip counts profile and curve" in stage.why
+
+
+def test_time_of_a_study_counts_each_contact_model():
+    from trackroller.study.cost import rate, study_rate
+
+    both = parse_study(STUDY | {"contact_model": ["sliding", "kalker"]})
+    each = [rate(both.options | {"contact_model": name}) for name in ("sliding", "kalker")]
+    assert study_rate(both) == pytest.approx(2 / (1 / each[0] + 1 / each[1]))
+    assert study_rate(parse_study(STUDY)) == each[1]

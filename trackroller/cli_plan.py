@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from trackroller.study.config import load_study
-from trackroller.study.cost import bytes_a_case, duration, measured_rate, rate, size
+from trackroller.study.cost import bytes_a_case, duration, measured_rate, size, study_rate
 
 MOST = 20_000  # cases of a study that --explain looks at
 
@@ -35,13 +35,14 @@ def _print_study(path: Path, results: Path) -> None:
     chunk = chunk_size(study, status.missing)
     measured = measured_rate(study_folder(study.name, results).root / "store")
     chunks = -(-status.missing // chunk)
-    seconds = status.missing / (measured or rate(study.options))
+    speed = measured or study_rate(study)
+    seconds = status.missing / speed
     told = "measured" if measured else "estimated"
     print(f"study     {study.name} ({study.config.design})")
     print(f"cases     {status.total}, {status.done} of them solved already")
     print(f"chunks    {chunks} of up to {chunk} cases")
     print(f"time      {duration(seconds)} on one core, {duration(seconds / 2)} on two ({told} cases/s: "
-          f"{measured or rate(study.options):.0f})")  # fmt: skip
+          f"{speed:.3g})")  # fmt: skip
     print(f"disk      about {size(status.total * bytes_a_case(study.config.outputs))}")
 
 
@@ -59,6 +60,7 @@ def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None
 def _explain_study(path: Path, no_shortcuts: bool) -> None:
     from trackroller.case import to_table
     from trackroller.solver import Options
+    from trackroller.study.entries import OPTION_FACTORS
     from trackroller.study.plan import case_options
 
     study = load_study(path)
@@ -74,7 +76,8 @@ def _explain_study(path: Path, no_shortcuts: bool) -> None:
         if no_shortcuts:
             told["shortcuts"] = False
         if not isinstance(options, dict):
-            print(f"contact model {told['contact_model']}, spin model {told['spin_model']}:")
+            varied = [name for name in OPTION_FACTORS if name in study.factors]
+            print(", ".join(f"{name.replace('_', ' ')} {told[name]}" for name in varied) + ":")
         _print_stages(table.take(rows), Options(**told))
 
 

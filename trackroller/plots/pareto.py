@@ -8,6 +8,7 @@ import numpy as np
 
 from trackroller.plots import style
 from trackroller.study import words
+from trackroller.study.entries import OPTION_FACTORS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -26,9 +27,11 @@ def _given(front: xr.Dataset) -> str:
     """A warning where conditions of use are among the factors: their best value is nobody's to choose."""
     given = [n.replace("_", " ") for n in front.attrs["factors"].split(", ")
              if n in CONDITIONS or "load" in n or "drive" in n]  # fmt: skip
-    if not given:
-        return ""
-    return f" Treated as free to choose, though set by the use: {words.listing(given)}."
+    told = f" Treated as free to choose, though set by the use: {words.listing(given)}." if given else ""
+    models = [style.long_name(n) for n in front.attrs["factors"].split(", ") if n in OPTION_FACTORS]
+    if models:
+        told += f" Not a choice of design but of how it is computed: {words.listing(models)}."
+    return told
 
 
 def _label(front: xr.Dataset, name: str) -> str:

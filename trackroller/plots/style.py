@@ -198,6 +198,8 @@ def capital(text: str) -> str:
 
 def long_name(name: str) -> str:
     """A factor in words, for running text."""
+    if name == "normal":  # an option, whose name alone says little
+        return "normal problem"
     return PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
 
 

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from trackroller.study.config import Study
 
 # Seconds of one core a case at preview, standard and reference, measured on random designs (friction 0.01 to 1, contact
 # angles 10 to 80 deg, materials of all sorts) on a 2-core machine; ordinary designs take half. Orders of magnitude.
@@ -37,6 +41,15 @@ def rate(options: Mapping[str, Any]) -> float:
         seconds += (_SOLVED_PEAKS if solved else _PEAKS[model])[level]
     seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
     return 1.0 / seconds
+
+
+def study_rate(study: Study) -> float:
+    """As `rate` for the cases of a study, in which contact model and normal problem may be factors."""
+    from trackroller.study.entries import OPTION_FACTORS
+
+    varied = {name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS}
+    several = [rate(study.options | dict(zip(varied, values, strict=True))) for values in product(*varied.values())]
+    return len(several) / sum(1.0 / each for each in several)
 
 
 def bytes_a_case(outputs: tuple[str, ...]) -> int:
