@@ -250,3 +250,28 @@ def test_a_sticking_patch_feels_the_rim_as_on_the_ellipse():
     np.testing.assert_allclose(grid.lateral_force, hertz.lateral_force, rtol=1e-2)
     np.testing.assert_allclose(grid.spin_moment, hertz.spin_moment, rtol=1e-2)
     np.testing.assert_allclose(grid.stick_area_fraction, hertz.stick_area_fraction, atol=0.02)
+
+
+@pytest.mark.parametrize(("guide", "roller", "curve", "alpha"), [(2.0, -3.0, 800.0, 55.0), (12.0, -12.2, 60.0, 25.0)])
+def test_peaks_of_slender_sliding_patches_keep_within_one_per_cent(guide, roller, curve, alpha):
+    """The slip turns within an element where its pole lies in a slender patch: finer tractions are taken there."""
+    loads = {"radial_force": -40.0, "axial_force": 5.0, "motor_force": 0.0, "friction_coefficient": 0.7}
+    shape = {"guide_profile_radius": guide, "roller_profile_radius": roller, "guide_curve_radius": curve,
+             "contact_angle": alpha, "axis_distance": 40.0}  # fmt: skip
+    drawn = {"guide_profile": {"parabola": guide}, "roller_profile": {"parabola": roller}}
+    hertz = tr.solve(tr.Case(**loads, **shape), ("contact", "peak_stress"), accuracy="reference")
+    grid = tr.solve(tr.Case(**loads, **shape, **drawn), ("contact", "peak_stress"), normal="halfspace")
+    ratio = float((hertz.semi_axis_lateral / hertz.semi_axis_rolling)[0])
+    assert ratio < 0.25 or ratio > 8
+    np.testing.assert_allclose(grid.peak_stress, hertz.peak_stress, rtol=1e-2)
+    assert np.all(np.abs(grid.peak_stress / hertz.peak_stress - 1) <= grid.error_estimate)
+
+
+def test_finer_elements_carry_the_same():
+    """Each element's load stays its own, and the pressure of an ellipse comes out as that of finer elements."""
+    _, grid = hertz_patch(20)
+    _, fine = hertz_patch(40)
+    found = grid.refined(2, 2).pressure
+    np.testing.assert_allclose(found.reshape(1, 20, 2, 20, 2).mean(axis=(2, 4)), grid.pressure, rtol=1e-12)
+    inside = np.hypot(*np.meshgrid(*2 * [(np.arange(40) + 0.5) / 20 - 1])) < 0.8
+    np.testing.assert_allclose(found[0][inside], fine.pressure[0][inside], rtol=2e-3)

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from trackroller.halfspace.peak import Peak
     from trackroller.solver import Options
 
+REFINED_ERROR, FINEST_ERROR = 4.0, 5e-3  # estimated error of a peak, over the tolerance and at least, to refine above
+REFINEMENTS = 2, 4  # times the elements
+LARGEST_GRID = 160  # elements across that are refined to
 NEAR = 4.0  # elements of depth down to which subsurface fields need the full grid
 
 
@@ -75,9 +78,39 @@ def _load(results: Results, row: int) -> GridLoad:
 
 
 def peaks(results: Results, asked: np.ndarray, poisson_ratio: np.ndarray, options: Options) -> Peak:
-    """Peaks of the patches `asked` (2 n,) in MPa; poisson_ratio (2 n, 2)."""
+    """Peaks of the patches `asked` (2 n,) in MPa; poisson_ratio (2 n, 2).
+
+    Where the slip turns within an element (its pole in a slender patch), the tractions of models that know them
+    anywhere are taken on finer elements, until the estimated error is that of other patches.
+    """
     loads = [_load(results, row) for row in np.flatnonzero(asked[results.good]).tolist()]
-    return find_grid_peaks(loads, poisson_ratio[asked], seeds=max(2, options.settings.peak.finalists))
+    ratios, seeds = poisson_ratio[asked], max(2, options.settings.peak.finalists)
+    peak = find_grid_peaks(loads, ratios, seeds)
+    patches, model = results.ellipse, results.scene.model
+    if not isinstance(patches, GridPatch) or not getattr(model, "refines", False):
+        return peak
+    flat = np.flatnonzero(asked)
+    # a singular pressure stays what it is
+    allowed = (results.slides_along[flat] == 0) & ~patches.reaches_edge[flat] & (results.friction[flat] > 0)
+    goal = max(REFINED_ERROR * options.settings.tolerance, FINEST_ERROR)
+    for times in REFINEMENTS:
+        rows = np.flatnonzero(allowed & (peak.error.max(axis=1) > goal))
+        if times * patches.shape[1] > LARGEST_GRID or not rows.size:
+            break
+        finer = find_grid_peaks([_refined(results, int(flat[i]), times) for i in rows], ratios[rows], seeds)
+        for name in ("stress", "x", "y", "z", "error"):
+            getattr(peak, name)[rows] = getattr(finer, name)
+    return peak
+
+
+def _refined(results: Results, flat: int, times: int) -> GridLoad:
+    """Tractions of the patch `flat` of 2 n on finer elements; along the rolling direction too if that is the longer."""
+    one = np.array([flat])
+    patch = results.ellipse.take(one)
+    long = bool(patch.semi_axis_rolling[0] * patch.shape[1] > patch.semi_axis_lateral[0] * patch.shape[0])
+    t = results.scene.model.surface(patch.refined(times if long else 1, times), results.slip.take(one),
+                                    results.friction[one], results.rows[one])  # fmt: skip
+    return GridLoad(t.x[0], t.y[0], np.stack([t.shear_lateral[0], t.shear_rolling[0], t.pressure[0]], axis=-1))
 
 
 def lower_bounds(results: Results, wanted: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:

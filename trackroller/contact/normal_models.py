@@ -99,6 +99,7 @@ class _OnGrid:
     """What both models share."""
 
     full_sliding = False  # in the sense that an ellipse and a slip field tell the tractions
+    refines = True  # tractions are known on finer elements than those of the pressure
     difference_step = 1e-3
     residual = 1e-7
 
@@ -200,6 +201,8 @@ class GridFastsimModel(_OnGrid):
 
 class GridKalkerModel(_OnGrid):
     """Kalker's theory of rolling with the traction bound of solved pressures."""
+
+    refines = False
 
     def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
                  profile_slip: bool = False) -> None:  # fmt: skip
