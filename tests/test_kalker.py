@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from trackroller.contact import kalker
+from trackroller.contact import kalker, kalker_batch
 from trackroller.contact.common import Elastic, Ellipse, Slip
 from trackroller.contact.friction_laws import exponential_falling, linear_falling, table
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.kalker import Creepage, KalkerSettings, solve_patch
+from trackroller.contact.kalker_grid import unit_cells
 from trackroller.contact.kalker_law import KalkerLaw
 from trackroller.geometry import curvatures, rolling_radius
 
@@ -291,3 +292,45 @@ def test_profile_and_curve_in_the_slip_agree_with_contact(name, profile, curve):
     np.testing.assert_allclose(found[:, 2], record["spin_moment"], rtol=1e-2)
     limit = 0.3 * np.array(record["normal_force"])
     np.testing.assert_allclose(found[:, 1] / limit, record["driving_force"] / limit, atol=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "creep", "spin", "friction"),
+    [(14.0, -1.48e-4, 1.9e-4, 0.262), (11.6, -1.51e-4, 1.3e-4, 0.133), (4.06, -3.64e-5, 5.08e-4, 0.155),
+     (2.43, -3.73e-5, 2.74e-3, 0.566), (5.66, -2.33e-5, 4.85e-5, 0.053)],
+)  # fmt: skip
+def test_partly_sticking_slender_patches_take_few_products(ratio, creep, spin, friction):
+    """b/a to 14, stick 0.5-0.9: Newton's method alone frees one element a step and takes 600 to 1,300 products."""
+    b = np.sqrt(0.08 * ratio) * np.ones(1)
+    ellipse, size = Ellipse(0.08 / b, b, 900.0 * np.ones(1)), np.sqrt(0.08)
+    slips = Creepage(creep * np.ones(1), np.zeros(1), spin / size * np.ones(1))
+    found = solve_patch(ellipse, slips, friction, STEEL, KalkerSettings())
+    assert found.converged.all() and 0.4 < found.stick_fraction[0] < 0.95
+    assert found.products[0] <= 300
+    one = solve_patch(ellipse, slips, friction, STEEL, KalkerSettings(tolerance=1e-10), found.traction)
+    np.testing.assert_allclose(found.traction, one.traction, atol=1e-5)
+
+
+def test_a_refined_start_keeps_linear_shares_of_the_traction_bound():
+    fine, coarse = unit_cells(16, 16)[0], unit_cells(8, 8)[0]
+    where = lambda m: (np.arange(m) + 0.5) * 2.0 / m - 1.0  # noqa: E731
+    share = lambda m: 0.1 + 0.3 * where(m)[:, None] - 0.2 * where(m)[None, :]  # noqa: E731
+    start = np.zeros((1, 2, 16, 16))
+    kalker_batch.refine((np.stack([share(8), -share(8)]) * coarse)[None], coarse, fine, start)
+    inner = np.s_[4:12, 4:12]  # all four neighbours are loaded
+    np.testing.assert_allclose(start[0, 0][inner], (share(16) * fine)[inner], rtol=1e-12)
+    np.testing.assert_allclose(start[0, 1], -start[0, 0])
+    assert np.all(start[0, 0][fine == 0] == 0)
+
+
+def test_the_rough_law_of_the_equilibrium_is_near_the_fine_one():
+    """By the table where it holds, by half the elements beyond; both within 3 % of mu F_N."""
+    pair, unlike = np.ones(2), Elastic(np.full(1, 50e3), np.full(1, 0.3), np.full(1, 0.45))
+    slip = Slip(0.5 * np.array([1.0, -1.0]), np.sqrt(0.75) * pair, 6.0 * pair, 16.55 * pair, -0.03 * pair)
+    for elastic in (Elastic(*(np.full(1, v) for v in (80e3, 0.33, 0.0))), unlike):
+        law, rows = KalkerLaw(elastic), np.zeros(2, int)
+        ellipse = Ellipse(0.3 * pair, 0.18 * pair, 800.0 * pair)
+        rough, fine = (law(ellipse, slip, 0.3 * pair, rows, good) for good in (False, True))
+        limit = 0.3 * ellipse.normal_force
+        np.testing.assert_allclose(rough.lateral_force / limit, fine.lateral_force / limit, atol=0.03)
+        np.testing.assert_allclose(rough.driving_force / limit, fine.driving_force / limit, atol=0.03)

@@ -12,7 +12,8 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.kalker_influence import coupling_slip, influence
-from trackroller.contact.kalker_newton import Problem, newton, reals
+from trackroller.contact.kalker_loops import reals
+from trackroller.contact.kalker_newton import Problem, newton
 from trackroller.threads import share_rows
 
 # columns of the numbers reported for each patch
@@ -118,10 +119,22 @@ def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, tra
 
 @njit(cache=True)
 def refine(coarse, coarse_height, height, fine):
-    """Start of a grid (n, 2, 2 ny, 2 nx) from the one with half the elements: the same share of the bound."""
+    """Start of a grid (n, 2, 2 ny, 2 nx) from the one with half the elements.
+
+    The share of the traction bound is interpolated linearly; steps between the elements would make slip between them.
+    """
+    ny, nx = coarse_height.shape
     for k in range(fine.shape[0]):
-        for c in range(2):
-            for i in range(fine.shape[2]):
-                for j in range(fine.shape[3]):
-                    g = coarse_height[i // 2, j // 2]
-                    fine[k, c, i, j] = coarse[k, c, i // 2, j // 2] * height[i, j] / g if g > 0.0 else 0.0
+        for i in range(2 * ny):
+            near_i, far_i = i // 2, min(max(i // 2 + 2 * (i % 2) - 1, 0), ny - 1)
+            for j in range(2 * nx):
+                near_j, far_j = j // 2, min(max(j // 2 + 2 * (j % 2) - 1, 0), nx - 1)
+                x, y, total = 0.0, 0.0, 0.0
+                for m, q, weight in ((near_i, near_j, 9.0), (far_i, near_j, 3.0), (near_i, far_j, 3.0),
+                                     (far_i, far_j, 1.0)):
+                    if coarse_height[m, q] > 0.0:
+                        x += weight * coarse[k, 0, m, q] / coarse_height[m, q]
+                        y += weight * coarse[k, 1, m, q] / coarse_height[m, q]
+                        total += weight
+                share = height[i, j] / total if total > 0.0 else 0.0
+                fine[k, 0, i, j], fine[k, 1, i, j] = x * share, y * share

@@ -14,11 +14,25 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from trackroller.contact.kalker_columns import apply_inverse, column_ranges, column_slips, factorise
-from trackroller.contact.kalker_influence import FAST, Influence, differences, leading_rows
-from trackroller.contact.knots import interval
+from trackroller.contact.kalker_influence import Influence, differences, leading_rows
+from trackroller.contact.kalker_loops import (
+    arnoldi,
+    combination,
+    dot,
+    find_slits,
+    hold,
+    jacobian,
+    law_of_slip,
+    reals,
+    residual,
+)
+
+# Where many elements are wrongly thought to slide between sticking ones, Newton's method frees one a step, from the
+# leading edge on, by short steps. After SHORT steps of at most half length they are taken as sticking at once; the
+# residual may rise by RISE for it, and has TRIAL steps to come below where it was, or all is undone.
+SHORT, RISE, TRIAL = 2, 8.0, 3
 
 
 @dataclass(frozen=True)
@@ -38,146 +52,14 @@ class Problem:
     rolling: bool = True
 
 
-def reals(field: np.ndarray) -> np.ndarray:
-    """View of a complex field (ny, nx) as (ny, nx, 2)."""
-    return field.view(float).reshape(*field.shape, 2)
+@dataclass(frozen=True)
+class _State:
+    """Tractions with their slips, largest component and norm of the friction law's residual."""
 
-
-@njit(cache=True, nogil=True)
-def law_of_slip(slip, height, scale, knots, factors, bound, slope):
-    """Traction bound height f(scale |s|) and its derivative with respect to |s|; f linear between its knots."""
-    last = knots.size - 1
-    for i in range(height.shape[0]):
-        for j in range(height.shape[1]):
-            speed = scale * math.hypot(slip[i, j, 0], slip[i, j, 1])
-            slope[i, j] = 0.0
-            if last == 0 or speed <= knots[0]:
-                bound[i, j] = height[i, j] * factors[0]
-            elif speed >= knots[last]:
-                bound[i, j] = height[i, j] * factors[last]
-            else:
-                low = interval(speed, knots, 0, last)
-                steep = (factors[low + 1] - factors[low]) / (knots[low + 1] - knots[low])
-                bound[i, j] = height[i, j] * (factors[low] + steep * (speed - knots[low]))
-                slope[i, j] = height[i, j] * steep * scale
-
-
-@njit(cache=True, fastmath=FAST, nogil=True)
-def residual(traction, slip, bound, rho, out):
-    """F = tau - P_g(tau - rho s) into `out`; returns its largest component [scaled as tau] and its norm."""
-    largest, square = 0.0, 0.0
-    for i in range(bound.shape[0]):
-        for j in range(bound.shape[1]):
-            g = bound[i, j]
-            zx = traction[i, j, 0] - rho * slip[i, j, 0]
-            zy = traction[i, j, 1] - rho * slip[i, j, 1]
-            z = math.sqrt(zx * zx + zy * zy)
-            if z > g:
-                factor = g / z
-                zx *= factor
-                zy *= factor
-            fx, fy = traction[i, j, 0] - zx, traction[i, j, 1] - zy
-            out[i, j, 0], out[i, j, 1] = fx, fy
-            largest = max(largest, abs(fx), abs(fy))
-            square += fx * fx + fy * fy
-    return largest, math.sqrt(square)
-
-
-@njit(cache=True, fastmath=FAST, nogil=True)
-def jacobian(traction, slip, bound, slope, rho, derivative, turn):
-    """Derivative of P_g at z = tau - rho s: xx, xy, yy into `derivative` (3, ny, nx).
-
-    And n (dg/d|s|) s/|s| of sliding elements, n the direction of z, into `turn` (4, ny, nx: xx, xy, yx, yy).
-    """
-    for i in range(bound.shape[0]):
-        for j in range(bound.shape[1]):
-            g = bound[i, j]
-            sx, sy = slip[i, j, 0], slip[i, j, 1]
-            zx, zy = traction[i, j, 0] - rho * sx, traction[i, j, 1] - rho * sy
-            square = zx * zx + zy * zy
-            steep = 0.0
-            if square <= g * g:
-                inside = 1.0 if g > 0.0 else 0.0
-                derivative[0, i, j], derivative[1, i, j], derivative[2, i, j] = inside, 0.0, inside
-            else:
-                z = math.sqrt(square)
-                factor = g / (z * square)
-                derivative[0, i, j] = factor * zy * zy
-                derivative[1, i, j] = -factor * zx * zy
-                derivative[2, i, j] = factor * zx * zx
-                speed = math.hypot(sx, sy)
-                steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
-            turn[0, i, j], turn[1, i, j] = steep * zx * sx, steep * zx * sy
-            turn[2, i, j], turn[3, i, j] = steep * zy * sx, steep * zy * sy
-
-
-@njit(cache=True, fastmath=FAST)
-def _dot(a, b):
-    total = 0.0
-    for i in range(a.size):
-        total += a[i] * b[i]
-    return total
-
-
-@njit(cache=True)
-def _rotate(hessenberg, givens, rhs, k):
-    """Givens rotations of column k; the rest of the right-hand side is the residual's norm."""
-    for i in range(k):
-        c, s = givens[0, i], givens[1, i]
-        a, b = hessenberg[i, k], hessenberg[i + 1, k]
-        hessenberg[i, k], hessenberg[i + 1, k] = c * a + s * b, c * b - s * a
-    a, b = hessenberg[k, k], hessenberg[k + 1, k]
-    length = math.sqrt(a * a + b * b)
-    c, s = (1.0, 0.0) if length == 0.0 else (a / length, b / length)
-    givens[0, k], givens[1, k] = c, s
-    hessenberg[k, k], hessenberg[k + 1, k] = length, 0.0
-    rhs[k + 1] = -s * rhs[k]
-    rhs[k] = c * rhs[k]
-
-
-@njit(cache=True, fastmath=FAST, nogil=True)
-def arnoldi(direction, product, derivative, turn, rho, basis, k, hessenberg, givens, rhs):
-    """Newton's matrix times `direction`, d - P'(d - rho B d) - turn B d, made orthogonal to basis[: k + 1].
-
-    `product` is B d. Returns the norm of the residual with this much of the Krylov space.
-    """
-    ny, nx = derivative.shape[1], derivative.shape[2]
-    v = basis[k + 1]
-    for i in range(ny):
-        for j in range(nx):
-            bx, by = product[i, j, 0], product[i, j, 1]
-            dx, dy = direction[i, j, 0], direction[i, j, 1]
-            x, y = dx - rho * bx, dy - rho * by
-            pxx, pxy, pyy = derivative[0, i, j], derivative[1, i, j], derivative[2, i, j]
-            place = 2 * (i * nx + j)
-            v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * bx - turn[1, i, j] * by
-            v[place + 1] = dy - pxy * x - pyy * y - turn[2, i, j] * bx - turn[3, i, j] * by
-    for i in range(k + 1):
-        h = _dot(basis[i], v)
-        hessenberg[i, k] = h
-        row = basis[i]
-        for j in range(v.size):
-            v[j] -= h * row[j]
-    h = math.sqrt(_dot(v, v))
-    hessenberg[k + 1, k] = h
-    if h > 0.0:
-        for j in range(v.size):
-            v[j] /= h
-    _rotate(hessenberg, givens, rhs, k)
-    return abs(rhs[k + 1])
-
-
-@njit(cache=True, nogil=True)
-def combination(basis, hessenberg, rhs, done, out):
-    """Least-squares combination of basis[: done] into `out` (2 ny nx,)."""
-    for j in range(out.size):
-        out[j] = 0.0
-    for i in range(done - 1, -1, -1):
-        for j in range(i + 1, done):
-            rhs[i] -= hessenberg[i, j] * rhs[j]
-        rhs[i] = rhs[i] / hessenberg[i, i] if hessenberg[i, i] != 0.0 else 0.0
-        for j in range(out.size):
-            out[j] += rhs[i] * basis[i, j]
+    traction: np.ndarray
+    slip: np.ndarray
+    largest: float
+    norm: float
 
 
 class _Newton:
@@ -196,7 +78,7 @@ class _Newton:
         self.factors = np.empty((nx, 2, ny, ny))
         self.basis = np.empty((krylov + 1, 2 * ny * nx))
         self.derivative, self.turn = np.empty((3, ny, nx)), np.empty((4, ny, nx))
-        self.bound, self.slope = np.empty((ny, nx)), np.zeros((ny, nx))
+        self.bound, self.slope, self.held = np.empty((ny, nx)), np.zeros((ny, nx)), np.zeros((ny, nx), bool)
         self.value, self.field, self.product = (np.empty((ny, nx), complex) for _ in range(3))
 
     def multiply(self, field: np.ndarray) -> np.ndarray:
@@ -208,20 +90,32 @@ class _Newton:
             self.product[:] = halo[1 : 1 + field.shape[0]]
         return self.product
 
-    def residual(self, traction: np.ndarray, slip: np.ndarray) -> tuple[float, float]:
-        """Largest component and norm of the friction law's residual, which is kept."""
+    def state(self, traction: np.ndarray, slip: np.ndarray) -> _State:
+        """The state there; its residual and traction bounds are kept."""
         p = self.problem
         law_of_slip(reals(slip), p.height, p.scale, p.knots, p.factors, self.bound, self.slope)
-        return residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value))
+        return _State(traction, slip, *residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value)))
 
-    def step(self, traction: np.ndarray, slip: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
-        """Newton's step against the kept residual by preconditioned GMRES, and the products it took."""
-        jacobian(reals(traction), reals(slip), self.bound, self.slope, self.rho, self.derivative, self.turn)
+    def slits(self, at: _State) -> bool:
+        """Are there sliding elements in narrow gaps between sticking ones? They are kept."""
+        return find_slits(reals(at.traction), reals(at.slip), self.bound, self.rho, self.held) > 0
+
+    def step(self, at: _State, tolerance: float, leap: bool) -> tuple[np.ndarray, np.ndarray, int]:
+        """Newton's step, the slips it causes and the products it took; with the kept slits sticking if a leap."""
+        slip = reals(at.slip)
+        jacobian(reals(at.traction), slip, self.bound, self.slope, self.rho, self.derivative, self.turn)
+        if leap:
+            hold(self.held, slip, self.rho, reals(self.value), self.derivative, self.turn)
+        step, products = self._solve(tolerance)
+        return step, self.multiply(step), products + 1
+
+    def _solve(self, tolerance: float) -> tuple[np.ndarray, int]:
+        """Newton's matrix against the kept residual by preconditioned GMRES."""
         factorise(self.slips, self.derivative, self.rho, self.first, self.count, self.factors)
         steps = self.basis.shape[0] - 1
         hessenberg, givens, rhs = np.zeros((steps + 1, steps)), np.zeros((2, steps)), np.zeros(steps + 1)
         flat = self.value.reshape(-1).view(float)
-        norm = math.sqrt(_dot(flat, flat))
+        norm = math.sqrt(dot(flat, flat))
         np.divide(flat, norm, out=self.basis[0])
         rhs[0] = norm
         done = 0
@@ -239,30 +133,45 @@ class _Newton:
         apply_inverse(self.factors, self.first, self.count, reals(self.value), reals(out))
         return out, done
 
+    def search(self, at: _State, step: np.ndarray, change: np.ndarray) -> tuple[_State, float]:
+        """The state along a step, halved until the residual's norm falls, but at most four times; its length."""
+        length = 1.0
+        while True:
+            new = self.state(at.traction - length * step, at.slip - length * change)
+            if new.norm < (1.0 - 0.1 * length) * at.norm or length < 0.05 or math.isnan(new.norm):
+                return new, length
+            length *= 0.5
+
 
 def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int, krylov: int):
     """Tractions (ny, nx) of the friction law, from the start `traction`.
 
     Returns tractions, slips, traction bounds at these slips, the residual (largest component of the law's residual),
-    Newton steps and products. Steps are halved until the residual's norm falls (at most four times).
+    Newton steps and products.
     """
     work = _Newton(problem, krylov)
-    slip = problem.rigid + work.multiply(traction)
-    largest, norm = work.residual(traction, slip)
+    at = work.state(traction, problem.rigid + work.multiply(traction))
+    before, left, short = at, 0, 0  # the state before a leap, and steps that are left to better it
     products, iteration = 1, 0
-    while largest > tolerance and iteration < limit:
+    while at.largest > tolerance and iteration < limit:
         iteration += 1
         # far from the solution the step is rough anyway; near it the last ones converge quadratically
-        inner = max(0.3 * tolerance / largest, min(0.03, 0.1 * largest))
-        step, used = work.step(traction, slip, inner)
-        change = work.multiply(step)
-        products += used + 1
-        length = 1.0
-        while True:
-            new_traction, new_slip = traction - length * step, slip - length * change
-            largest, new_norm = work.residual(new_traction, new_slip)
-            if new_norm < (1.0 - 0.1 * length) * norm or length < 0.05 or math.isnan(new_norm):
-                break
-            length *= 0.5
-        traction, slip, norm = new_traction, new_slip, new_norm
-    return traction, slip, work.bound, largest, iteration, products
+        inner = max(0.3 * tolerance / at.largest, min(0.03, 0.1 * at.largest))
+        leap = short >= SHORT and not left and work.slits(at)
+        step, change, used = work.step(at, inner, leap)
+        products += used
+        if leap:
+            new = work.state(at.traction - step, at.slip - change)
+            short = 0
+            if new.norm < RISE * at.norm:
+                before, left, at = at, TRIAL, new
+            else:
+                at = work.state(at.traction, at.slip)
+            continue
+        at, length = work.search(at, step, change)
+        short = short + 1 if length <= 0.5 else 0
+        if left:
+            left = 0 if at.norm < 0.9 * before.norm else left - 1
+            if not left and not at.norm < 0.9 * before.norm:
+                at, short = work.state(before.traction, before.slip), -TRIAL
+    return at.traction, at.slip, work.bound, at.largest, iteration, products

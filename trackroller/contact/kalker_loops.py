@@ -1,0 +1,183 @@
+"""Compiled loops of Newton's method for stick and slip, over fields (ny, nx, 2); see `kalker_newton`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from trackroller.contact.kalker_influence import FAST
+from trackroller.contact.knots import interval
+
+
+def reals(field: np.ndarray) -> np.ndarray:
+    """View of a complex field (ny, nx) as (ny, nx, 2)."""
+    return field.view(float).reshape(*field.shape, 2)
+
+
+@njit(cache=True, nogil=True)
+def law_of_slip(slip, height, scale, knots, factors, bound, slope):
+    """Traction bound height f(scale |s|) and its derivative with respect to |s|; f linear between its knots."""
+    last = knots.size - 1
+    for i in range(height.shape[0]):
+        for j in range(height.shape[1]):
+            speed = scale * math.hypot(slip[i, j, 0], slip[i, j, 1])
+            slope[i, j] = 0.0
+            if last == 0 or speed <= knots[0]:
+                bound[i, j] = height[i, j] * factors[0]
+            elif speed >= knots[last]:
+                bound[i, j] = height[i, j] * factors[last]
+            else:
+                low = interval(speed, knots, 0, last)
+                steep = (factors[low + 1] - factors[low]) / (knots[low + 1] - knots[low])
+                bound[i, j] = height[i, j] * (factors[low] + steep * (speed - knots[low]))
+                slope[i, j] = height[i, j] * steep * scale
+
+
+@njit(cache=True, fastmath=FAST, nogil=True)
+def residual(traction, slip, bound, rho, out):
+    """F = tau - P_g(tau - rho s) into `out`; returns its largest component [scaled as tau] and its norm."""
+    largest, square = 0.0, 0.0
+    for i in range(bound.shape[0]):
+        for j in range(bound.shape[1]):
+            g = bound[i, j]
+            zx = traction[i, j, 0] - rho * slip[i, j, 0]
+            zy = traction[i, j, 1] - rho * slip[i, j, 1]
+            z = math.sqrt(zx * zx + zy * zy)
+            if z > g:
+                factor = g / z
+                zx *= factor
+                zy *= factor
+            fx, fy = traction[i, j, 0] - zx, traction[i, j, 1] - zy
+            out[i, j, 0], out[i, j, 1] = fx, fy
+            largest = max(largest, abs(fx), abs(fy))
+            square += fx * fx + fy * fy
+    return largest, math.sqrt(square)
+
+
+@njit(cache=True, fastmath=FAST, nogil=True)
+def jacobian(traction, slip, bound, slope, rho, derivative, turn):
+    """Derivative of P_g at z = tau - rho s: xx, xy, yy into `derivative` (3, ny, nx).
+
+    And n (dg/d|s|) s/|s| of sliding elements, n the direction of z, into `turn` (4, ny, nx: xx, xy, yx, yy).
+    """
+    for i in range(bound.shape[0]):
+        for j in range(bound.shape[1]):
+            g = bound[i, j]
+            sx, sy = slip[i, j, 0], slip[i, j, 1]
+            zx, zy = traction[i, j, 0] - rho * sx, traction[i, j, 1] - rho * sy
+            square = zx * zx + zy * zy
+            steep = 0.0
+            if square <= g * g:
+                inside = 1.0 if g > 0.0 else 0.0
+                derivative[0, i, j], derivative[1, i, j], derivative[2, i, j] = inside, 0.0, inside
+            else:
+                z = math.sqrt(square)
+                factor = g / (z * square)
+                derivative[0, i, j] = factor * zy * zy
+                derivative[1, i, j] = -factor * zx * zy
+                derivative[2, i, j] = factor * zx * zx
+                speed = math.hypot(sx, sy)
+                steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
+            turn[0, i, j], turn[1, i, j] = steep * zx * sx, steep * zx * sy
+            turn[2, i, j], turn[3, i, j] = steep * zy * sx, steep * zy * sy
+
+
+@njit(cache=True, fastmath=FAST)
+def dot(a, b):
+    total = 0.0
+    for i in range(a.size):
+        total += a[i] * b[i]
+    return total
+
+
+@njit(cache=True)
+def _rotate(hessenberg, givens, rhs, k):
+    """Givens rotations of column k; the rest of the right-hand side is the residual's norm."""
+    for i in range(k):
+        c, s = givens[0, i], givens[1, i]
+        a, b = hessenberg[i, k], hessenberg[i + 1, k]
+        hessenberg[i, k], hessenberg[i + 1, k] = c * a + s * b, c * b - s * a
+    a, b = hessenberg[k, k], hessenberg[k + 1, k]
+    length = math.sqrt(a * a + b * b)
+    c, s = (1.0, 0.0) if length == 0.0 else (a / length, b / length)
+    givens[0, k], givens[1, k] = c, s
+    hessenberg[k, k], hessenberg[k + 1, k] = length, 0.0
+    rhs[k + 1] = -s * rhs[k]
+    rhs[k] = c * rhs[k]
+
+
+@njit(cache=True, fastmath=FAST, nogil=True)
+def arnoldi(direction, product, derivative, turn, rho, basis, k, hessenberg, givens, rhs):
+    """Newton's matrix times `direction`, d - P'(d - rho B d) - turn B d, made orthogonal to basis[: k + 1].
+
+    `product` is B d. Returns the norm of the residual with this much of the Krylov space.
+    """
+    ny, nx = derivative.shape[1], derivative.shape[2]
+    v = basis[k + 1]
+    for i in range(ny):
+        for j in range(nx):
+            bx, by = product[i, j, 0], product[i, j, 1]
+            dx, dy = direction[i, j, 0], direction[i, j, 1]
+            x, y = dx - rho * bx, dy - rho * by
+            pxx, pxy, pyy = derivative[0, i, j], derivative[1, i, j], derivative[2, i, j]
+            place = 2 * (i * nx + j)
+            v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * bx - turn[1, i, j] * by
+            v[place + 1] = dy - pxy * x - pyy * y - turn[2, i, j] * bx - turn[3, i, j] * by
+    for i in range(k + 1):
+        h = dot(basis[i], v)
+        hessenberg[i, k] = h
+        row = basis[i]
+        for j in range(v.size):
+            v[j] -= h * row[j]
+    h = math.sqrt(dot(v, v))
+    hessenberg[k + 1, k] = h
+    if h > 0.0:
+        for j in range(v.size):
+            v[j] /= h
+    _rotate(hessenberg, givens, rhs, k)
+    return abs(rhs[k + 1])
+
+
+@njit(cache=True, nogil=True)
+def combination(basis, hessenberg, rhs, done, out):
+    """Least-squares combination of basis[: done] into `out` (2 ny nx,)."""
+    for j in range(out.size):
+        out[j] = 0.0
+    for i in range(done - 1, -1, -1):
+        for j in range(i + 1, done):
+            rhs[i] -= hessenberg[i, j] * rhs[j]
+        rhs[i] = rhs[i] / hessenberg[i, i] if hessenberg[i, i] != 0.0 else 0.0
+        for j in range(out.size):
+            out[j] += rhs[i] * basis[i, j]
+
+
+@njit(cache=True, nogil=True)
+def find_slits(traction, slip, bound, rho, held):
+    """Sliding elements in gaps of one or two between sticking ones across the rolling direction; how many."""
+    ny, nx = bound.shape
+    sticks = np.zeros(nx + 4, np.bool_)  # element j at j + 2
+    count = 0
+    for i in range(ny):
+        for j in range(nx):
+            zx, zy = traction[i, j, 0] - rho * slip[i, j, 0], traction[i, j, 1] - rho * slip[i, j, 1]
+            sticks[j + 2] = bound[i, j] > 0.0 and zx * zx + zy * zy <= bound[i, j] ** 2
+        for j in range(nx):
+            left, far_left, right, far_right = sticks[j + 1], sticks[j], sticks[j + 3], sticks[j + 4]
+            between = (left and (right or far_right)) or (far_left and right)
+            held[i, j] = between and bound[i, j] > 0.0 and not sticks[j + 2]
+            count += held[i, j]
+    return count
+
+
+@njit(cache=True, nogil=True)
+def hold(held, slip, rho, value, derivative, turn):
+    """Residual and derivative of `held` elements as if they stuck."""
+    for i in range(held.shape[0]):
+        for j in range(held.shape[1]):
+            if held[i, j]:
+                value[i, j, 0], value[i, j, 1] = rho * slip[i, j, 0], rho * slip[i, j, 1]
+                derivative[0, i, j], derivative[1, i, j], derivative[2, i, j] = 1.0, 0.0, 1.0
+                for k in range(4):
+                    turn[k, i, j] = 0.0
