@@ -25,21 +25,26 @@ def follow_friction(loads, law, rows, low, high):
     tangent = np.tan(loads.contact_angle[rows])
     start = np.clip(0.2 * tangent / loads.friction[rows], 1e-8, 0.05)  # well before the wedge may lock
     for k in range(21):
+        go = np.flatnonzero(~lost & ~lifted)
+        if go.size == 0:
+            break
         scale[rows] = np.maximum(start ** (1 - k / 20), k / 20)
         eased = replace(loads, friction=loads.friction * scale, motor_force=loads.motor_force * scale)
-        roller = Roller(eased, law, rows)
+        roller = Roller(eased, law, rows[go])
         if k == 0:
             w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
-        best, w_new, n_new, f = newton_polish(roller, w.copy(), normal.copy(), low, high)
-        fine = best <= 1e-8
-        lost, found = lost | ~fine, found | np.isfinite(best)
-        shrunk = np.any(normal < 0.15 * roller.load, axis=0)
-        lifted |= np.where(fine, np.any(n_new <= LIFTED * roller.load, axis=0), shrunk)
-        w, normal = np.where(fine, w_new, w), np.where(fine, n_new, normal)
+        best[go], w_new, n_new, f[:, :, go] = newton_polish(roller, w[go], normal[:, go], low[go], high[go])
+        fine = best[go] <= 1e-8
+        lost[go], found[go] = ~fine, found[go] | np.isfinite(best[go])
+        shrunk = np.any(normal[:, go] < 0.15 * roller.load, axis=0)
+        lifted[go] = np.where(fine, np.any(n_new <= LIFTED * roller.load, axis=0), shrunk)
+        on = go[fine]
+        w[on], normal[:, on] = w_new[fine], n_new[:, fine]
         with np.errstate(invalid="ignore"):
-            grip = np.where(fine, np.max(np.abs(f[0] / n_new), axis=0) / tangent, grip)
+            grip[on] = np.max(np.abs(f[0][:, on] / normal[:, on]), axis=0) / tangent[on]
     best = np.where(lost, np.inf, best)
     # a branch that ends where friction nearly carries the lateral load has shed a contact
+    roller = Roller(loads, law, rows)
     light = np.any(normal < 0.2 * roller.load, axis=0)
     lifted |= np.where(lost, ((grip > 0.5) | light) & (loads.axial_force[rows] != 0), ~roller.wedged(normal, f))
     return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing

@@ -21,10 +21,7 @@ def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance:
     w, side = np.clip(np.zeros(m), w_low, w_high), np.zeros(m)
     active = np.arange(m)
     for _ in range(sweeps):
-        # the normal forces follow the slip; twice when the answer counts
-        for _ in range(3 if fine else 1):
-            f = roller.contact(roller.shift(w[active], active), normal[:, active], fine, active)
-            normal[:, active] = roller.floored(roller.normal_forces(f[0] / normal[:, active], active), active)
+        f = _following(roller, w, normal, fine, active)
         t = roller.torque(f, active)
         up = t > 0
         w_low[active] = np.where(up, w[active], w_low[active])
@@ -39,10 +36,28 @@ def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance:
         new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
         moved = np.abs(new - w[active])
         w[active] = new
-        active = active[(moved > tolerance) & (hi - lo > tolerance)]
+        # where the balance holds, what is left is for Newton's method
+        unmet = np.abs(t) > (0.1 * roller.goal if fine else 0.0) * roller.torque_scale[active]
+        active = active[(moved > tolerance) & (hi - lo > tolerance) & unmet]
         if active.size == 0:
             break
     return w, normal
+
+
+def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.ndarray:
+    """Contact forces (3, 2, m) of `rows` at the slip w, to which their normal forces follow, thrice if `fine`."""
+    f = np.empty((3, 2, rows.size))
+    go = np.arange(rows.size)
+    for _ in range(3 if fine else 1):
+        k = rows[go]
+        f[:, :, go] = roller.contact(roller.shift(w[k], k), normal[:, k], fine, k)
+        new = roller.floored(roller.normal_forces(f[0][:, go] / normal[:, k], k), k)
+        moved = np.max(np.abs(new - normal[:, k]), axis=0)
+        normal[:, k] = new
+        go = go[~(moved <= 0.1 * roller.goal * roller.load[k])]
+        if go.size == 0:
+            break
+    return f
 
 
 def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:

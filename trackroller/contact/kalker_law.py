@@ -6,8 +6,12 @@ import dataclasses
 
 import numpy as np
 
+from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
 from trackroller.contact.kalker import Creepage, KalkerSettings, PatchSolution, joined, solve_patch
+from trackroller.contact.normal_patch import GridPatch
+
+NEAR = 0.3  # change of creepage over the slip in the patch
 
 
 class KalkerLaw:
@@ -16,7 +20,8 @@ class KalkerLaw:
     Parameters
     ----------
     elastic : combined constants of n rollers, arrays (n,)
-    settings : discretisation of the fine law; the coarse one has half the elements and no extrapolation
+    settings : discretisation of the fine law; the rough one is the table of the exact theory, beyond its reach half
+        the elements without extrapolation
     travel_speed : of n rollers [mm/s], (n,); that of the settings if not given
     curve_radius : of the guide [mm], (n,), to count its turning in the spin, see `Creepage.of_slip`
 
@@ -29,12 +34,30 @@ class KalkerLaw:
         self.elastic, self.settings = elastic, settings or KalkerSettings()
         self.travel = None if travel_speed is None else np.asarray(travel_speed, float)
         self.curve = None if curve_radius is None else np.asarray(curve_radius, float)
-        self._starts: dict[tuple[int, int, bool], np.ndarray] = {}
+        self._starts: dict[tuple[int, int, bool], tuple[np.ndarray, float]] = {}  # tractions and creepage
         self._states: dict[tuple[int, int], tuple[float, bool]] = {}
         self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
 
     def __call__(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> Resultants:
-        return self.solve(ellipse, slip, friction, rows, fine).resultants
+        """Resultants on the roller, shape (n,); rough ones where not `fine`: the table's, or of half the elements."""
+        if fine or isinstance(ellipse, GridPatch) or self.settings.profile_slip or not self._constant:
+            return self.solve(ellipse, slip, friction, rows, fine).resultants
+        creep = self._creepage(slip, rows)
+        found = table.solve_patch(ellipse, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))
+        rest, r = np.flatnonzero(~found.known), found.resultants
+        if not rest.size:
+            return r
+        forces = np.stack([r.lateral_force, r.driving_force, r.spin_moment])
+        other = self.solve(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest], False).resultants
+        forces[:, rest] = other.lateral_force, other.driving_force, other.spin_moment
+        return Resultants(*forces)
+
+    @property
+    def _constant(self) -> bool:
+        return self.settings.law is None or self.settings.law.is_constant
+
+    def _creepage(self, slip: Slip, rows: np.ndarray) -> Creepage:
+        return Creepage.of_slip(slip, self.settings.profile_slip, None if self.curve is None else self.curve[rows])
 
     def solve(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> PatchSolution:
         """Solution of the patches of the rollers `rows`."""
@@ -42,9 +65,9 @@ class KalkerLaw:
         if not fine:
             settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
         keys = [(int(row), int(sine < 0), fine) for row, sine in zip(rows, slip.sine, strict=True)]
-        known = np.array([key in self._starts for key in keys], bool)
-        creep = Creepage.of_slip(slip, settings.profile_slip, None if self.curve is None else self.curve[rows])
+        creep = self._creepage(slip, rows)
         friction = np.broadcast_to(np.asarray(friction, float), len(rows))
+        known = self._near(keys, creep, ellipse)
 
         def part(pick, start):
             where = rows[pick]
@@ -55,15 +78,23 @@ class KalkerLaw:
         old, new = np.flatnonzero(known), np.flatnonzero(~known)
         parts = []
         if old.size:
-            parts.append(part(old, np.stack([self._starts[keys[i]] for i in old]).astype(float)))
+            parts.append(part(old, np.stack([self._starts[keys[i]][0] for i in old]).astype(float)))
         if new.size or not old.size:
             parts.append(part(new, None))
         solution = parts[0] if len(parts) == 1 else joined(parts, np.argsort(np.concatenate([old, new])))
-        self._starts.update(zip(keys, solution.traction.astype(np.float32), strict=True))
+        kept = zip(solution.traction.astype(np.float32), creep.longitudinal, strict=True)
+        self._starts.update(zip(keys, kept, strict=True))
         if fine:
             for key, value, good in zip(keys, solution.residual, solution.converged, strict=True):
                 self._states[key[:2]] = (float(value), bool(good))
         return solution
+
+    def _near(self, keys, creep: Creepage, ellipse: Ellipse) -> np.ndarray:
+        """Is there a last solution whose creepage differs little from this one? Else the coarse grid starts better."""
+        last = np.array([self._starts[key][1] if key in self._starts else np.inf for key in keys], float)
+        size = np.sqrt(ellipse.semi_axis_lateral * ellipse.semi_axis_rolling)
+        with np.errstate(invalid="ignore"):
+            return np.abs(creep.longitudinal - last) <= NEAR * (np.abs(creep.longitudinal) + np.abs(creep.spin) * size)
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Of the last fine solution of n rollers: the larger residual of both patches, and if both converged, (n,)."""
