@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 from reference_cases import DATA
 
 import trackroller as tr
@@ -221,3 +222,13 @@ def test_time_of_a_study_counts_each_contact_model():
     each = [rate(both.options | {"contact_model": name}) for name in ("sliding", "kalker")]
     assert study_rate(both) == pytest.approx(2 / (1 / each[0] + 1 / each[1]))
     assert study_rate(parse_study(STUDY)) == each[1]
+
+
+def test_figures_hold_the_most_exact_of_several_contact_models():
+    from trackroller.plots.study_view import StudyView
+
+    groups = ("forces", "peak_stress", "life")
+    made = [tr.solve(tr.Case(), outputs=groups, contact_model=name) for name in ("sliding", "fastsim")]
+    ds = xr.concat(made, dim=xr.Variable("contact_model", ["sliding", "fastsim"]), coords="minimal", compat="override",
+                   combine_attrs="override")  # fmt: skip
+    assert StudyView.of(ds).held_level("contact_model") == "fastsim"

@@ -29,6 +29,7 @@ CONTACT_RESULTS = (
 )
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles")
 PLAIN_RESULTS = ("regime", "validity", "converged", "roller_life_hours", "guide_life_hours", "slip", "stopped")
+EXACTNESS = ("kalker", "auto", "fastsim", "sliding")  # contact models, the most exact first
 SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lying on the surface
 
 
@@ -89,8 +90,13 @@ class StudyView:
         return (name,) if name in self.factors else self.derived.get(name, ())
 
     def held_level(self, name: str) -> Any:
-        """The level at which a factor is held when others are shown: that of the base case, else the middle."""
+        """The level at which a factor is held when others are shown: that of the base case, else the middle.
+
+        Of contact models the most exact one.
+        """
         levels = self.levels(name)
+        if name == "contact_model":
+            return next((model for model in EXACTNESS if model in levels), levels[0])
         base = self.base.get(name)
         if base is not None and base in levels:
             return base
