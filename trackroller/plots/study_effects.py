@@ -13,12 +13,14 @@ from trackroller.plots import style
 from trackroller.plots.study_view import StudyView
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 MAX_ROWS = 9  # levels of one factor shown; more are put together in bins
+Effect = tuple[str, list[str], np.ndarray]  # factor, its levels, mean log10 life at each
 
 
-def effects(view: StudyView) -> list[tuple[str, list[str], np.ndarray]]:
+def effects(view: StudyView) -> list[Effect]:
     """Mean log10 life at each level (or bin) of each factor, the most influential factor first.
 
     Averages are over all cases with a life, whatever the other factors; an unlimited life counts as the
@@ -78,6 +80,28 @@ def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     heights = [sum(1 + 0.7 * label.count("\n") for label in labels) + 1.6 for _, labels, _ in found]
     figure = style.new_figure(26 + 3.4 * sum(heights))
     axes = figure.subplots()
+    _effect_lines(axes, view, found)
+    raw = view.table[view.life[0]].to_numpy(dtype=float)
+    life, good = _countable(raw)
+    axes.axvline(10.0 ** np.log10(life[good]).mean(), color="0.4", linewidth=0.8, linestyle="--", zorder=0)
+    axes.set_xscale("log")
+    style.log_ticks(axes.xaxis, *axes.get_xlim())
+    figure.supxlabel(style.with_unit(f"Geometric mean of the {words[0].lower()}{words[1:]}", unit), fontsize=7.5)
+    missing, endless = int((~good).sum()), int(np.isposinf(raw).sum())
+    note = f" {missing} of {len(life)} cases have no life and are left out." if missing else ""
+    if endless:
+        note += f" {endless} unlimited lives count as the longest finite one, {style.number(life[good].max())} {unit}."
+    style.head(figure, "Main effect of each factor on life", f"Dashed: mean of all cases.{note}")
+    style.finish(figure)
+    caption = (
+        f"Geometric mean of the life ({unit}) at each level of each factor, averaged over all other factors, "
+        f"the most influential factor on top.{note}"
+    )
+    return figure, style.FigureInfo("main_effects", caption, _most_and_least(found))
+
+
+def _effect_lines(axes: Axes, view: StudyView, found: list[Effect]) -> None:
+    """A line a factor, one below the other, each level on a row of its own."""
     colours, ticks, names, place = style.palette(len(found)), [], [], 0.0
     for i, (factor, labels, means) in enumerate(found):
         axes.annotate(
@@ -102,33 +126,18 @@ def main_effects(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
                   linestyle=line)  # fmt: skip
         ticks += spots
         names += labels
-    raw = view.table[view.life[0]].to_numpy(dtype=float)
-    life, good = _countable(raw)
-    axes.axvline(10.0 ** np.log10(life[good]).mean(), color="0.4", linewidth=0.8, linestyle="--", zorder=0)
-    axes.set_xscale("log")
     axes.set_yticks(ticks, names)
     axes.set_ylim(place - 0.6, -1.0)
-    style.log_ticks(axes.xaxis, *axes.get_xlim())
-    figure.supxlabel(style.with_unit(f"Geometric mean of the {words[0].lower()}{words[1:]}", unit), fontsize=7.5)
-    missing, endless = int((~good).sum()), int(np.isposinf(raw).sum())
-    note = f" {missing} of {len(life)} cases have no life and are left out." if missing else ""
-    if endless:
-        note += f" {endless} unlimited lives count as the longest finite one, {style.number(life[good].max())} {unit}."
-    style.head(figure, "Main effect of each factor on life", f"Dashed: mean of all cases.{note}")
-    style.finish(figure)
-    (name, _, means), swing = found[0], 10 ** float(np.nanmax(found[0][2]) - np.nanmin(found[0][2]))
-    least = found[-1]
-    sentence = (
-        f"{style.capital(style.long_name(name))} moves the mean life most, by a factor of {style.rounded(swing, 3)}"
-    )
+
+
+def _most_and_least(found: list[Effect]) -> str:
+    """Which factor moves the mean life most, and which least."""
+    swings = [10 ** float(np.nanmax(means) - np.nanmin(means)) for _, _, means in found]
+    name = style.capital(style.long_name(found[0][0]))
+    sentence = f"{name} moves the mean life most, by a factor of {style.rounded(swings[0], 3)}"
     if len(found) > 1:
-        low = 10 ** float(np.nanmax(least[2]) - np.nanmin(least[2]))
-        sentence += f"; {style.long_name(least[0])} least, by a factor of {style.rounded(low, 3)}"
-    caption = (
-        f"Geometric mean of the life ({unit}) at each level of each factor, averaged over all other factors, "
-        f"the most influential factor on top.{note}"
-    )
-    return figure, style.FigureInfo("main_effects", caption, sentence + ".")
+        sentence += f"; {style.long_name(found[-1][0])} least, by a factor of {style.rounded(swings[-1], 3)}"
+    return sentence + "."
 
 
 def _heading(name: str, labels: list[str]) -> str:

@@ -113,6 +113,12 @@ def hollow_entry(rows: pd.DataFrame) -> list[tuple[str, dict[str, Any]]]:
     return [(f"hollow: {' or '.join(seen)}", look)] if seen else []
 
 
+def drive_entries(drives: list[Any]) -> list[tuple[str, dict[str, Any]]]:
+    """Legend entries of motor forces, told apart by dashes."""
+    return [(style.level_text("motor_force", d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
+            for j, d in enumerate(drives)]  # fmt: skip
+
+
 def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Life over the friction coefficient, a line a material pair, by drive."""
     x = "friction_coefficient"
@@ -140,12 +146,13 @@ def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | 
     extra = len(pairs) + 2 + (0 if split else len(drives))
     figure = style.new_figure(14 + 4 * extra + (38 * len(panels) if split else 55))
     grid = figure.subplots(len(panels), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    several = drive is not None and not split  # drives in one panel are told apart by dashes
     for axes, shown in zip(grid, panels, strict=True):
         for i, p in enumerate(pairs):
             for j, d in enumerate([shown] if split else drives):
                 part = rows if p is None else rows[rows[pair] == p]
                 part = part if d is None else part[part[drive] == d]
-                look = looks[i] if split or not drive else {**looks[i], "linestyle": style.LINES[j % 6]}
+                look = {**looks[i], "linestyle": style.LINES[j % 6]} if several else looks[i]
                 series(axes, part, x, "_life", look, view.grid)
         axes.set_yscale("log")
         style.log_ticks(axes.yaxis, *axes.get_ylim())
@@ -155,19 +162,12 @@ def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | 
     grid[-1].set_xlabel(style.factor_label(x))
     for axes in grid:
         axes.set_ylabel(style.with_unit("Life" if split else words, unit))
-    entries = (
-        [
-            (style.level_text(pair, p), {**k, "linestyle": k["linestyle"] if split or not drive else "none"})
-            for p, k in zip(pairs, looks, strict=True)
-        ]
-        if pair
-        else []
-    )
-    if drive and not split:
-        entries += [
-            (style.level_text(drive, d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
-            for j, d in enumerate(drives)
-        ]
+    entries: list[tuple[str, dict[str, Any]]] = []
+    if pair:
+        plain = {"linestyle": "none"} if several else {}
+        entries += [(style.level_text(pair, p), look | plain) for p, look in zip(pairs, looks, strict=True)]
+    if several:
+        entries += drive_entries(drives)
     legend(figure, entries + hollow_entry(rows))
     style.head(figure, f"{words} against friction", held)
     style.finish(figure)

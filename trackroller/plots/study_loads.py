@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
-from trackroller.plots.study_life import legend, marks
+from trackroller.plots.study_life import drive_entries, legend, marks
 from trackroller.plots.study_view import StudyView
 
 if TYPE_CHECKING:
@@ -168,22 +168,12 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
     _shade_lift_off(panels, rows, x, view.grid)
     panels[-1].set_xlabel(style.factor_label(x))
     entries: list[tuple[str, dict[str, Any]]] = [
-        (
-            f"contact {c}",
-            {
-                "color": colours[c - 1],
-                "marker": "os"[c - 1],
-                "linestyle": "none",
-                "markerfacecolor": colours[0] if c == 1 else "none",
-            },
-        )
+        (f"contact {c}", {"color": colours[c - 1], "marker": "os"[c - 1], "linestyle": "none",
+                          "markerfacecolor": colours[0] if c == 1 else "none"})
         for c in (1, 2)
-    ]
+    ]  # fmt: skip
     if drive and view.grid:
-        entries += [
-            (style.level_text(drive, d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
-            for j, d in enumerate(drives)
-        ]
+        entries += drive_entries(drives)
     legend(figure, entries, columns=2)
     style.head(figure, "Forces of both contacts against axial force", held)
     style.finish(figure)

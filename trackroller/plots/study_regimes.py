@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -91,6 +91,8 @@ def _regime_shares(axes: Axes, view: StudyView, pair: tuple[str, str]) -> None:
     keys = [_binned(view, f) for f in pair]
     texts = [_cell_names(view, f) for f in pair]
     regime = view.table["regime"].to_numpy()
+    both = zip(style.REGIME_COLOURS, style.REGIME_HATCHES, strict=True)
+    looks: list[dict[str, Any]] = [{"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both]
     gaps = [0.04 if len(t) <= 12 else 0.0 for t in texts]
     width, thin = 1 - 2 * gaps[0], 0.3 if all(gaps) else 0.0
     for i in range(len(texts[0])):
@@ -100,17 +102,8 @@ def _regime_shares(axes: Axes, view: StudyView, pair: tuple[str, str]) -> None:
             for code in range(4):
                 share = float((here == code).mean()) if here.size else 0.0
                 if share > 0:
-                    axes.add_patch(
-                        Rectangle(
-                            (left, j + gaps[1]),
-                            width * share,
-                            1 - 2 * gaps[1],
-                            facecolor=style.REGIME_COLOURS[code],
-                            hatch=style.REGIME_HATCHES[code],
-                            edgecolor="0.25",
-                            linewidth=thin,
-                        )
-                    )
+                    cell = Rectangle((left, j + gaps[1]), width * share, 1 - 2 * gaps[1], linewidth=thin, **looks[code])
+                    axes.add_patch(cell)
                 left += width * share
     axes.set_xlim(0, len(texts[0]))
     axes.set_ylim(0, len(texts[1]))
@@ -121,20 +114,8 @@ def _regime_shares(axes: Axes, view: StudyView, pair: tuple[str, str]) -> None:
     if sum(map(len, texts[0])) > 42:
         axes.tick_params(axis="x", rotation=35)
     seen = [c for c in range(4) if (regime == c).any()]
-    axes.figure.legend(
-        handles=[
-            Patch(
-                facecolor=style.REGIME_COLOURS[c],
-                hatch=style.REGIME_HATCHES[c],
-                edgecolor="0.25",
-                label=style.REGIME_LABELS[c],
-            )
-            for c in seen
-        ],
-        loc="outside lower left",
-        ncols=4,
-        handletextpad=0.5,
-    )
+    handles = [Patch(label=style.REGIME_LABELS[c], **looks[c]) for c in seen]
+    axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
 
 
 def _cell_names(view: StudyView, name: str) -> list[str]:

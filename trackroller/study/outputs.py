@@ -163,6 +163,40 @@ def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
     return np.where(bad, REGIMES.index("failed"), np.where(bad, 0, values)).astype(int)
 
 
+def _usable(
+    ds: xr.Dataset, dims: tuple[str, ...], regime: np.ndarray, keep: tuple[str, ...]
+) -> tuple[np.ndarray, dict[str, int]]:
+    """Rows of the regimes to keep that converged, and how many others there are for each reason."""
+    for name in keep:
+        if name not in REGIMES:
+            raise unknown_name("analysis.keep", name, REGIMES)
+    usable = np.isin(regime, [REGIMES.index(name) for name in keep])
+    lost = {_REGIME_WORDS[n]: int((regime == i).sum()) for i, n in enumerate(REGIMES)
+            if n not in keep and (regime == i).any()}  # fmt: skip
+    converged = flat(ds, "converged", dims) != 0 if "converged" in ds else np.ones(len(regime), dtype=bool)
+    if count := int((usable & ~converged).sum()):
+        lost["not converged"] = count
+    return usable & converged, lost
+
+
+def _countable(
+    values: np.ndarray, usable: np.ndarray, stopped: np.ndarray, unlimited: bool, scale: str
+) -> tuple[np.ndarray, dict[str, int]]:
+    """Values on their scale, NaN where they cannot be used, and how many usable rows are lost for each reason."""
+    values = np.where(usable, values, np.nan)
+    empty = usable & np.isnan(values)
+    why = {
+        "unlimited": 0 if unlimited else int((usable & np.isinf(values)).sum()),
+        "stopped by stop_if": int((empty & stopped).sum()),
+        "undefined": int((empty & ~stopped).sum()),
+    }
+    values = np.where(np.isfinite(values) | (unlimited & np.isposinf(values)), values, np.nan)
+    if scale == "log10":
+        why["not positive"] = int((values <= 0).sum())
+        values = np.log10(np.where(values > 0, values, np.nan))
+    return values, {reason: count for reason, count in why.items() if count}
+
+
 def outputs(
     ds: xr.Dataset,
     factors: Iterable[str],
@@ -195,38 +229,17 @@ def outputs(
     if not dims:
         raise InputError("study", list(ds.sizes), "a dimension `case`, or one dimension a factor")
     keep = tuple(keep)
-    for name in keep:
-        if name not in REGIMES:
-            raise unknown_name("analysis.keep", name, REGIMES)
     regime = regimes(ds, dims)
-    usable = np.isin(regime, [REGIMES.index(name) for name in keep])
-    lost = {_REGIME_WORDS[n]: int((regime == i).sum()) for i, n in enumerate(REGIMES)
-            if n not in keep and (regime == i).any()}  # fmt: skip
-    converged = flat(ds, "converged", dims) != 0 if "converged" in ds else np.ones(len(regime), dtype=bool)
-    if count := int((usable & ~converged).sum()):
-        lost["not converged"] = count
-    usable &= converged
+    usable, lost = _usable(ds, dims, regime, keep)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
     options, natural = _available(ds, factors, dims), set(natural)
     found = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
         values, units, words, usual = _raw(ds, name, dims, options)
         told = scale if isinstance(scale, str) else scale.get(name, "")
-        excluded, on = dict(lost), "natural" if name in natural else told or usual
-        values = np.where(usable, values, np.nan)
-        if not unlimited and (count := int((usable & np.isinf(values)).sum())):
-            excluded["unlimited"] = count
-        empty = usable & np.isnan(values)
-        if count := int((empty & stopped).sum()):
-            excluded["stopped by stop_if"] = count
-        if count := int((empty & ~stopped).sum()):
-            excluded["undefined"] = count
-        values = np.where(np.isfinite(values) | (unlimited & np.isposinf(values)), values, np.nan)
-        if on == "log10":
-            if count := int((values <= 0).sum()):
-                excluded["not positive"] = count
-            values = np.log10(np.where(values > 0, values, np.nan))
-        found.append(Output(name, values, units, words, on, excluded))
+        on = "natural" if name in natural else told or usual
+        values, why = _countable(values, usable, stopped, unlimited, on)
+        found.append(Output(name, values, units, words, on, lost | why))
     for i, name in enumerate(REGIMES):
         if i and (regime == i).any() and not unlimited:
             words = f"occurrence of {_REGIME_WORDS[name].replace('failed', 'failure')}"
