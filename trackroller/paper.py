@@ -118,19 +118,3 @@ def results() -> dict[str, Any]:
 def life_ratio(of: float, to: float, exponent: float) -> float:
     """Life at the stress `of` over that at the stress `to` on a Woehler line of this exponent."""
     return (to / of) ** exponent
-
-
-def write_results(folder: Path) -> None:
-    """`paper.json`, `figures/` and `paper.html` in `folder`; each whole or not at all."""
-    from trackroller.pages import page_html
-    from trackroller.paper_page import blocks
-    from trackroller.plots.paper import draw_all
-    from trackroller.study.files import write_whole
-
-    found = results()
-    text = json.dumps(found, indent=1) + "\n"
-    folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / "paper.json", lambda beside: beside.write_text(text, encoding="utf-8"))
-    infos = [vars(info) for info in draw_all(folder / "figures")]
-    page = page_html(blocks(found, infos), folder / "figures", "The published example, computed anew")
-    write_whole(folder / "paper.html", lambda beside: beside.write_text(page, encoding="utf-8"))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
-from trackroller.pages import Block
-from trackroller.paper import reference
+from trackroller.pages import Block, page_html
+from trackroller.paper import reference, results
 from trackroller.parameters import PARAMETERS
 
 EXPONENT = 8.966  # ln(N_k/N_Rm)/ln(R_m/sigma_D) of 1.7225: life goes with stress to this power
@@ -162,3 +164,17 @@ def _table_2(found: dict[str, Any]) -> list[Block]:
     return [("table", (("setting", "discretisation", "time", "σ_DEH,max of contact 1 [MPa]"), rows)),
             ("p", "Free, μ = 0.3. Ours is the CPU time of the whole case, both contacts and bodies, life included. "
                   "More in [tradeoff.md](tradeoff.md).")]  # fmt: skip
+
+
+def write_results(folder: Path) -> None:
+    """`paper.json`, `figures/` and `paper.html` in `folder`; each whole or not at all."""
+    from trackroller.plots.paper import draw_all
+    from trackroller.study.files import write_whole
+
+    found = results()
+    text = json.dumps(found, indent=1) + "\n"
+    folder.mkdir(parents=True, exist_ok=True)
+    write_whole(folder / "paper.json", lambda beside: beside.write_text(text, encoding="utf-8"))
+    infos = [vars(info) for info in draw_all(folder / "figures")]
+    page = page_html(blocks(found, infos), folder / "figures", "The published example, computed anew")
+    write_whole(folder / "paper.html", lambda beside: beside.write_text(page, encoding="utf-8"))

@@ -145,7 +145,7 @@ def error(found: xr.Dataset, tolerance: float) -> Figure:
         for column, model, part in _curves(found[[name]]):
             line = _line(axes[row, column], 100 * part.clip(6e-4), name, model)
             handles[f"{model} against kalker"] = line
-    words = f"Dotted: {style.number(100 * tolerance)} %. The worse contact; rolling only."
+    words = f"Dotted: {style.number(100 * tolerance)} %; at the foot: 0.06 % or less. The worse contact; rolling only."
     return _finish(figure, handles, "What the cheaper models miss", words, 2)
 
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from trackroller.paper import write_results
+from trackroller.paper_page import write_results
 from trackroller.study.workflow import log_to
 
 log_to(snakemake.log[0])
