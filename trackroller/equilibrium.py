@@ -21,9 +21,9 @@ from trackroller.equilibrium_roller import LAST_SLIP, ContactLaw, Loads, Roller
 
 __all__ = ["FAILED", "FULL_SLIP", "LIFT_OFF", "ROLLING", "ContactLaw", "Equilibrium", "Loads", "solve_equilibrium"]
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
-# largest residual of what is called a solution; where friction falls the forces of a discretised patch jump by
-# little as elements change between stick and slip, and the balance may lie within such a jump
-SOLVED, SOLVED_FALLING = 1e-6, 1e-4
+# largest residual of what is called a solution; where friction falls steeply a patch has many states of stick and slip,
+# its forces jump between them, and the balance may lie within such a jump
+SOLVED, SOLVED_FALLING = 1e-6, 1e-2
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,25 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
     return Equilibrium(regime, converged, residual, jamming, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
 
 
+@dataclass
+class _Found:
+    """What is known of m rolling candidates: residual (m,), slip w (m,), normal (2, m) and contact forces (3, 2, m)."""
+
+    best: np.ndarray
+    w: np.ndarray
+    normal: np.ndarray
+    forces: np.ndarray
+
+    def put(self, rows, found) -> None:
+        self.best[rows], self.w[rows], self.normal[:, rows], self.forces[:, :, rows] = found
+
+    def put_better(self, rows, found, converged: float) -> None:
+        """Keeps what has the smaller residual; among solutions the later one."""
+        best = self.best[rows]
+        take = ~((found[0] > best) & (found[0] > converged))
+        self.put(rows[take], [v[..., take] for v in found])
+
+
 def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, forces) -> np.ndarray:
     """Fills the rolling rows; returns those whose torque cannot be transmitted."""
     friction = np.where(loads.friction[rows] > 0, loads.friction[rows], 1e-12)
@@ -92,52 +111,21 @@ def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, f
     full[rows] = friction
     rolled = replace(loads, friction=full)
     roller = Roller(rolled, law, rows)
-    whole = w_low, w_high = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
-    unsure = np.zeros(rows.size, bool)
-    # locked, the friction along the track is complete and there is no other, as in full slip
-    complete = friction * np.sum(roller.normal_forces(np.zeros((2, rows.size))), axis=0)
-    beyond = roller.motor_force > complete
-    drives = np.flatnonzero(roller.motor_force < 0)
-    spins = Roller(rolled, law, rows[drives])
-    if loads.falling:
-        w_low, w_high, beyond, unsure = first_balance(roller, w_low, w_high)
-        beyond &= ~unsure
-    else:
-        torque = spins.torque(_forces_at(spins, w_low[drives]))
-        # a law without an answer for this patch leaves what friction can give at most
-        beyond[drives] = np.where(np.isnan(torque), -spins.motor_force > complete[drives], torque < 0)
+    whole = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
+    low, high, beyond, unsure = _transmissible(rolled, law, roller, *whole)
     go = np.flatnonzero(~beyond)
     if go.size == 0:
         return rows
-    roller = Roller(rolled, law, rows[go])
-    low, high = w_low[go], w_high[go]
-    w, n = bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
-    best, w, n, f = newton_polish(roller, w, n, low, high)
-    bad = np.flatnonzero(~(best <= loads.converged) | unsure[go])
-    if bad.size and loads.falling:
-        *found, low[bad], high[bad], none = balance_again(rolled, law, rows[go][bad], *(v[go][bad] for v in whole))
-        best[bad], w[bad], n[:, bad], f[:, :, bad] = found
-        beyond[go[bad[none]]] = True
-    elif bad.size:  # slow and sure
-        again = Roller(rolled, law, rows[go][bad])
-        w2, n2 = bracketed(again, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
-        best[bad], w[bad], n[:, bad], f[:, :, bad] = newton_polish(again, w2, n2, low[bad], high[bad])
-    slides = beyond[go]
-    lift = roller.lifts(n) & ~slides
-    bad = np.flatnonzero(~((best <= loads.converged) & roller.wedged(n, f)) & ~lift & ~slides)
-    if loads.falling:  # far from self-locking there is one branch only: what failed has no balance
-        bad = bad[
-            (friction[go][bad] >= 0.5 * np.tan(loads.contact_angle[rows[go][bad]])) | (best[bad] <= SOLVED_FALLING)
-        ]
-    if bad.size:
-        *found, lift[bad] = follow_friction(rolled, law, rows[go][bad], low[bad], high[bad])
-        take = ~((found[0] > best[bad]) & (best[bad] > loads.converged) & loads.falling)
-        b = bad[take]
-        best[b], w[b], n[:, b], f[:, :, b] = (v[..., take] for v in found)
+    k, low, high = rows[go], low[go], high[go]
+    whole = whole[0][go], whole[1][go]
+    found, slides = _balance(rolled, law, k, low, high, whole, unsure[go])
+    beyond[go] = slides
+    roller = Roller(rolled, law, k)
+    lift = _settle_branch(rolled, law, roller, found, low, high, slides)
+    best, w, n, f = found.best, found.w, found.normal, found.forces
     # without a solution, what holds without friction decides
     solved = best <= (SOLVED_FALLING if loads.falling else SOLVED)
     lift |= ~solved & ~slides & np.any(roller.normal_forces(np.zeros((2, go.size))) <= 0, axis=0)
-    k = rows[go]
     regime[k] = np.where(lift, LIFT_OFF, np.where(solved, ROLLING, FAILED))
     jamming[k] = roller.grips(n, f) & (loads.friction[k] > 0) & ~slides
     up = np.flatnonzero(lift & (loads.friction[k] > 0))
@@ -147,6 +135,65 @@ def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, f
     shift[k], normal[:, k] = roller.shift(w), n
     forces[:, :, k] = np.where(loads.friction[k] > 0, f, 0.0)
     return rows[beyond]
+
+
+def _transmissible(rolled, law, roller, w_low, w_high):
+    """Bounds of the slip (m,), whose torque no slip can transmit (m,), and for which the rough law cannot tell (m,)."""
+    if rolled.falling:
+        low, high, beyond, unsure = first_balance(roller, w_low, w_high)
+        return low, high, beyond & ~unsure, unsure
+    # locked, the friction along the track is complete and there is no other, as in full slip
+    complete = roller.friction * np.sum(roller.normal_forces(np.zeros((2, roller.rows.size))), axis=0)
+    beyond = roller.motor_force > complete
+    drives = np.flatnonzero(roller.motor_force < 0)
+    spins = Roller(rolled, law, roller.rows[drives])
+    torque = spins.torque(_forces_at(spins, w_low[drives]))
+    # a law without an answer for this patch leaves what friction can give at most
+    beyond[drives] = np.where(np.isnan(torque), -spins.motor_force > complete[drives], torque < 0)
+    return w_low, w_high, beyond, np.zeros(beyond.size, bool)
+
+
+def _balance(loads, law, rows, low, high, whole, unsure) -> tuple[_Found, np.ndarray]:
+    """Roots between `low` and `high`, and which rollers turn out to transmit too little (m,).
+
+    Those missed at first are searched with the fine law; where friction falls, over the `whole` range, and `low` and
+    `high` are put where that search ended.
+    """
+    roller = Roller(loads, law, rows)
+    w, n = bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
+    found = _Found(*newton_polish(roller, w, n, low, high))
+    slides = np.zeros(rows.size, bool)
+    bad = np.flatnonzero(~(found.best <= loads.converged) | unsure)
+    if bad.size and loads.falling:
+        *again, low[bad], high[bad], none = balance_again(loads, law, rows[bad], *(v[bad] for v in whole))
+        found.best[bad[unsure[bad] | none]] = np.inf
+        found.put_better(bad, again, loads.converged)
+        slides[bad[none]] = True
+    elif bad.size:  # slow and sure
+        roller = Roller(loads, law, rows[bad])
+        w, n = bracketed(roller, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
+        found.put(bad, newton_polish(roller, w, n, low[bad], high[bad]))
+    return found, slides
+
+
+def _settle_branch(loads, law, roller, found: _Found, low, high, slides) -> np.ndarray:
+    """Near self-locking puts the branch that loading reaches in place of what failed; True where it lifts off (m,)."""
+    lift = roller.lifts(found.normal) & ~slides
+    wedged = roller.wedged(found.normal, found.forces)
+    bad = np.flatnonzero(~((found.best <= loads.converged) & wedged) & ~lift & ~slides)
+    if loads.falling:
+        # far from self-locking there is one branch only; and what lies within a jump of the forces lies on it
+        near = roller.friction >= 0.5 * np.tan(loads.contact_angle[roller.rows])
+        bad = bad[near[bad] & ~((found.best[bad] <= SOLVED_FALLING) & wedged[bad])]
+    if bad.size:
+        *again, lift[bad] = follow_friction(loads, law, roller.rows[bad], low[bad], high[bad])
+        if loads.falling:
+            best = np.where(found.best[bad] > loads.converged, found.best[bad], np.inf)
+            take = ~(again[0] > best)
+            found.put(bad[take], [v[..., take] for v in again])
+        else:
+            found.put(bad, again)
+    return lift
 
 
 def _forces_at(roller: Roller, w) -> np.ndarray:

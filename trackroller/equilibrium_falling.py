@@ -17,6 +17,7 @@ from trackroller.equilibrium_roller import Roller
 POINTS = 24  # of the search away from no slip
 FIRST, LAST = -1.5, 3.5  # decades of slip over its scale between which it looks
 GOLDEN, REFINEMENTS = 0.381966011250105, 12
+SWEEPS = 16  # of the fine law; where its forces jump, more lead nowhere
 NEAR = 0.1  # of the torque scale by which the coarse law may miss a balance that the fine one has
 
 
@@ -67,7 +68,7 @@ def balance_again(loads, law, rows: np.ndarray, w_low: np.ndarray, w_high: np.nd
     """
     roller = Roller(loads, law, rows)
     low, high, beyond, _ = first_balance(roller, w_low, w_high, fine=True)
-    w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=40, tolerance=1e-9)
+    w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=SWEEPS, tolerance=1e-6)
     # the normal forces lagged behind the search, so that the balance may lie a little beside its bounds
     room = 0.5 * (high - low)
     low, high = np.maximum(low - room, w_low), np.minimum(high + room, w_high)
