@@ -11,6 +11,7 @@ mu F_N sqrt(a b), r_Delta0 over a, the rest over itself; and how often a peak is
 from __future__ import annotations
 
 import argparse
+import itertools
 import time
 
 import numpy as np
@@ -65,7 +66,7 @@ def main() -> None:
     inside = ((hertz.validity.values | grid.validity.values) & CONFORMAL) == 0
     ratio = (hertz.semi_axis_lateral / hertz.semi_axis_rolling).values
     covered = np.abs(found["peak_stress"]) <= (grid.error_estimate + hertz.error_estimate).values
-    for low, high in zip(BINS[:-1], BINS[1:], strict=True):
+    for low, high in itertools.pairwise(BINS):
         chosen = inside[:, None] & (ratio >= low) & (ratio < high) & np.isfinite(grid.normal_force.values)
         if not chosen.any():
             continue

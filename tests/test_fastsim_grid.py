@@ -54,7 +54,9 @@ def test_the_pressure_of_an_ellipse_gives_the_ellipse_the_better_the_more_elemen
         found = fastsim_grid.solve_grid(grid, slip, MU, STEEL, fastsim.FastsimSettings(steps=6 * n // 5))
         scale = 0.3 * 115 * np.array([1, 1, math.sqrt(e.semi_axis_lateral[0] * e.semi_axis_rolling[0])])
         errors.append(np.abs((numbers(found) - numbers(exact)) / scale).max())
-        assert found.friction_energy_per_distance == pytest.approx(exact.friction_energy_per_distance, rel=2 / n**2 + 1e-3)
+        assert found.friction_energy_per_distance == pytest.approx(
+            exact.friction_energy_per_distance, rel=2 / n**2 + 1e-3
+        )
     assert errors[2] < 1.2e-3 and errors[2] < 0.4 * errors[0]
     parts = fastsim_grid.equivalent_ellipses(grid)
     np.testing.assert_allclose([parts.a[0], parts.b[0]], [e.semi_axis_lateral[0], e.semi_axis_rolling[0]], rtol=1e-3)
@@ -112,9 +114,9 @@ def test_slivers_and_nothing_at_all():
 
 
 def worn_points():
-    """A groove with a hump at the nominal contact: two patches beside it."""
+    """A groove worn hollow at the nominal contact: two patches beside it."""
     x = np.linspace(-2, 2, 201)
-    return [[float(u), float(u * u / 14 - 0.002 * math.exp(-((u / 0.12) ** 2)))] for u in x]
+    return [[float(u), float(-u * u / 14 + 0.002 * math.exp(-((u / 0.12) ** 2)))] for u in x]
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,8 @@ import pytest
 
 import trackroller as tr
 from trackroller.contact.cross_sections import arcs, drawn, parabola, with_edges
-from trackroller.profiles import canonical, cross_section, gap, treats_sides_alike
+from trackroller.drawn_profiles import cross_section, gap, treats_sides_alike
+from trackroller.profiles import canonical
 
 ALPHA = math.radians(30)
 
@@ -184,3 +185,77 @@ def test_steep_flanks_take_no_part_and_interlocking_shapes_are_refused():
     assert both.guide.parabolic and both.roller.parabolic
     with pytest.raises(tr.InputError, match=r"roller_profile.*overlap"):
         gap("", text({"arcs": [{"radius": -7, "to": 0.2}, {"radius": -4}]}), 6.0, -7.0, ALPHA, 16.55, 220.0, 1)
+
+
+@pytest.mark.parametrize("factor", [1e3, 1e-3, 1 / 25.4])
+def test_points_in_other_units_are_refused_in_both_frames(factor):
+    """Micrometres, metres, inches: the contact would lie elsewhere than the nominal geometry says, or nowhere."""
+    scaled = (np.array(circle_points(6.0)) * factor).tolist()
+    with pytest.raises(tr.InputError, match=r"guide_profile.*mm"):
+        tr.solve(tr.Case(guide_profile={"points": scaled}), normal="halfspace", outputs="forces")
+    near = (np.array([[u, -u * u / 14] for u in np.linspace(-1, 1, 41)]) * factor).tolist()
+    if factor != 1 / 25.4:  # a narrow piece might be meant
+        with pytest.raises(tr.InputError, match=r"roller_profile.*mm"):
+            tr.solve(tr.Case(roller_profile={"points": near, "frame": "contact"}), normal="halfspace", outputs="forces")
+
+
+def test_a_curve_upside_down_or_on_one_side_only_says_so():
+    down = [[x, -z] for x, z in circle_points(6.0)]
+    with pytest.raises(tr.InputError, match="other way round"):
+        tr.solve(tr.Case(guide_profile={"points": down}), normal="halfspace", outputs="forces")
+    left = [row for row in circle_points(6.0) if row[0] < 0]
+    with pytest.raises(tr.InputError, match="x >= 0"):
+        tr.solve([tr.Case(guide_profile={"points": left})], normal="halfspace", outputs="forces")
+
+
+def test_order_duplicates_and_gaps_are_named_by_row(tmp_path, monkeypatch):
+    points = circle_points(6.0, n=21)
+    broken = {"increases": (points[::-1], [*points[:5], *points[4:]], [points[3], *points]),
+              "finite": ([*points[:4], [points[4][0], math.nan], *points[5:]],), "rows": ([], None, points[:3], "1 2"),
+              }  # fmt: skip
+    for words, lists in broken.items():
+        for rows in lists:
+            with pytest.raises(tr.InputError, match=rf"roller_profile\.points.*{words}"):
+                tr.Case(roller_profile={"points": rows})
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "picture.csv").write_bytes(b"\x89PNG\r\n\xff\xfe")
+    with pytest.raises(tr.InputError, match=r"guide_profile\.file.*text"):
+        tr.Case(guide_profile={"file": "picture.csv"})
+
+
+def test_coarse_and_uneven_points_give_the_circle():
+    """Twenty points, or unevenly spaced ones, through an exact circle: pressure within 1 %."""
+    x = np.sort(np.random.default_rng(1).uniform(-4.2, 4.2, 120))
+    uneven = np.stack([x, np.sqrt(36 - x * x)], axis=1).tolist()
+    told = [None, {"points": circle_points(6.0, n=20)}, {"points": uneven}]
+    ds = tr.solve([tr.Case(guide_profile=p) for p in told], "contact", normal="halfspace", accuracy="preview")
+    assert np.all(ds.regime == 0)
+    np.testing.assert_allclose(ds.max_pressure[1:], ds.max_pressure[:1].values.repeat(2, 0), rtol=1e-2)
+
+
+def test_a_groove_worn_hollow_carries_in_two_patches():
+    """Beside a hollow at the nominal contact: no pressure in the middle, the load on both sides, through the chain."""
+    hollow = [[float(u), float(-u * u / 14 + 0.02 * math.exp(-((u / 0.3) ** 2)))] for u in np.linspace(-2, 2, 201)]
+    case = tr.Case(roller_profile={"points": hollow, "frame": "contact"}, motor_force=0.0)
+    for model in ("sliding", "fastsim", "kalker"):
+        ds = tr.solve(case, ("forces", "contact", "peak_stress", "life", "tractions"), contact_model=model,
+                      normal="halfspace", accuracy="preview")  # fmt: skip
+        assert int(ds.regime) == 0 and np.all(np.isfinite(ds.life_cycles))
+        for contact in ds.pressure.values:
+            loaded = (contact.sum(axis=0) > 0).astype(int)
+            assert np.count_nonzero(np.diff(loaded, prepend=0) == 1) == 2
+
+
+def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
+    """However the list is cut, alone or beside others."""
+    from trackroller.study.caselists import CaseList
+    from trackroller.study.solve import solve_rows
+
+    guide = text({"points": circle_points(6.0, high=3.5)})
+    columns = {"contact_angle": np.array([50.0, 30.0, 55.0]), "guide_profile": np.array([guide] * 3, object)}
+    options = {"outputs": ["forces"], "normal": "halfspace", "accuracy": "preview"}
+    cases = CaseList("x", np.array(["a", "b", "c"], "S32"), columns, options)
+    for rows in (np.arange(3), np.array([0]), np.array([0, 2])):
+        reasons = solve_rows(cases, rows, None).reasons
+        assert set(reasons) == {"abc"[i] for i in rows if i != 1}
+        assert all("guide_profile" in why and "inclined" in why for why in reasons.values())

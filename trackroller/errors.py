@@ -29,6 +29,10 @@ class InputError(ValueError):
         return type(self), (self.field, self.value, self.allowed, self.remedy)
 
 
+class ShapeError(InputError):
+    """Drawn shapes that are well told but cannot touch as a case says: of many cases, only such a one fails."""
+
+
 def nearest(name: str, options: Iterable[str]) -> str | None:
     """The option a user most likely meant, or None."""
     options = list(options)

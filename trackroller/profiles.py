@@ -19,23 +19,19 @@ along the common normal towards the roller. Where the two curves lie in the pict
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, with_edges
 from trackroller.errors import InputError, unknown_name
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
 KEYS = (*FORMS, "frame", "smooth", "edge", "width")
 EDGE_KEYS = ("inner", "outer", "chamfer")
 FRAMES = ("section", "contact")
-INTERLOCK = 0.01  # of the guide's profile radius, by which shapes may overlap beside the nominal contact
 FEWEST, MOST = 5, 20_000  # points of a drawn cross-section
 
 
@@ -181,7 +177,12 @@ def read_points(name: Any, field: str) -> list[list[float]]:
     if not path.resolve().is_relative_to(Path.cwd().resolve()) or not path.is_file():
         raise InputError(field, str(name), f"a file below {Path.cwd()}", "Check its name and the working directory.")
     rows: list[list[float]] = []
-    for number, line in enumerate(path.read_text(encoding="utf-8-sig").splitlines(), start=1):
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (UnicodeDecodeError, OSError) as error:
+        raise InputError(field, str(name), f"a readable text file in UTF-8 ({error})",
+                         "Save the points as text: two columns, x and z.") from None  # fmt: skip
+    for number, line in enumerate(text.splitlines(), start=1):
         cells = line.split("#")[0].replace(";", " ").replace(",", " ").split()
         if not cells:
             continue
@@ -192,125 +193,3 @@ def read_points(name: Any, field: str) -> list[list[float]]:
                 raise InputError(f"{field}, line {number}", line, "two numbers x, z [mm]",
                                  "Decimal points, not commas; remarks after '#'.") from None  # fmt: skip
     return rows
-
-
-@lru_cache(maxsize=256)
-def _parsed(text: str) -> dict[str, Any]:
-    return json.loads(text)
-
-
-def cross_section(text: str, body: str, radius: float, alpha: float, guide_radius: float, side: int) -> CrossSection:
-    """The cross-section of one body beside one contact.
-
-    Parameters
-    ----------
-    text : canonical JSON of the profile, '' for the circle of `radius` [mm]
-    body : 'guide_profile' or 'roller_profile'
-    alpha : contact angle [rad]; guide_radius : nominal r_C,G [mm], which places the contact beside the middle
-    side : 1 or 2, the contact
-
-    Without edges of its own, a circle ends at the middle of the guide, where the other flank begins, and at the
-    guide's equator. Raises `InputError` if a drawn curve has nowhere the inclination of the contact.
-    """
-    told: dict[str, Any] = _parsed(text) if text else {"arc": radius}
-    middle, equator = -guide_radius * math.sin(alpha), guide_radius * math.cos(alpha)
-    if "arc" in told:
-        shape = with_edges(arcs([told["arc"]], []), middle, equator)
-    elif "parabola" in told:
-        shape = with_edges(parabola(told["parabola"]), middle, equator)
-    elif "arcs" in told:
-        rows = told["arcs"]
-        shape = with_edges(arcs([r["radius"] for r in rows], [r["to"] for r in rows[:-1]]), middle, equator)
-    else:
-        shape = _from_points(told, body, alpha, side)
-    edge: dict[str, float] = told.get("edge", {})
-    if "width" in told:
-        reach = (0.5 * told["width"] - guide_radius * math.sin(alpha)) / math.cos(alpha)
-        if reach <= 0.0:
-            apart = 2 * guide_radius * math.sin(alpha)
-            raise InputError(f"{body}.width", told["width"], f"more than {apart:.6g} mm, the distance of the contacts")
-        edge = {"outer": reach}
-    return with_edges(shape, -edge.get("inner", math.inf), edge.get("outer", math.inf), edge.get("chamfer", 0.0))
-
-
-def _from_points(told: dict[str, Any], body: str, alpha: float, side: int) -> CrossSection:
-    points = np.asarray(told["points"])
-    x, z = points[:, 0], points[:, 1]
-    out = -1.0 if body == "roller_profile" else 1.0
-    noise = told.get("smooth", 0.0)
-    if told["frame"] == "contact":
-        return drawn(x, out * z, noise)
-    if side == 2 and np.count_nonzero(x <= 0) >= FEWEST:
-        x, z = -x[::-1], z[::-1]
-    x, z = x[x >= 0], z[x >= 0]
-    if x.size < FEWEST:
-        raise InputError(body, f"{x.size} points with x >= 0", f"at least {FEWEST} on the side of a contact",
-                         "In frame: section x = 0 is the middle of the guide; see also frame: contact.")  # fmt: skip
-    u, w = x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
-    u, w = _single_valued(u, w)
-    apex = _touching_point(u, w, noise, body, alpha)
-    return drawn(u - apex, out * w, noise) if u.size else drawn(u, w)
-
-
-def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The longest stretch in which the turned curve runs outward."""
-    breaks = np.flatnonzero(np.diff(u) <= 0)
-    starts, ends = np.concatenate([[0], breaks + 1]), np.concatenate([breaks + 1, [u.size]])
-    k = int(np.argmax(ends - starts))
-    return u[starts[k] : ends[k]], w[starts[k] : ends[k]]
-
-
-def _touching_point(u, w, noise, body: str, alpha: float) -> float:
-    """Where the curve is parallel to the tangent plane; the place nearest to the apex of a parabola through it."""
-    from trackroller.contact.cross_sections import smoothed
-
-    lean = math.degrees(alpha) - np.degrees(np.arctan(np.diff(w) / np.diff(u))) if u.size > 1 else np.zeros(1)
-    problem = InputError(body, f"a curve inclined by {lean.min():.4g} to {lean.max():.4g} deg",
-                         f"one that is somewhere inclined by the contact angle of {math.degrees(alpha):.4g} deg",
-                         "Draw more of it, or use frame: contact.")  # fmt: skip
-    if u.size < FEWEST:
-        raise problem
-    spline = smoothed(u, w, noise)
-    slope = spline.derivative()
-    places = np.linspace(u[0], u[-1], 40 * u.size + 1)
-    values = slope(places)
-    turns = np.flatnonzero(values[:-1] * values[1:] <= 0)
-    if turns.size == 0:
-        raise problem
-    from scipy.optimize import brentq
-
-    roots = np.array([brentq(slope, places[k], places[k + 1]) if values[k] * values[k + 1] < 0
-                      else places[k + (values[k] != 0)] for k in turns])  # fmt: skip
-    square, linear, _ = np.polyfit(u - u.mean(), w, 2)
-    apex = u.mean() - 0.5 * linear / square if square != 0 else u.mean()
-    return float(roots[np.argmin(np.abs(roots - apex))])
-
-
-def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alpha: float, rolling_radius: float,
-        guide_curve_radius: float, side: int) -> Gap:  # fmt: skip
-    """The gap beside contact `side` of profiles in canonical JSON ('': the circle); lengths mm, angle rad.
-
-    Beside a parabola the other body, if not drawn, is a parabola too. Raises `InputError` for shapes that interlock.
-    """
-    if '"parabola"' in guide + roller:
-        guide = guide or json.dumps({"parabola": guide_radius})
-        roller = roller or json.dumps({"parabola": roller_radius})
-    found = Gap(cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
-                cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
-                alpha, rolling_radius, guide_curve_radius)  # fmt: skip
-    x = np.linspace(*found.limits, 801)
-    lateral = found.lateral(x)
-    if lateral.min() < -INTERLOCK * guide_radius:
-        raise InputError("roller_profile" if roller else "guide_profile",
-                         f"shapes that overlap by {-lateral.min():.3g} mm, {x[np.argmin(lateral)]:.3g} mm outward",
-                         "shapes that touch at the nominal contact, give or take what load and wear can close",
-                         "Compare both profiles (and the radii of those not drawn) beside that point.")  # fmt: skip
-    return found
-
-
-def treats_sides_alike(text: str) -> bool:
-    """Does the profile treat both contacts alike (one mirrors the other)?"""
-    told = _parsed(text) if text else {}
-    if told.get("frame") != "section":
-        return True
-    return sum(p[0] <= 0 for p in told["points"]) < FEWEST

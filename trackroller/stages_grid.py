@@ -12,9 +12,9 @@ from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.normal_models import GridModel, Patches, grid_model
 from trackroller.contact.normal_patch import GridPatch
+from trackroller.drawn_profiles import gap, treats_sides_alike
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import von_mises
-from trackroller.profiles import gap, treats_sides_alike
 from trackroller.scene import Results, surface_tractions
 from trackroller.threads import share_rows
 

@@ -18,7 +18,7 @@ from trackroller.contact.normal import TOLERANCE
 from trackroller.contact.normal_family import Family
 from trackroller.contact.normal_patch import GridPatch, rim_means
 from trackroller.contact.slip import contour_over_tangent
-from trackroller.errors import InputError
+from trackroller.errors import InputError, ShapeError
 
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
 
@@ -32,24 +32,25 @@ class Patches:
     modulus : contact modulus E* of the rollers [MPa], (n,)
     elements : along the rolling direction of the box around a patch
 
-    A roller whose gap cannot be made (`InputError`) has patches of NaN; if there is no other, the error is raised.
+    A roller one of whose gaps cannot be made (`ShapeError`) has patches of NaN; if there is no other, the error is
+    raised.
     """
 
     def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int) -> None:
         self.modulus, self.elements = modulus, elements
         families: dict[tuple, Family | None] = {}
         self._places: dict[tuple[int, int], Family | None] = {}
-        problem: InputError | None = None
+        problem: ShapeError | None = None
         for row in range(len(modulus)):
             for side in (1, 2):
                 key, make = gaps(row, side)
                 if key not in families:
                     try:
                         families[key] = Family(make(), elements)
-                    except InputError as error:
+                    except ShapeError as error:
                         families[key], problem = None, error
                 self._places[row, side] = families[key]
-        if problem is not None and not any(families.values()):
+        if problem is not None and not any(self._places[i, 1] and self._places[i, 2] for i in range(len(modulus))):
             raise problem
 
     def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True) -> GridPatch:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, ShapeError
 from trackroller.study import store
 from trackroller.study.caselists import CaseList, load_list
 from trackroller.study.files import StudyFolder, WorkError, link_or_copy, locked
@@ -28,7 +28,8 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
     """Solve the rows `index` of a list.
 
     When the solver raises, the rows are halved until the case that does so stands alone; it becomes a row
-    with regime failed and the exception as its reason. `InputError` (options that cannot be) goes on.
+    with regime failed and the exception as its reason. `InputError` (options that cannot be) goes on; `ShapeError`
+    is a case's own.
     """
     if solver is None:
         from trackroller.solver import solve
@@ -42,18 +43,35 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
         try:
             dataset = solver(cases.design(rows), database=database, **cases.options)
             blocks.append(store.from_dataset(dataset, cases.cases[rows]))
-        except (InputError, WorkError):
-            raise
+            if cases.options.get("normal") == "halfspace":
+                _explain_shapes(blocks[-1], cases, rows, lambda one: solver(one, database=database, **cases.options))
         except Exception as exc:
+            if isinstance(exc, (InputError, WorkError)) and not isinstance(exc, ShapeError):
+                raise
             if len(rows) > 1:
                 half = len(rows) // 2
                 pending += [rows[half:], rows[:half]]
             else:
-                told = f"{type(exc).__name__}: {str(exc).splitlines()[0] if str(exc) else 'no message'}"
-                blocks.append(store.failure(cases.cases[rows], told[:200]))
+                blocks.append(store.failure(cases.cases[rows], _reason(exc)))
     block = store.concatenate(blocks)
     block.seconds = time.perf_counter() - started
     return block
+
+
+def _reason(exc: Exception) -> str:
+    told = str(exc).splitlines()[0] if str(exc) else "no message"
+    return told[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {told}"[:200]
+
+
+def _explain_shapes(block: store.Block, cases: CaseList, rows: np.ndarray, solve: Callable[[Any], Any]) -> None:
+    """Beside others, a case whose shapes cannot touch is just a failed row; alone it says why."""
+    if len(rows) < 2:
+        return
+    for i in np.flatnonzero(block.failed):
+        try:
+            solve(cases.design(rows[i : i + 1]))
+        except ShapeError as exc:
+            block.reasons[block.cases[i].decode()] = _reason(exc)
 
 
 def check_identity(cases: CaseList, database: Any) -> None:
