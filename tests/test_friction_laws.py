@@ -12,6 +12,7 @@ from trackroller.contact.friction_laws import constant, exponential_falling, law
 from trackroller.contact.hertz import HertzShape
 from trackroller.contact.models import contact_model
 from trackroller.contact.sliding_law import integrals
+from trackroller.dataset import VALIDITY_BITS
 from trackroller.equilibrium import Loads, solve_equilibrium
 from trackroller.errors import InputError
 
@@ -304,3 +305,18 @@ class ContactJump:
         share = share + np.where(slip.shift < -0.00774, 4e-3, -4e-3)
         force = friction * ellipse.normal_force
         return Resultants(0.0 * force, force * share, 0.0 * force)
+
+
+def test_friction_too_steep_for_elastic_surfaces_is_told():
+    """mu p_max v max(-df/dv)/G above 1: the bit warns for the elastic models, not for gentle laws or full sliding."""
+    steep, gentle = ({"kind": "linear", "speed": v, "lowest": 0.3} for v in (0.02, 200.0))
+    bit = 1 << list(VALIDITY_BITS).index("steep_friction")
+
+    def marked(law, model):
+        found = tr.solve(tr.Case(friction_law=law), contact_model=model, accuracy="preview", outputs="forces")
+        return bool(int(found.validity) & bit)
+
+    assert marked(steep, "kalker") and marked(steep, "fastsim") and not marked(steep, "sliding")
+    assert not marked(gentle, "kalker") and not marked({}, "kalker")
+    assert linear_falling(50.0, 0.4).steepest_fall == pytest.approx(0.6 / 50.0)
+    assert constant().steepest_fall == table([0, 1], [0.2, 0.3]).steepest_fall == 0.0

@@ -100,6 +100,8 @@ VALIDITY_BITS = {
     "deep_life": "peak stress below the fatigue limit: life rests on the rule chosen beyond the knee",
     "split_pole": "the slip of the sliding model vanishes apart from its spin pole, or twice in a patch: the stress of "
     "the model is infinite there, as a logarithm; use kalker",
+    "steep_friction": "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip than "
+    "elastic surfaces follow, a patch has several states or none, and the roller may not roll steadily",
 }
 
 

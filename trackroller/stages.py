@@ -120,34 +120,37 @@ def _stick_share(results: Results) -> np.ndarray:
 
 def friction_work(results: Results, options: Options) -> None:
     """Friction energy int |tau| |v| per distance travelled, and the balance of energy."""
-    per_distance = np.full(2 * results.scene.n, np.nan)
+    per_distance, pressed = np.full(2 * results.scene.n, np.nan), np.zeros(2 * results.scene.n)
     rolls = results.good & (results.slides_along == 0)
     if results.scene.frictionless:
         per_distance[rolls] = 0.0
     elif rolls.any():
         mirror = results.scene.mirror
         asked = mirror.asked(rolls)
-        per_distance[rolls] = mirror.spread(rolls, results.scene.model.power(
+        works = results.scene.model.power(
             results.ellipse.take(asked), results.slip.take(asked), results.friction[asked], results.rows[asked]
-        ))  # fmt: skip
+        )
+        per_distance[rolls] = mirror.spread(rolls, works.dissipated)
+        pressed[rolls] = mirror.spread(rolls, works.by_pressure)
     w = results.by_contact(per_distance)
     results.values["friction_energy_per_distance"] = w
-    _energy_balance(results, w)
+    _energy_balance(results, w, results.by_contact(pressed))
 
 
-def _energy_balance(results: Results, local: np.ndarray) -> None:
+def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) -> None:
     """Dissipation that the resultants imply, -(xi F_A + phi M_R), and how far the local one is from the work put in.
 
     Work of the motor less that of the transmitted force per distance: -F_Motor - (1 + xi) (F_A1 + F_A2), which the
     balance of the drive torque makes equal to the sum over both contacts. Where the roller turns with the guide's
     curve, the drilling torque (M_R1 - M_R2) sin(alpha) works on that turning too; whatever leads the roller round the
-    curve puts that in.
+    curve puts that in. On unlike materials the pressures put in `pressed` [N].
+    ASSUME: the drive has no part in that; the torque of pressures which shear shifts is not in its balance.
     """
     v, loads = results.values, results.scene.loads
     xi = v["slip"]
     spin = results.by_contact(results.slip.spin)
     v["friction_energy_balance"] = -(xi[:, None] * v["driving_force"] + spin * v["spin_moment"])
-    put_in = -loads.motor_force - (1.0 + xi) * v["transmitted_force"]
+    put_in = -loads.motor_force - (1.0 + xi) * v["transmitted_force"] + pressed.sum(axis=1)
     if results.scene.turning is not None:
         put_in = put_in + results.scene.turning * v["drilling_torque"]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -113,6 +113,22 @@ class Resultants(_Rows):
 
 
 @dataclass(frozen=True)
+class Works(_Rows):
+    """Per distance travelled [N]: what friction dissipates, and what of it the pressures put in.
+
+    On unlike materials shear moves the surfaces along the normal, and the pressures do work on that.
+    """
+
+    dissipated: np.ndarray
+    by_pressure: np.ndarray
+
+    @classmethod
+    def of_friction(cls, dissipated: np.ndarray) -> Works:
+        """Where the pressures put in nothing."""
+        return cls(dissipated, np.zeros_like(dissipated))
+
+
+@dataclass(frozen=True)
 class Elastic(_Rows):
     """Combined elastic constants of a pair of bodies (Kalker 1990, eq. 1.44).
 

@@ -48,6 +48,12 @@ class FrictionLaw:
         """Factor beyond the last knot [-]."""
         return float(self.factor[-1])
 
+    @property
+    def steepest_fall(self) -> float:
+        """Largest fall of the factor by slip speed [s/mm], 0 if it falls nowhere."""
+        falls = -np.diff(self.factor) / np.diff(self.speed)
+        return float(max(0.0, falls.max(initial=0.0)))
+
     def _content(self) -> tuple[bytes, bytes]:
         if self.is_constant:
             return b"", b""

@@ -13,16 +13,13 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import kalker_batch as batch
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact import kalker_extrapolation as extrapolation
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker_grid import cells, unit_cells
 from trackroller.contact.normal_patch import GridPatch
 
 BLOCK = 256  # patches whose tractions are held at once
-# Two grids h and 2h: F = F_h + weight (F_h - F_2h). The observed order is near 2 in sliding and 1 in full stick,
-# so the weight lies between 1/3 and 1; it grows with the stick fraction f as 0.5 (1 + f^2).
-SLIDING_WEIGHT = 0.5
-DRIVING_WEIGHT = 1.0  # of the driving force: of first order throughout, by where the slip vanishes in the patch
 
 
 @dataclass(frozen=True)
@@ -92,7 +89,9 @@ class PatchSolution:
     traction, slip : (n, 2, ny, nx), x_C and y_C part, over mu p_max and per travel speed
     stick : (n, ny, nx) where the surfaces stick
     stick_fraction : share of the ellipse that sticks [-]
-    friction_energy_per_distance : dissipation per travelled distance [N], from the work of the rigid slip
+    friction_energy_per_distance : dissipation per travelled distance [N], from the works of the rigid slip and of
+        the pressures
+    pressure_work : what the pressures add where the tractions move unlike surfaces along the normal [N]
     energy_residual : relative difference of the dissipation summed over the elements and that work
     error_estimate : (n, 3) |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation
     residual, steps, products : largest residual of the friction law over mu p_max, Newton steps, products
@@ -105,12 +104,18 @@ class PatchSolution:
     stick: np.ndarray
     stick_fraction: np.ndarray
     friction_energy_per_distance: np.ndarray
+    pressure_work: np.ndarray
     energy_residual: np.ndarray
     error_estimate: np.ndarray
     residual: np.ndarray
     steps: np.ndarray
     products: np.ndarray
     converged: np.ndarray
+
+    @property
+    def works(self) -> Works:
+        """Dissipation summed over the elements, and what the pressures put in."""
+        return Works(self.friction_energy_per_distance * (1.0 + self.energy_residual), self.pressure_work)
 
     def take(self, index) -> PatchSolution:
         """The patches `index`."""
@@ -170,21 +175,24 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     slip, stick, fine = _level(ellipse, creep, friction, elastic, travel, settings, elements, traction)
     value = fine[:, :3]
     error = np.full((n, 3), np.nan)
-    work = fine[:, batch.WORK]
+    pressed = fine[:, batch.PRESSURE_WORK]
+    whole = work = fine[:, batch.WORK] + pressed
     if coarse is not None:
         error = np.abs(value - coarse[:, :3])
-        weight = SLIDING_WEIGHT * (1.0 + fine[:, batch.STICK] ** 2)
-        weights = np.stack([weight, np.full(n, DRIVING_WEIGHT), weight], axis=1)
+        middle = Creepage(creep.longitudinal + creep.spin * _centre(ellipse), creep.lateral, creep.spin)
+        weights = extrapolation.weights(ellipse, middle, friction, elastic, elements, fine[:, batch.STICK])
+        weight = weights[:, 0]
         value = value + weights * (value - coarse[:, :3])
-        work = work + weight * (work - coarse[:, batch.WORK])
+        pressed = pressed + weight * (pressed - coarse[:, batch.PRESSURE_WORK])
+        work = work + weight * (work - coarse[:, batch.WORK] - coarse[:, batch.PRESSURE_WORK])
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + _centre(ellipse) * value[:, 1]], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        energy = np.where(fine[:, batch.WORK] != 0, fine[:, batch.POWER] / fine[:, batch.WORK] - 1.0, 0.0)
+        energy = np.where(whole != 0, fine[:, batch.POWER] / whole - 1.0, 0.0)
     good = fine[:, batch.RESIDUAL] <= settings.tolerance
     return PatchSolution(
-        Resultants(value[:, 0], value[:, 1], value[:, 2]), traction, slip, stick, fine[:, batch.STICK], work, energy,
-        error, fine[:, batch.RESIDUAL], fine[:, batch.STEPS], fine[:, batch.PRODUCTS], good,
+        Resultants(value[:, 0], value[:, 1], value[:, 2]), traction, slip, stick, fine[:, batch.STICK], work, pressed,
+        energy, error, fine[:, batch.RESIDUAL], fine[:, batch.STEPS], fine[:, batch.PRODUCTS], good,
     )  # fmt: skip
 
 

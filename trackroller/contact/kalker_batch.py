@@ -17,8 +17,8 @@ from trackroller.contact.kalker_newton import Problem, newton
 from trackroller.threads import share_rows
 
 # columns of the numbers reported for each patch
-(F_T, F_A, M_R, STICK, POWER, WORK, RESIDUAL, STEPS, PRODUCTS) = range(9)
-REPORT = 9
+(F_T, F_A, M_R, STICK, POWER, WORK, PRESSURE_WORK, RESIDUAL, STEPS, PRODUCTS) = range(10)
+REPORT = 10
 TOWARDS_LAW = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)  # shares of a friction law that are met one after the other
 
 
@@ -29,10 +29,13 @@ def _rigid_slip(along, lateral, spin, b, factor, ny):
 
 
 @njit(cache=True, nogil=True)
-def _sums(traction, slip, rigid, height, bound, rho, share, a, b, stick, report):
-    """Resultants, stick share and works of one patch into `report`, with tractions over mu p_max."""
+def _sums(traction, slip, rigid, driver, height, bound, rho, share, a, b, stick, report):
+    """Resultants, stick share and works of one patch into `report`, with tractions over mu p_max.
+
+    `driver` is the rigid slip with that of the pressures on unlike materials.
+    """
     ny, nx = bound.shape
-    total = np.zeros(7)
+    total = np.zeros(8)
     for i in range(ny):
         y = b * ((2.0 * i + 1.0) / ny - 1.0)
         for j in range(nx):
@@ -46,14 +49,15 @@ def _sums(traction, slip, rigid, height, bound, rho, share, a, b, stick, report)
             total[2] += x * ty - y * tx
             total[4] -= tx * sx + ty * sy
             total[5] -= tx * rigid[i, j, 0] + ty * rigid[i, j, 1]
-            total[6] += share[i, j]
+            total[6] -= tx * (driver[i, j, 0] - rigid[i, j, 0]) + ty * (driver[i, j, 1] - rigid[i, j, 1])
+            total[7] += share[i, j]
             if (tx - rho * sx) ** 2 + (ty - rho * sy) ** 2 <= bound[i, j] ** 2:
                 stick[i, j] = True
                 total[3] += share[i, j]
     cell = 4.0 * a * b / (nx * ny)
-    for k in (0, 1, 2, 4, 5):
+    for k in (0, 1, 2, 4, 5, 6):
         report[k] = total[k] * cell
-    report[STICK] = total[3] / total[6]
+    report[STICK] = total[3] / total[7]
 
 
 def _solve(problem: Problem, traction, control, report):
@@ -69,6 +73,8 @@ def _solve(problem: Problem, traction, control, report):
         traction, slip, bound, report[RESIDUAL], steps, products = newton(eased, traction, *limits)
         report[STEPS] += steps
         report[PRODUCTS] += products
+        if report[RESIDUAL] > control[0]:
+            break  # a law that is steeper yet will not be met either
     return traction, slip, bound
 
 
@@ -88,9 +94,10 @@ def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, trav
     driver = rigid if coupling == 0.0 else rigid + coupling * coupling_slip(height, hx, hy)
     problem = Problem(functions, driver, np.ascontiguousarray(height), ratio * travel, speeds, values)
     found, moved, bound = _solve(problem, traction[0] + 1j * traction[1], control, report)
-    _sums(reals(found), reals(moved), reals(rigid), height, bound, 1.0 / functions.own, share, a, b, stick, report)
+    _sums(reals(found), reals(moved), reals(rigid), reals(driver), height, bound, 1.0 / functions.own, share, a, b,
+          stick, report)  # fmt: skip
     report[:3] *= scale
-    report[[POWER, WORK]] *= scale * ratio
+    report[[POWER, WORK, PRESSURE_WORK]] *= scale * ratio
     traction[0], traction[1] = found.real, found.imag
     slip[0], slip[1] = ratio * moved.real, ratio * moved.imag
 

@@ -12,6 +12,9 @@ from trackroller.contact.kalker import Creepage, KalkerSettings, PatchSolution, 
 from trackroller.contact.normal_patch import GridPatch
 
 NEAR = 0.3  # change of creepage over the slip in the patch
+# A patch under a law that falls too steeply has several states or none. After so many solutions that did not converge
+# the next ones are cut short: the balance cannot be met there, and its residual is told either way.
+MISSES, SHORT_STEPS = 3, 4
 
 
 class KalkerLaw:
@@ -35,6 +38,7 @@ class KalkerLaw:
         self.travel = None if travel_speed is None else np.asarray(travel_speed, float)
         self.curve = None if curve_radius is None else np.asarray(curve_radius, float)
         self._starts: dict[tuple[int, int, bool], tuple[np.ndarray, float]] = {}  # tractions and creepage
+        self._misses: dict[tuple[int, int], int] = {}
         self._states: dict[tuple[int, int], tuple[float, bool]] = {}
         self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
 
@@ -69,23 +73,27 @@ class KalkerLaw:
         friction = np.broadcast_to(np.asarray(friction, float), len(rows))
         known = self._near(keys, creep, ellipse)
 
-        def part(pick, start):
+        tired = np.array([self._misses.get(key[:2], 0) >= MISSES for key in keys], bool)
+        picks, parts = [], []
+        for started, cut in ((True, False), (True, True), (False, True), (False, False)):
+            pick = np.flatnonzero((known == started) & (tired == cut))
+            if not (pick.size or (not len(keys) and not started and not cut)):
+                continue
             where = rows[pick]
-            travel = None if self.travel is None else self.travel[where]
-            return solve_patch(ellipse.take(pick), creep.take(pick), friction[pick], self.elastic.take(where), settings,
-                               start, travel)  # fmt: skip
-
-        old, new = np.flatnonzero(known), np.flatnonzero(~known)
-        parts = []
-        if old.size:
-            parts.append(part(old, np.stack([self._starts[keys[i]][0] for i in old]).astype(float)))
-        if new.size or not old.size:
-            parts.append(part(new, None))
-        solution = parts[0] if len(parts) == 1 else joined(parts, np.argsort(np.concatenate([old, new])))
+            start = np.stack([self._starts[keys[i]][0] for i in pick]).astype(float) if started else None
+            parts.append(solve_patch(
+                ellipse.take(pick), creep.take(pick), friction[pick], self.elastic.take(where),
+                dataclasses.replace(settings, steps=SHORT_STEPS) if cut else settings, start,
+                None if self.travel is None else self.travel[where],
+            ))  # fmt: skip
+            picks.append(pick)
+        solution = parts[0] if len(parts) == 1 else joined(parts, np.argsort(np.concatenate(picks)))
         kept = zip(solution.traction.astype(np.float32), creep.longitudinal, strict=True)
         self._starts.update(zip(keys, kept, strict=True))
-        if fine:
-            for key, value, good in zip(keys, solution.residual, solution.converged, strict=True):
+        for key, value, good in zip(keys, solution.residual, solution.converged, strict=True):
+            if not good:
+                self._misses[key[:2]] = self._misses.get(key[:2], 0) + 1
+            if fine:
                 self._states[key[:2]] = (float(value), bool(good))
         return solution
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from trackroller.contact import sliding
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.errors import InputError
 
@@ -36,8 +36,8 @@ class ContactModel(Protocol):
     def surface(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> SurfaceTractions:
         """Tractions on a grid over each patch."""
 
-    def power(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Dissipation per distance travelled [N], shape (n,)."""
+    def power(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
+        """Dissipation per distance travelled, and what of it the pressures put in."""
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Residual of the friction law in the patches of n rollers at the last fine call, and if it is met, (n,)."""
@@ -81,7 +81,7 @@ class SlidingModel:
             per_omega = sliding.friction_power(ellipse, slip, friction, spin_model=self.spin_model, nodes=nodes)
         else:
             per_omega = self._falling(ellipse, slip, friction, rows, nodes)[1]
-        return per_omega / slip.rolling_radius
+        return Works.of_friction(per_omega / slip.rolling_radius)
 
     def state(self, n):
         return np.zeros(n), np.ones(n, bool)
@@ -111,9 +111,7 @@ class KalkerModel:
         return kalker.to_tractions(ellipse, friction, self._law.kept(ellipse, slip, friction, rows))
 
     def power(self, ellipse, slip, friction, rows):
-        solution = self._law.kept(ellipse, slip, friction, rows)
-        # summed over the elements: the work of the rigid slip and its relative difference from that sum
-        return solution.friction_energy_per_distance * (1.0 + solution.energy_residual)
+        return self._law.kept(ellipse, slip, friction, rows).works
 
     def state(self, n):
         return self._law.state(n)
@@ -176,7 +174,7 @@ class FastsimModel:
 
     def power(self, ellipse, slip, friction, rows):
         solution, spread = self._solution(ellipse, slip, friction, rows)
-        return spread(solution.friction_energy_per_distance)
+        return Works.of_friction(spread(solution.friction_energy_per_distance))
 
     def state(self, n):
         return np.zeros(n), np.ones(n, bool)  # steps in closed form, or by halving to the last digit

@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from trackroller.contact import normal_sliding
-from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.normal import TOLERANCE
@@ -160,10 +160,10 @@ class GridSlidingModel(_OnGrid):
         patch = self.patch(ellipse, slip, rows)
         return normal_sliding.tractions(patch, slip, friction, self.spin_model, self.friction_law, self.travel[rows])
 
-    def power(self, ellipse, slip, friction, rows) -> np.ndarray:
-        """Dissipation per distance travelled [N], shape (n,)."""
+    def power(self, ellipse, slip, friction, rows) -> Works:
+        """Dissipation per distance travelled."""
         patch = self.patch(ellipse, slip, rows)
-        return self._solved(patch, slip, friction, rows).power / slip.rolling_radius
+        return Works.of_friction(self._solved(patch, slip, friction, rows).power / slip.rolling_radius)
 
 
 class GridFastsimModel(_OnGrid):
@@ -195,9 +195,10 @@ class GridFastsimModel(_OnGrid):
         return self._grid.tractions(patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings,
                                     self.travel[rows])  # fmt: skip
 
-    def power(self, ellipse, slip, friction, rows) -> np.ndarray:
-        """Dissipation per distance travelled [N], shape (n,)."""
-        return self._solved(self.patch(ellipse, slip, rows), slip, friction, rows).friction_energy_per_distance
+    def power(self, ellipse, slip, friction, rows) -> Works:
+        """Dissipation per distance travelled."""
+        patch = self.patch(ellipse, slip, rows)
+        return Works.of_friction(self._solved(patch, slip, friction, rows).friction_energy_per_distance)
 
 
 class GridKalkerModel(_OnGrid):
@@ -228,11 +229,10 @@ class GridKalkerModel(_OnGrid):
         patch = self.patch(ellipse, slip, rows)
         return kalker.to_tractions(patch, friction, self._law.kept(patch, self._drawn(slip, rows), friction, rows))
 
-    def power(self, ellipse, slip, friction, rows) -> np.ndarray:
-        """Dissipation per distance travelled [N], shape (n,)."""
+    def power(self, ellipse, slip, friction, rows) -> Works:
+        """Dissipation per distance travelled."""
         patch = self.patch(ellipse, slip, rows)
-        solution = self._law.kept(patch, self._drawn(slip, rows), friction, rows)
-        return solution.friction_energy_per_distance * (1.0 + solution.energy_residual)
+        return self._law.kept(patch, self._drawn(slip, rows), friction, rows).works
 
     def state(self, n):
         normal, tangential = super().state(n), self._law.state(n)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import table
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
 
 PEAK_ERROR = 0.12  # of the peak stress per unit of the friction coefficient
 
@@ -66,13 +66,15 @@ class TableModel:
             share[rest] = t.stick.sum(axis=(1, 2)) / (t.pressure > 0).sum(axis=(1, 2))
         return share
 
-    def power(self, ellipse: Ellipse, slip: Slip, friction, rows) -> np.ndarray:
-        """Dissipation per distance travelled [N], the work of the creepages, shape (n,)."""
+    def power(self, ellipse: Ellipse, slip: Slip, friction, rows) -> Works:
+        """Dissipation: the work of the creepages; of unlike materials by the exact solver, with the pressures."""
         found = self._table(ellipse, slip, friction, rows)
-        work, rest = found.friction_energy_per_distance, np.flatnonzero(~found.known)
+        work, pressed = found.friction_energy_per_distance, np.zeros(len(rows))
+        rest = np.flatnonzero(~found.known | (self.elastic.coupling[rows] != 0.0))
         if rest.size:
-            work[rest] = self.exact.power(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
-        return work
+            other = self.exact.power(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
+            work[rest], pressed[rest] = other.dissipated, other.by_pressure
+        return Works(work, pressed)
 
     def peak_error(self, friction: np.ndarray) -> np.ndarray:
         """Relative error of the peak stress that table and coarse tractions bring, shape (n,).
