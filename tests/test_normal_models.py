@@ -2,17 +2,21 @@
 
 import json
 import math
+from dataclasses import replace
+from unittest import mock
 
 import numpy as np
 import pytest
 import xarray as xr
 
 import trackroller as tr
-from trackroller.contact import kalker, normal_sliding, sliding
+from trackroller.contact import kalker, normal_models, normal_sliding, sliding
 from trackroller.contact.common import Elastic, Slip
 from trackroller.contact.friction_laws import linear_falling
 from trackroller.contact.hertz import exact_shape
 from trackroller.contact.kalker_grid import unit_cells
+from trackroller.contact.kalker_influence import pressure_displacements
+from trackroller.contact.normal import lift
 from trackroller.contact.normal_patch import GridPatch
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import stress_from_tractions
@@ -275,3 +279,38 @@ def test_finer_elements_carry_the_same():
     np.testing.assert_allclose(found.reshape(1, 20, 2, 20, 2).mean(axis=(2, 4)), grid.pressure, rtol=1e-12)
     inside = np.hypot(*np.meshgrid(*2 * [(np.arange(40) + 0.5) / 20 - 1])) < 0.8
     np.testing.assert_allclose(found[0][inside], fine.pressure[0][inside], rtol=2e-3)
+
+
+def test_lift_by_shear_and_creep_by_pressure_are_reciprocal():
+    """Betti: the pressures' work on the lift by shear is that of the shear on the creep by the pressures."""
+    rng, shape, sides, per_stress = np.random.default_rng(3), (7, 9), (0.03, 0.05), 2e-6
+    shear_x, shear_y, pressure = rng.normal(size=(3, *shape))
+    apart = lift(shear_x, shear_y, *sides, per_stress)
+    kernel = per_stress * pressure_displacements(*sides, *shape, 0, 0)  # of the creep at a distance from a pressure
+    j, i = np.arange(shape[0]), np.arange(shape[1])
+    rows, columns = j[:, None] - j[None, :] + shape[0] - 1, i[:, None] - i[None, :] + shape[1] - 1
+    at = kernel[:, rows[:, None, :, None], columns[None, :, None, :]]
+    creep = np.einsum("cjikl,kl->cji", at, pressure)
+    assert np.sum(pressure * apart) == pytest.approx(np.sum(shear_x * creep[0] + shear_y * creep[1]), rel=1e-10)
+
+
+def test_shear_presses_on_unlike_materials_only():
+    """A margin around the patch changes nothing; the rounds settle; friction raises p_max of polyamide on steel."""
+    outputs = ("forces", "contact", "friction_work")
+    plastic = tr.Case(roller_material="PA6", motor_force=0.0, friction_coefficient=0.3)
+    slight = replace(plastic, friction_coefficient=1e-3)
+    solve = lambda case, normal: tr.solve(case, outputs, contact_model="kalker", normal=normal)  # noqa: E731
+    one_sided = lambda self, ellipse, slip, friction, rows: self.patch(ellipse, slip, rows)  # noqa: E731
+    with mock.patch.object(normal_models.GridKalkerModel, "settled", one_sided):
+        one_way, none = solve(plastic, "halfspace"), solve(slight, "halfspace")
+    both, little = solve(plastic, "halfspace"), solve(slight, "halfspace")
+    for name in ("normal_force", "max_pressure", "semi_axis_lateral", "semi_axis_rolling", "patch_area"):
+        np.testing.assert_allclose(little[name], none[name], rtol=6e-3)
+        np.testing.assert_allclose(both[name], one_way[name], rtol=4e-2)
+    assert float(both.max_pressure[0] / one_way.max_pressure[0]) > 1.003
+    assert np.all(np.abs(both.pressure_centre) > 2 * np.abs(one_way.pressure_centre))
+    with mock.patch.object(normal_models, "ROUNDS", 6):
+        settled = solve(plastic, "halfspace")
+    for name in ("normal_force", "lateral_force", "spin_moment", "max_pressure"):
+        np.testing.assert_allclose(both[name], settled[name], rtol=1e-4)
+    assert bool(both.converged) and float(both.energy_residual) < 5e-3

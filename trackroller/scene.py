@@ -73,9 +73,9 @@ class Results:
                     two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius),
                     two(balance.shift))  # fmt: skip
         slip = scene.kinematics(slip, np.tile(np.arange(scene.n), 2))
-        if isinstance(scene.model, GridModel):
-            ellipse = scene.model.patch(ellipse, slip, np.tile(np.arange(scene.n), 2))
         friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
+        if isinstance(scene.model, GridModel):
+            ellipse = scene.model.settled(ellipse, slip, two(friction), np.tile(np.arange(scene.n), 2))
         # the friction law of each patch has to hold beside the balance of the roller
         unmet, met = scene.model.state(scene.n)
         rolls = balance.regime == eq.ROLLING

@@ -4,7 +4,7 @@ Elements with constant pressure, collocation at their centres: u = A p, with the
 rectangle (Love 1929; Johnson 1985, eq. 3.25) and products by FFT. In the patch p > 0 and u + g = delta, outside p = 0
 and u + g >= delta. Conjugate gradients with the load as side condition: Polonsky & Keer (1999), Wear 231, 206-219.
 
-ASSUME: friction does not press: the normal displacement by shear tractions (zero for like materials) is left out.
+The normal displacement by shear tractions, zero for like materials, may be given as part of the gap; see `lift`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from trackroller.contact.kalker_influence import displacements
+from trackroller.contact.kalker_influence import displacements, pressure_displacements
 
 TOLERANCE = 1e-7  # of the gap in the patch, over the approach
 ITERATIONS = 400
@@ -67,6 +67,20 @@ class _Surface:
 def displacement(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
     """Normal displacement [mm] at the element centres of pressures over the contact modulus, both (ny, nx)."""
     return _Surface(hx, hy, *pressure.shape).displacement(pressure)
+
+
+def lift(shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: float, per_stress: float) -> np.ndarray:
+    """How far shear tractions (ny, nx) [MPa] on the roller move unlike surfaces apart (ny, nx) [mm].
+
+    w = K/(pi G) int (x - x').tau/|x - x'|^2, the counterpart of the creep by pressures (Kalker 1990, section 1.5);
+    per_stress = K/G [1/MPa], hx, hy element sides [mm].
+    """
+    from scipy.signal import fftconvolve
+
+    ny, nx = shear_lateral.shape
+    along_x, along_y = pressure_displacements(hx, hy, ny, nx, 0, 0)
+    whole = fftconvolve(shear_lateral, along_x) + fftconvolve(shear_rolling, along_y)
+    return -per_stress * whole[ny - 1 : 2 * ny - 1, nx - 1 : 2 * nx - 1]
 
 
 def solve_normal(

@@ -23,6 +23,7 @@ KEPT = 8  # solutions at asked loads that are remembered
 OVERLAP = 1e-3  # of the approach, that counts as contact outside the box
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
 BOX_TOLERANCE = 3e-3  # of the sides of the box around the patch
+MARGIN = 0.08  # of a box on each side, for a patch to move in that shear presses
 SAMPLES = 401  # points across, for the start and to look for contact outside the box
 
 
@@ -143,6 +144,13 @@ class Family:
             self._asked[load] = self._told(solution, box, load)
         return self._asked[load]
 
+    def pressed(self, load: float, lift: np.ndarray | None = None, start: np.ndarray | None = None) -> Node:
+        """The solution with the surfaces moved apart by `lift` (N, M) [mm], on a box with a margin to all sides."""
+        box, _ = self.between(load)
+        margin = MARGIN * (box.high - box.low)
+        wide = self._clipped(box.low - margin, box.high + margin, (1.0 + 2.0 * MARGIN) * box.half)
+        return self._told(self._pressure(wide, load, self.shape, start, lift), wide, load)
+
     def node(self, k: int) -> Node:
         """The solution under F/E* = LATTICE^k, solved at the first call."""
         if k not in self._nodes:
@@ -168,10 +176,12 @@ class Family:
         return Box(max(low, self.limits[0]), min(high, self.limits[1]), half)
 
     def _pressure(
-        self, box: Box, load: float, shape: tuple[int, int], start: np.ndarray | None = None
-    ) -> NormalSolution:
+        self, box: Box, load: float, shape: tuple[int, int], start: np.ndarray | None = None,
+        lift: np.ndarray | None = None,
+    ) -> NormalSolution:  # fmt: skip
         x, y, hx, hy = box.grid(*shape)
-        return solve_normal(self.gap.field(x, y), hx, hy, load, start=start)
+        gap = self.gap.field(x, y)
+        return solve_normal(gap if lift is None else gap + lift, hx, hy, load, start=start)
 
     def _solve(self, load: float) -> Node:
         box, solution = self._around(load), None

@@ -14,12 +14,13 @@ from trackroller.contact import normal_sliding
 from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.friction_laws import FrictionLaw
-from trackroller.contact.normal import TOLERANCE
+from trackroller.contact.normal import TOLERANCE, lift
 from trackroller.contact.normal_family import Family
 from trackroller.contact.normal_patch import GridPatch, rim_means
 from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import InputError, ShapeError
 
+ROUNDS = 3  # of the normal and the tangential problem, where these change each other
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
 
 
@@ -53,8 +54,14 @@ class Patches:
         if problem is not None and not any(self._places[i, 1] and self._places[i, 2] for i in range(len(modulus))):
             raise problem
 
-    def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True) -> GridPatch:
-        """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`."""
+    def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True,
+           pressed: np.ndarray | None = None, shear: SurfaceTractions | None = None,
+           per_stress: np.ndarray | None = None) -> GridPatch:  # fmt: skip
+        """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`.
+
+        Those `pressed` (n,) lie in wider boxes, where the tractions `shear` on these have moved the surfaces apart by
+        K/G `per_stress` [1/MPa], (n,).
+        """
         n = len(load)
         found: dict[int, np.ndarray] = {}
         numbers = np.full((n, 9), np.nan)
@@ -64,7 +71,15 @@ class Patches:
             if family is None:
                 continue
             if fine:
-                node = family.at(load[i] / modulus)
+                if pressed is None or not pressed[i]:
+                    node = family.at(load[i] / modulus)
+                elif shear is None or per_stress is None:
+                    node = family.pressed(load[i] / modulus)
+                else:
+                    flip = slice(None, None, 1 if side == 1 else -1)
+                    moved = lift(shear.shear_lateral[i], shear.shear_rolling[i], shear.x[i, 1] - shear.x[i, 0],
+                                 shear.y[i, 1] - shear.y[i, 0], per_stress[i])  # fmt: skip
+                    node = family.pressed(load[i] / modulus, moved[:, flip], shear.pressure[i][:, flip])
                 box, shares, rest = node.box, rim_means(node.shares), (*node.scalars, node.reaches, node.residual)
             else:
                 box, shares = family.between(load[i] / modulus)
@@ -113,6 +128,10 @@ class _OnGrid:
         if isinstance(ellipse, GridPatch):
             return ellipse
         return self.patches.at(ellipse.normal_force, slip.sine, rows, fine)
+
+    def settled(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
+        """The patches with what friction changes of their pressures: nothing here."""
+        return self.patch(ellipse, slip, rows)
 
     def _drawn(self, slip: Slip, rows: np.ndarray) -> Slip:
         """The slip on the contour of the guide as it is drawn, where the profile counts in the slip."""
@@ -214,13 +233,31 @@ class GridKalkerModel(_OnGrid):
         super().__init__(patches, profile_slip)
         settings = KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, settings, travel_speed)
+        self._per_stress = elastic.coupling / elastic.shear_modulus
 
     def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
         """Resultants on the roller, shape (n,)."""
-        patch = self.patch(ellipse, slip, rows, fine)
-        if fine:
-            self._remember(patch, slip, rows)
-        return _known(self._law(patch, self._drawn(slip, rows), friction, rows, fine), patch)
+        if not fine:
+            patch = self.patch(ellipse, slip, rows, False)
+            return _known(self._law(patch, self._drawn(slip, rows), friction, rows, False), patch)
+        patch = self.settled(ellipse, slip, friction, rows)
+        self._remember(patch, slip, rows)
+        return _known(self._law.kept(patch, self._drawn(slip, rows), friction, rows).resultants, patch)
+
+    def settled(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
+        """The patches with pressures that the tractions on unlike materials have changed (Panagiotopoulos 1975).
+
+        Normal and tangential problem are solved in turn, ROUNDS times: then both change by less than 1e-4.
+        """
+        load, unlike = ellipse.normal_force, np.abs(self._per_stress[rows]) > 0.0
+        pressed = unlike & np.isfinite(load) & np.isfinite(slip.shift) & (friction > 0.0)
+        if isinstance(ellipse, GridPatch) or not pressed.any():
+            return self.patch(ellipse, slip, rows)
+        patch, per_stress = self.patches.at(load, slip.sine, rows, True, pressed), self._per_stress[rows]
+        for _ in range(ROUNDS):
+            t = self.surface(patch, slip, friction, rows)
+            patch = self.patches.at(load, slip.sine, rows, True, pressed, t, per_stress)
+        return patch
 
     def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
         """Tractions on the grid of elements."""
