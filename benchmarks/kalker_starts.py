@@ -1,11 +1,12 @@
-"""What a start near the solution saves Kalker's theory: from a neighbour along a grid, and from the table.
+"""How long Kalker's theory takes for a patch, and what a start near the solution saves.
 
-    python benchmarks/kalker_starts.py [--patches 60] [--cases 24]
+    python benchmarks/kalker_starts.py [--random 250] [--patches 60] [--cases 24]
 
-First patches: CPU time from nothing (by the grid of half the elements) and from the tractions of a neighbour whose
-friction and creepage differ by 2 to 20 %. Then equilibria: CPU time and patches solved when the rough search is done by
-the table of the exact theory, which is a grid of neighbours solved once and for all, and when it is done by half the
-elements. Ratios hold on a busy machine, times do not.
+First random patches on 40x40 elements: axis ratios 0.05 to 20, friction 0.03 to 0.6, from full sliding to full stick.
+Then starts: CPU time of a patch from nothing (by the grid of half the elements) and from the tractions of a neighbour
+whose friction and creepage differ by 2 to 20 %. Then equilibria: CPU time and patches solved when the rough search is
+done by the table of the exact theory, which is a grid of neighbours solved once and for all, and when it is done by
+half the elements. Ratios hold on a busy machine, times do not.
 """
 
 from __future__ import annotations
@@ -49,6 +50,25 @@ def timed(ellipse: Ellipse, creep: float, spin: float, friction: float, start=No
     return time.process_time() - begin, found.traction
 
 
+def at_random(count: int) -> None:
+    rng, one = np.random.default_rng(3), np.ones(1)
+    spent, products, sticks = np.empty(count), np.empty(count), np.empty(count)
+    for i in range(count):
+        b = np.sqrt(0.08 * 10 ** rng.uniform(-1.3, 1.3)) * one
+        creep = 10 ** rng.uniform(-5, -2) * rng.choice([-1, 1])
+        turn = 10 ** rng.uniform(-5, -1.8) * rng.choice([0, 1, 1])
+        slips = Creepage(creep * one, 0.0 * one, turn / np.sqrt(0.08) * one)
+        begin = time.process_time()
+        found = solve_patch(Ellipse(0.08 / b, b, 900.0 * one), slips, 10 ** rng.uniform(-1.5, -0.2), STEEL)
+        spent[i], products[i], sticks[i] = time.process_time() - begin, found.products[0], found.stick_fraction[0]
+        if not found.converged.all():
+            raise SystemExit(f"patch {i} did not converge")
+    for name, v in (("ms, influence functions and coarse grid counted", 1e3 * spent), ("products", products)):
+        print(f"{name}: median {np.median(v):.0f}, 90 % {np.quantile(v, 0.9):.0f}, 99 % {np.quantile(v, 0.99):.0f}, "
+              f"most {v.max():.0f}")  # fmt: skip
+    print(f"stick {sticks.min():.2f} to {sticks.max():.2f}, a tenth above {np.quantile(sticks, 0.9):.2f}")
+
+
 def patches(count: int) -> None:
     rng, one = np.random.default_rng(5), np.ones(1)
     alone, near = 0.0, dict.fromkeys(STEPS, 0.0)
@@ -83,11 +103,13 @@ def equilibria(count: int) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--random", type=int, default=250)
     parser.add_argument("--patches", type=int, default=60)
     parser.add_argument("--cases", type=int, default=24)
     given = parser.parse_args()
     equilibria(2)  # compiles
     print("(that was to compile)")
+    at_random(given.random)
     patches(given.patches)
     equilibria(given.cases)
 
