@@ -11,7 +11,7 @@ SECOND_ORDER = 1.0 / 3.0
 SLIDING_WEIGHT = 0.5  # grows with the stick fraction f as 0.5 (1 + f^2)
 # About the point where the rigid slip vanishes lies a small stick area, of radius REACH mu p/(G phi) by observation.
 # While it has fewer than RESOLVED elements, the driving force is of first order; beyond, a weight of 1 overshoots by
-# some per cent of the little force there is in free rolling.
+# some per cent of the little force there is in free rolling. Full stick is of first order again.
 REACH, RESOLVED = 0.3, 3.0
 
 
@@ -29,5 +29,6 @@ def weights(ellipse: Ellipse, creep, friction, elastic: Elastic, elements: int, 
         radius = REACH * friction * ellipse.max_pressure * pressure / (elastic.shear_modulus * np.abs(creep.spin))
         resolved = np.pi * radius**2 * elements**2 / (4.0 * a * b) / RESOLVED
         first_order = pressure / (1.0 + resolved**2)
-    driving = SECOND_ORDER + (1.0 - SECOND_ORDER) * np.where(np.isfinite(first_order), first_order, 0.0)
+    first_order = np.maximum(np.where(np.isfinite(first_order), first_order, 0.0), stick_fraction**2)
+    driving = SECOND_ORDER + (1.0 - SECOND_ORDER) * first_order
     return np.stack([plain, driving, plain], axis=1)
