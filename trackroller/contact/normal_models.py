@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,13 +16,33 @@ from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultant
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.normal import TOLERANCE, lift
-from trackroller.contact.normal_family import Family
+from trackroller.contact.normal_family import Family, Node
 from trackroller.contact.normal_patch import GridPatch, rim_means
 from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import InputError, ShapeError
 
 ROUNDS = 3  # of the normal and the tangential problem, where these change each other
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
+
+
+@dataclass(frozen=True)
+class Pressing:
+    """Patches whose pressures shear changes: which (n,), K/G [1/MPa] (n,), and the tractions on them once known."""
+
+    which: np.ndarray
+    per_stress: np.ndarray
+    shear: SurfaceTractions | None = None
+
+    def node(self, family: Family, load: float, i: int, side: int) -> Node:
+        """Patch `i` of `family` under load/E* [mm^2]."""
+        if not self.which[i]:
+            return family.at(load)
+        if self.shear is None:
+            return family.pressed(load)
+        t, flip = self.shear, slice(None, None, 1 if side == 1 else -1)  # x counts outward in the family
+        sides = t.x[i, 1] - t.x[i, 0], t.y[i, 1] - t.y[i, 0]
+        apart = lift(t.shear_lateral[i], t.shear_rolling[i], *sides, self.per_stress[i])
+        return family.pressed(load, apart[:, flip], t.pressure[i][:, flip])
 
 
 class Patches:
@@ -55,13 +76,8 @@ class Patches:
             raise problem
 
     def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True,
-           pressed: np.ndarray | None = None, shear: SurfaceTractions | None = None,
-           per_stress: np.ndarray | None = None) -> GridPatch:  # fmt: skip
-        """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`.
-
-        Those `pressed` (n,) lie in wider boxes, where the tractions `shear` on these have moved the surfaces apart by
-        K/G `per_stress` [1/MPa], (n,).
-        """
+           pressing: Pressing | None = None) -> GridPatch:  # fmt: skip
+        """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`."""
         n = len(load)
         found: dict[int, np.ndarray] = {}
         numbers = np.full((n, 9), np.nan)
@@ -71,15 +87,8 @@ class Patches:
             if family is None:
                 continue
             if fine:
-                if pressed is None or not pressed[i]:
-                    node = family.at(load[i] / modulus)
-                elif shear is None or per_stress is None:
-                    node = family.pressed(load[i] / modulus)
-                else:
-                    flip = slice(None, None, 1 if side == 1 else -1)
-                    moved = lift(shear.shear_lateral[i], shear.shear_rolling[i], shear.x[i, 1] - shear.x[i, 0],
-                                 shear.y[i, 1] - shear.y[i, 0], per_stress[i])  # fmt: skip
-                    node = family.pressed(load[i] / modulus, moved[:, flip], shear.pressure[i][:, flip])
+                scaled = load[i] / modulus
+                node = family.at(scaled) if pressing is None else pressing.node(family, scaled, i, side)
                 box, shares, rest = node.box, rim_means(node.shares), (*node.scalars, node.reaches, node.residual)
             else:
                 box, shares = family.between(load[i] / modulus)
@@ -253,10 +262,11 @@ class GridKalkerModel(_OnGrid):
         pressed = unlike & np.isfinite(load) & np.isfinite(slip.shift) & (friction > 0.0)
         if isinstance(ellipse, GridPatch) or not pressed.any():
             return self.patch(ellipse, slip, rows)
-        patch, per_stress = self.patches.at(load, slip.sine, rows, True, pressed), self._per_stress[rows]
+        pressing = Pressing(pressed, self._per_stress[rows])
+        patch = self.patches.at(load, slip.sine, rows, True, pressing)
         for _ in range(ROUNDS):
-            t = self.surface(patch, slip, friction, rows)
-            patch = self.patches.at(load, slip.sine, rows, True, pressed, t, per_stress)
+            pressing = replace(pressing, shear=self.surface(patch, slip, friction, rows))
+            patch = self.patches.at(load, slip.sine, rows, True, pressing)
         return patch
 
     def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
