@@ -314,3 +314,15 @@ def test_shear_presses_on_unlike_materials_only():
     for name in ("normal_force", "lateral_force", "spin_moment", "max_pressure"):
         np.testing.assert_allclose(both[name], settled[name], rtol=1e-4)
     assert bool(both.converged) and float(both.energy_residual) < 5e-3
+
+
+def test_unlike_and_like_materials_in_one_batch_keep_their_digits():
+    """Rounds of the one do not move the starts of the other."""
+    changes = [{"roller_material": "PA6", "motor_force": 0.0}, {"friction_coefficient": 0.2}, {"guide_material": "POM"}]
+    cases = [tr.Case(**change) for change in changes]
+    options = {"contact_model": "kalker", "normal": "halfspace", "accuracy": "preview"}
+    together = tr.solve(cases, ("forces", "contact"), **options)
+    for i, case in enumerate(cases):
+        alone = tr.solve([case], ("forces", "contact"), **options)
+        for name in ("normal_force", "lateral_force", "rolling_radius_shift", "max_pressure", "residual"):
+            np.testing.assert_array_equal(together[name][i], alone[name][0])

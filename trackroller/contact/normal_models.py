@@ -27,22 +27,27 @@ GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
 
 @dataclass(frozen=True)
 class Pressing:
-    """Patches whose pressures shear changes: which (n,), K/G [1/MPa] (n,), and the tractions on them once known."""
+    """Patches whose pressures shear changes.
 
-    which: np.ndarray
+    place : number of each patch among these, -1 for others (n,); per_stress : their K/G [1/MPa]; shear : the tractions
+    on them, once known
+    """
+
+    place: np.ndarray
     per_stress: np.ndarray
     shear: SurfaceTractions | None = None
 
     def node(self, family: Family, load: float, i: int, side: int) -> Node:
         """Patch `i` of `family` under load/E* [mm^2]."""
-        if not self.which[i]:
+        k = self.place[i]
+        if k < 0:
             return family.at(load)
         if self.shear is None:
             return family.pressed(load)
         t, flip = self.shear, slice(None, None, 1 if side == 1 else -1)  # x counts outward in the family
-        sides = t.x[i, 1] - t.x[i, 0], t.y[i, 1] - t.y[i, 0]
-        apart = lift(t.shear_lateral[i], t.shear_rolling[i], *sides, self.per_stress[i])
-        return family.pressed(load, apart[:, flip], t.pressure[i][:, flip])
+        sides = t.x[k, 1] - t.x[k, 0], t.y[k, 1] - t.y[k, 0]
+        apart = lift(t.shear_lateral[k], t.shear_rolling[k], *sides, self.per_stress[k])
+        return family.pressed(load, apart[:, flip], t.pressure[k][:, flip])
 
 
 class Patches:
@@ -262,10 +267,13 @@ class GridKalkerModel(_OnGrid):
         pressed = unlike & np.isfinite(load) & np.isfinite(slip.shift) & (friction > 0.0)
         if isinstance(ellipse, GridPatch) or not pressed.any():
             return self.patch(ellipse, slip, rows)
-        pressing = Pressing(pressed, self._per_stress[rows])
+        own, place = np.flatnonzero(pressed), np.full(len(rows), -1)
+        place[own] = np.arange(own.size)
+        pressing = Pressing(place, self._per_stress[rows[own]])
         patch = self.patches.at(load, slip.sine, rows, True, pressing)
-        for _ in range(ROUNDS):
-            pressing = replace(pressing, shear=self.surface(patch, slip, friction, rows))
+        for _ in range(ROUNDS):  # the others are left alone: their digits shall not depend on these
+            t = self.surface(patch.take(own), slip.take(own), friction[own], rows[own])
+            pressing = replace(pressing, shear=t)
             patch = self.patches.at(load, slip.sine, rows, True, pressing)
         return patch
 
