@@ -24,8 +24,10 @@ def follow_friction(loads, law, rows, low, high):
     scale = np.ones_like(loads.friction)
     tangent = np.tan(loads.contact_angle[rows])
     start = np.clip(0.2 * tangent / loads.friction[rows], 1e-8, 0.05)  # well before the wedge may lock
+    load, pushed = Roller(loads, law, rows).load, loads.axial_force[rows] != 0
+    shed = np.zeros(m, bool)  # a branch that ends where friction nearly carries the lateral load has shed a contact
     for k in range(21):
-        go = np.flatnonzero(~lost & ~lifted)
+        go = np.flatnonzero(~shed & ~lifted)
         if go.size == 0:
             break
         scale[rows] = np.maximum(start ** (1 - k / 20), k / 20)
@@ -35,18 +37,16 @@ def follow_friction(loads, law, rows, low, high):
             w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
         best[go], w_new, n_new, f[:, :, go] = newton_polish(roller, w[go], normal[:, go], low[go], high[go])
         fine = best[go] <= 1e-8
-        lost[go], found[go] = ~fine, found[go] | np.isfinite(best[go])
+        lost[go], found[go] = lost[go] | ~fine, found[go] | np.isfinite(best[go])
         shrunk = np.any(normal[:, go] < 0.15 * roller.load, axis=0)
         lifted[go] = np.where(fine, np.any(n_new <= LIFTED * roller.load, axis=0), shrunk)
         on = go[fine]
         w[on], normal[:, on] = w_new[fine], n_new[:, fine]
         with np.errstate(invalid="ignore"):
             grip[on] = np.max(np.abs(f[0][:, on] / normal[:, on]), axis=0) / tangent[on]
+        shed = lost & ((grip > 0.5) | np.any(normal < 0.2 * load, axis=0)) & pushed
     best = np.where(lost, np.inf, best)
-    # a branch that ends where friction nearly carries the lateral load has shed a contact
-    roller = Roller(loads, law, rows)
-    light = np.any(normal < 0.2 * roller.load, axis=0)
-    lifted |= np.where(lost, ((grip > 0.5) | light) & (loads.axial_force[rows] != 0), ~roller.wedged(normal, f))
+    lifted |= np.where(lost, shed, ~Roller(loads, law, rows).wedged(normal, f))
     return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing
 
 

@@ -8,6 +8,9 @@ from trackroller.equilibrium_roller import Roller
 
 SMALL = 0.01  # rolling radius over patch
 EPS = 2.0**-53
+# Models that iterate are not asked again for what lies below this share of what they reach. Those in closed form cost
+# little, and rollers at the ends of the parameters need their last digits.
+SETTLED, CLOSED = 0.1, 1e-11
 
 
 def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance: float):
@@ -37,11 +40,16 @@ def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance:
         moved = np.abs(new - w[active])
         w[active] = new
         # where the balance holds, what is left is for Newton's method
-        unmet = np.abs(t) > (0.1 * roller.goal if fine else 0.0) * roller.torque_scale[active]
+        unmet = np.abs(t) > (_settled(roller) if fine else 0.0) * roller.torque_scale[active]
         active = active[(moved > tolerance) & (hi - lo > tolerance) & unmet]
         if active.size == 0:
             break
     return w, normal
+
+
+def _settled(roller: Roller) -> float:
+    """Relative change of forces that is not followed further."""
+    return SETTLED * roller.goal if roller.goal > CLOSED else 0.0
 
 
 def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.ndarray:
@@ -54,7 +62,7 @@ def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.nd
         new = roller.floored(roller.normal_forces(f[0][:, go] / normal[:, k], k), k)
         moved = np.max(np.abs(new - normal[:, k]), axis=0)
         normal[:, k] = new
-        go = go[~(moved <= 0.1 * roller.goal * roller.load[k])]
+        go = go[~(moved < _settled(roller) * roller.load[k])]
         if go.size == 0:
             break
     return f
