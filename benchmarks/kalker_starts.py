@@ -6,12 +6,13 @@ First random patches on 40x40 elements: axis ratios 0.05 to 20, friction 0.03 to
 Then starts: CPU time of a patch from nothing (by the grid of half the elements) and from the tractions of a neighbour
 whose friction and creepage differ by 2 to 20 %. Then equilibria: CPU time and patches solved when the rough search is
 done by the table of the exact theory, which is a grid of neighbours solved once and for all, and when it is done by
-half the elements. Ratios hold on a busy machine, times do not.
+half the elements. Last a batch of cases on one thread and on all. Ratios hold on a busy machine, times do not.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import time
 
 import numpy as np
@@ -22,7 +23,7 @@ from trackroller.case import Case, to_table
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.kalker import Creepage, KalkerSettings, solve_patch
 from trackroller.contact.kalker_law import KalkerLaw
-from trackroller.solver import Options
+from trackroller.solver import Options, solve
 
 STEEL = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
 STEPS = (0.02, 0.05, 0.1, 0.2)
@@ -101,6 +102,24 @@ def equilibria(count: int) -> None:
         print(f"an equilibrium, rough search by {rough}: {1e3 * spent:.0f} ms, {fine / len(grid):.1f} fine patches")
 
 
+def batch(count: int) -> None:
+    rng = np.random.default_rng(7)
+    cases = [Case(friction_coefficient=float(mu), motor_force=float(force))
+             for mu, force in zip(rng.uniform(0.05, 0.5, count), rng.choice([0.0, -10.0, 10.0], count), strict=True)]
+    spent, kept = {}, os.environ.get("NUMBA_NUM_THREADS")
+    for threads in (1, os.cpu_count() or 1):
+        os.environ["NUMBA_NUM_THREADS"] = str(threads)
+        solve(cases[:2], contact_model="kalker")
+        begin = time.perf_counter()
+        solve(cases, contact_model="kalker")
+        spent[threads] = (time.perf_counter() - begin) / count
+        print(f"complete cases on {threads} threads: {1e3 * spent[threads]:.0f} ms each")
+    print(f"faster by {spent[1] / spent[threads]:.2f}")
+    os.environ.pop("NUMBA_NUM_THREADS")
+    if kept is not None:
+        os.environ["NUMBA_NUM_THREADS"] = kept
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--random", type=int, default=250)
@@ -108,10 +127,12 @@ def main() -> None:
     parser.add_argument("--cases", type=int, default=24)
     given = parser.parse_args()
     equilibria(2)  # compiles
+    batch(4)
     print("(that was to compile)")
     at_random(given.random)
     patches(given.patches)
     equilibria(given.cases)
+    batch(2 * given.cases)
 
 
 if __name__ == "__main__":

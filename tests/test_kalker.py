@@ -327,6 +327,18 @@ def test_a_refined_start_keeps_linear_shares_of_the_traction_bound():
     assert np.all(start[0, 0][fine == 0] == 0)
 
 
+def test_threads_share_patches_without_changing_a_digit(monkeypatch):
+    rng = np.random.default_rng(8)
+    ellipses = patch(rng.uniform(0.1, 0.5, 12), rng.uniform(0.1, 0.5, 12), rng.uniform(300, 900, 12))
+    slips = creepage(rng.uniform(-2e-3, 2e-3, 12), 0.0, rng.uniform(0, 2e-2, 12))
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "1")
+    alone = solve_patch(ellipses, slips, 0.25, STEEL)
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "4")
+    shared = solve_patch(ellipses, slips, 0.25, STEEL)
+    assert 0.05 < alone.stick_fraction.max() and alone.converged.all()
+    assert np.array_equal(alone.traction, shared.traction) and np.array_equal(values(alone), values(shared))
+
+
 def test_the_rough_law_of_the_equilibrium_is_near_the_fine_one():
     """By the table where it holds, by half the elements beyond; both within 3 % of mu F_N."""
     pair, unlike = np.ones(2), Elastic(np.full(1, 50e3), np.full(1, 0.3), np.full(1, 0.45))

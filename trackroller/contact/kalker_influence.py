@@ -15,7 +15,8 @@ from functools import lru_cache
 
 import numpy as np
 from numba import njit
-from scipy import fft
+from rocket_fft import c2c
+from scipy.fft import next_fast_len
 
 FAST = {"contract", "reassoc", "arcp", "nsz"}
 
@@ -29,13 +30,13 @@ HALO = 3  # rows of displacements beside those of the elements: one behind, two 
 DIGITS = 13  # of element sizes and Poisson's ratio: patches alike but for rounding share their influence functions
 
 
-@njit(cache=True, fastmath=FAST)
+@njit(cache=True, fastmath=FAST, nogil=True)
 def _log_part(x, y):
     """x asinh(y / |x|), 0 at x = 0."""
     return 0.0 if x == 0.0 else x * math.asinh(y / abs(x))
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def displacements(hx, hy, poisson, ny, nx, below, above):
     """Displacement differences at distances (j hy, i hx) of a unit traction on an element hx x hy, G = 1.
 
@@ -56,7 +57,7 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
     return _over_element(corner, 1.0 / math.pi)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _over_element(corner, factor):
     """Corner values (m, rows + 1, columns + 1) of a double antiderivative to integrals over elements."""
     out = np.empty((corner.shape[0], corner.shape[1] - 1, corner.shape[2] - 1))
@@ -68,7 +69,7 @@ def _over_element(corner, factor):
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def pressure_displacements(hx, hy, ny, nx, below, above):
     """Tangential displacement differences of a unit pressure on an element for G = 1, K = 1: x, y, shape (2, ., .).
 
@@ -86,12 +87,41 @@ def pressure_displacements(hx, hy, ny, nx, below, above):
     return _over_element(corner, -1.0 / math.pi)
 
 
-def _multipliers(kernel: np.ndarray, ny: int, nx: int, ly: int, lx: int) -> np.ndarray:
+@njit(cache=True, nogil=True)
+def _multipliers(kernel, ny, nx, ly, lx):
     """Spectrum (ly, lx) of a complex influence function over the distances, (2 ny - 1 + HALO, 2 nx - 1)."""
-    field = np.zeros((ly, lx), complex)
-    rows, columns = (np.arange(2 * ny - 1 + HALO) - ny + 1) % ly, (np.arange(2 * nx - 1) - nx + 1) % lx
-    field[rows[:, None], columns] = kernel
-    return fft.fft2(field)
+    field = np.zeros((ly, lx), np.complex128)
+    for j in range(2 * ny - 1 + HALO):
+        for i in range(2 * nx - 1):
+            field[(j - ny + 1) % ly, (i - nx + 1) % lx] = kernel[j, i]
+    c2c(field, field, np.array([0, 1]), True, 1.0, 1)
+    return field
+
+
+@njit(cache=True, fastmath=FAST, nogil=True)
+def _combined(p, q, z, out):
+    """`out` = P Z + Q conj(Z(-k))."""
+    ly, lx = z.shape
+    for i in range(ly):
+        mirror = ly - i if i > 0 else 0
+        out[i, 0] = p[i, 0] * z[i, 0] + q[i, 0] * z[mirror, 0].conjugate()
+        for j in range(1, lx):
+            out[i, j] = p[i, j] * z[i, j] + q[i, j] * z[mirror, lx - j].conjugate()
+
+
+@njit(cache=True, nogil=True)
+def convolve(field, p, q, work):
+    """Displacements of the tractions `field` (ny, nx) by transforms in `work` (2, ly, lx), which holds them in the end.
+
+    They stand in its second part, rows 0 .. ny - 1 + HALO and columns 0 .. nx - 1.
+    """
+    ny = field.shape[0]
+    ly, lx = p.shape
+    c2c(field, work[0, :ny], np.array([1]), True, 1.0, 1)
+    c2c(work[0, :ny], work[1], np.array([0]), True, 1.0, 1)
+    _combined(p, q, work[1], work[0])
+    c2c(work[0], work[1], np.array([0]), False, 1.0 / ly, 1)
+    c2c(work[1, : ny + HALO], work[1, : ny + HALO], np.array([1]), False, 1.0 / lx, 1)
 
 
 @dataclass(frozen=True)
@@ -118,31 +148,17 @@ class Influence:
     def displacements(self, field: np.ndarray) -> np.ndarray:
         """Displacements (ny + HALO, nx), one row behind to two rows ahead, of the tractions `field` (ny, nx)."""
         ny, nx = field.shape
-        ly, lx = self.p.shape
-        spectrum = fft.fft(fft.fft(field, lx, axis=1), ly, axis=0, overwrite_x=True)
-        product = fft.ifft(_combined(self.p, self.q, spectrum), axis=0, overwrite_x=True)[: ny + HALO]
-        return fft.ifft(product, axis=1)[:, :nx]
-
-
-@njit(cache=True, fastmath=FAST, nogil=True)
-def _combined(p, q, z):
-    """P Z + Q conj(Z(-k))."""
-    ly, lx = z.shape
-    w = np.empty_like(z)
-    for i in range(ly):
-        mirror = ly - i if i > 0 else 0
-        w[i, 0] = p[i, 0] * z[i, 0] + q[i, 0] * z[mirror, 0].conjugate()
-        for j in range(1, lx):
-            w[i, j] = p[i, j] * z[i, j] + q[i, j] * z[mirror, lx - j].conjugate()
-    return w
+        work = np.empty((2, *self.p.shape), complex)
+        convolve(field, self.p, self.q, work)
+        return work[1, : ny + HALO, :nx]
 
 
 @lru_cache(maxsize=64)
 def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influence:
-    ly, lx = fft.next_fast_len(2 * ny - 1 + HALO), fft.next_fast_len(2 * nx - 1)
+    ly, lx = next_fast_len(2 * ny - 1 + HALO), next_fast_len(2 * nx - 1)
     u = displacements(hx, hy, poisson, ny, nx, 1, 2)
-    p = 0.5 * (u[0] + u[1])
-    own = (1.5 * p[ny, nx - 1] - 2.0 * p[ny + 1, nx - 1] + 0.5 * p[ny + 2, nx - 1]) / hy
+    p = 0.5 * (u[0] + u[1]) + 0j
+    own = (1.5 * p[ny, nx - 1] - 2.0 * p[ny + 1, nx - 1] + 0.5 * p[ny + 2, nx - 1]).real / hy
     q = 0.5 * (u[0] - u[1]) + 1j * u[2]
     spectrum_p, spectrum_q = (_multipliers(kernel, ny, nx, ly, lx) for kernel in (p, q))
     return Influence(hy, spectrum_p, spectrum_q, float(own), np.ascontiguousarray(u[:2, :, nx - 1]))
@@ -156,14 +172,14 @@ def influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influen
 def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
     """Slip -du/dy (ny, nx), x + iy, of a pressure field (ny, nx) for K = G = 1, by central differences."""
     ny, nx = pressure.shape
-    ly, lx = fft.next_fast_len(2 * ny - 1 + HALO), fft.next_fast_len(2 * nx - 1)
+    ly, lx = next_fast_len(2 * ny - 1 + HALO), next_fast_len(2 * nx - 1)
     u = pressure_displacements(hx, hy, ny, nx, 1, 2)
     p = _multipliers(u[0] + 1j * u[1], ny, nx, ly, lx)
     halo = Influence(hy, p, np.zeros_like(p), 1.0, np.zeros((2, 1))).displacements(pressure.astype(complex))
     return 0.5 * (halo[:ny] - halo[2 : ny + 2]) / hy
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def leading_rows(bound):
     """Row of the leading element (largest y with a traction bound > 0) of each column, -1 for none."""
     ny, nx = bound.shape

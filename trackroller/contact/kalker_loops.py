@@ -11,9 +11,10 @@ from trackroller.contact.kalker_influence import FAST
 from trackroller.contact.knots import interval
 
 
-def reals(field: np.ndarray) -> np.ndarray:
+@njit(cache=True, nogil=True)
+def reals(field):
     """View of a complex field (ny, nx) as (ny, nx, 2)."""
-    return field.view(float).reshape(*field.shape, 2)
+    return field.view(np.float64).reshape(field.shape[0], field.shape[1], 2)
 
 
 @njit(cache=True, nogil=True)
@@ -82,75 +83,6 @@ def jacobian(traction, slip, bound, slope, rho, derivative, turn):
                 steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
             turn[0, i, j], turn[1, i, j] = steep * zx * sx, steep * zx * sy
             turn[2, i, j], turn[3, i, j] = steep * zy * sx, steep * zy * sy
-
-
-@njit(cache=True, fastmath=FAST)
-def dot(a, b):
-    total = 0.0
-    for i in range(a.size):
-        total += a[i] * b[i]
-    return total
-
-
-@njit(cache=True)
-def _rotate(hessenberg, givens, rhs, k):
-    """Givens rotations of column k; the rest of the right-hand side is the residual's norm."""
-    for i in range(k):
-        c, s = givens[0, i], givens[1, i]
-        a, b = hessenberg[i, k], hessenberg[i + 1, k]
-        hessenberg[i, k], hessenberg[i + 1, k] = c * a + s * b, c * b - s * a
-    a, b = hessenberg[k, k], hessenberg[k + 1, k]
-    length = math.sqrt(a * a + b * b)
-    c, s = (1.0, 0.0) if length == 0.0 else (a / length, b / length)
-    givens[0, k], givens[1, k] = c, s
-    hessenberg[k, k], hessenberg[k + 1, k] = length, 0.0
-    rhs[k + 1] = -s * rhs[k]
-    rhs[k] = c * rhs[k]
-
-
-@njit(cache=True, fastmath=FAST, nogil=True)
-def arnoldi(direction, product, derivative, turn, rho, basis, k, hessenberg, givens, rhs):
-    """Newton's matrix times `direction`, d - P'(d - rho B d) - turn B d, made orthogonal to basis[: k + 1].
-
-    `product` is B d. Returns the norm of the residual with this much of the Krylov space.
-    """
-    ny, nx = derivative.shape[1], derivative.shape[2]
-    v = basis[k + 1]
-    for i in range(ny):
-        for j in range(nx):
-            bx, by = product[i, j, 0], product[i, j, 1]
-            dx, dy = direction[i, j, 0], direction[i, j, 1]
-            x, y = dx - rho * bx, dy - rho * by
-            pxx, pxy, pyy = derivative[0, i, j], derivative[1, i, j], derivative[2, i, j]
-            place = 2 * (i * nx + j)
-            v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * bx - turn[1, i, j] * by
-            v[place + 1] = dy - pxy * x - pyy * y - turn[2, i, j] * bx - turn[3, i, j] * by
-    for i in range(k + 1):
-        h = dot(basis[i], v)
-        hessenberg[i, k] = h
-        row = basis[i]
-        for j in range(v.size):
-            v[j] -= h * row[j]
-    h = math.sqrt(dot(v, v))
-    hessenberg[k + 1, k] = h
-    if h > 0.0:
-        for j in range(v.size):
-            v[j] /= h
-    _rotate(hessenberg, givens, rhs, k)
-    return abs(rhs[k + 1])
-
-
-@njit(cache=True, nogil=True)
-def combination(basis, hessenberg, rhs, done, out):
-    """Least-squares combination of basis[: done] into `out` (2 ny nx,)."""
-    for j in range(out.size):
-        out[j] = 0.0
-    for i in range(done - 1, -1, -1):
-        for j in range(i + 1, done):
-            rhs[i] -= hessenberg[i, j] * rhs[j]
-        rhs[i] = rhs[i] / hessenberg[i, i] if hessenberg[i, i] != 0.0 else 0.0
-        for j in range(out.size):
-            out[j] += rhs[i] * basis[i, j]
 
 
 @njit(cache=True, nogil=True)

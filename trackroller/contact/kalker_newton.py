@@ -15,19 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.kalker_columns import apply_inverse, column_ranges, column_slips, factorise
-from trackroller.contact.kalker_influence import Influence, differences, leading_rows
-from trackroller.contact.kalker_loops import (
-    arnoldi,
-    combination,
-    dot,
-    find_slits,
-    hold,
-    jacobian,
-    law_of_slip,
-    reals,
-    residual,
-)
+from trackroller.contact.kalker_columns import column_ranges, column_slips
+from trackroller.contact.kalker_influence import Influence, leading_rows
+from trackroller.contact.kalker_krylov import multiply, solve
+from trackroller.contact.kalker_loops import find_slits, hold, jacobian, law_of_slip, reals, residual
 
 # Where many elements are wrongly thought to slide between sticking ones, Newton's method frees one a step, from the
 # leading edge on, by short steps. After SHORT steps of at most half length they are taken as sticking at once; the
@@ -79,15 +70,13 @@ class _Newton:
         self.basis = np.empty((krylov + 1, 2 * ny * nx))
         self.derivative, self.turn = np.empty((3, ny, nx)), np.empty((4, ny, nx))
         self.bound, self.slope, self.held = np.empty((ny, nx)), np.zeros((ny, nx)), np.zeros((ny, nx), bool)
-        self.value, self.field, self.product = (np.empty((ny, nx), complex) for _ in range(3))
+        self.value, self.product = np.empty((ny, nx), complex), np.empty((ny, nx), complex)
+        self.work = np.empty((2, *functions.p.shape), complex)
+        self.kernel = functions.p, functions.q, self.leading, functions.hy, problem.rolling
 
     def multiply(self, field: np.ndarray) -> np.ndarray:
         """B `field` into the kept array."""
-        halo = self.problem.influence.displacements(field)
-        if self.problem.rolling:
-            differences(halo, self.leading, self.problem.influence.hy, self.product)
-        else:
-            self.product[:] = halo[1 : 1 + field.shape[0]]
+        multiply(field, *self.kernel, self.work, self.product)
         return self.product
 
     def state(self, traction: np.ndarray, slip: np.ndarray) -> _State:
@@ -106,32 +95,10 @@ class _Newton:
         jacobian(reals(at.traction), slip, self.bound, self.slope, self.rho, self.derivative, self.turn)
         if leap:
             hold(self.held, slip, self.rho, reals(self.value), self.derivative, self.turn)
-        step, products = self._solve(tolerance)
+        step = np.empty_like(self.value)
+        products = solve(self.value, self.slips, self.derivative, self.turn, self.rho, self.first, self.count,
+                         *self.kernel, tolerance, self.factors, self.basis, self.work, step)  # fmt: skip
         return step, self.multiply(step), products + 1
-
-    def _solve(self, tolerance: float) -> tuple[np.ndarray, int]:
-        """Newton's matrix against the kept residual by preconditioned GMRES."""
-        factorise(self.slips, self.derivative, self.rho, self.first, self.count, self.factors)
-        steps = self.basis.shape[0] - 1
-        hessenberg, givens, rhs = np.zeros((steps + 1, steps)), np.zeros((2, steps)), np.zeros(steps + 1)
-        flat = self.value.reshape(-1).view(float)
-        norm = math.sqrt(dot(flat, flat))
-        np.divide(flat, norm, out=self.basis[0])
-        rhs[0] = norm
-        done = 0
-        for k in range(steps):
-            apply_inverse(self.factors, self.first, self.count, self.basis[k].reshape(*self.value.shape, 2),
-                          reals(self.field))  # fmt: skip
-            product = self.multiply(self.field)
-            rest = arnoldi(reals(self.field), reals(product), self.derivative, self.turn, self.rho, self.basis, k,
-                           hessenberg, givens, rhs)  # fmt: skip
-            done = k + 1
-            if rest <= tolerance * norm:
-                break
-        combination(self.basis, hessenberg, rhs, done, flat)
-        out = np.empty_like(self.field)
-        apply_inverse(self.factors, self.first, self.count, reals(self.value), reals(out))
-        return out, done
 
     def search(self, at: _State, step: np.ndarray, change: np.ndarray) -> tuple[_State, float]:
         """The state along a step, halved until the residual's norm falls, but at most four times; its length."""
