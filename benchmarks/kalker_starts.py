@@ -128,6 +128,7 @@ def main() -> None:
     given = parser.parse_args()
     equilibria(2)  # compiles
     batch(4)
+    at_random(60)
     print("(that was to compile)")
     at_random(given.random)
     patches(given.patches)

@@ -144,7 +144,7 @@ def test_hertz_is_the_special_case_of_the_chain():
     flat = {"guide_profile": {"parabola": 6.0}, "roller_profile": {"parabola": -7.0}}
     hertz = tr.solve(tr.Case(**loads), outputs, contact_model="fastsim")
     grid = tr.solve(tr.Case(**loads, **flat), outputs, contact_model="fastsim", normal="halfspace")
-    assert int(grid.converged) == 1 and float(grid.energy_residual) < 1e-9
+    assert int(grid.converged) == 1 and float(grid.energy_residual) < 1e-7  # of the balance
     for name in ("normal_force", "lateral_force", "driving_force"):
         np.testing.assert_allclose(grid[name], hertz[name], atol=1e-3 * float(hertz.normal_force.max()), err_msg=name)
     np.testing.assert_allclose(grid.spin_moment, hertz.spin_moment, rtol=3e-3)

@@ -106,7 +106,8 @@ def newton_polish(roller: Roller, w, normal, w_low, w_high, steps: int = 14):
         best[hit], w_best[hit] = size[better], w_a[better]
         n_best[:, hit], f_best[:, :, hit] = n_a[:, better], f[:, :, better]
         stalled = (size > 0.3 * best[active]) & ~better if k > 8 else np.zeros(active.size, bool)
-        go = (size > 1e-15) & np.isfinite(size) & ~stalled & ~((best[active] < roller.goal) & ~better)
+        worth = (size > max(1e-15, _settled(roller))) & np.isfinite(size)
+        go = worth & ~stalled & ~((best[active] < roller.goal) & ~better)
         active, r = active[go], r[go]
         if active.size == 0:
             break
