@@ -16,7 +16,7 @@ from trackroller.contact.common import Resultants
 from trackroller.contact.sliding import tractions_full_slip
 from trackroller.equilibrium_branch import follow_friction, self_locking
 from trackroller.equilibrium_falling import balance_again, first_balance
-from trackroller.equilibrium_newton import bracketed, digits_of_forces, newton_polish
+from trackroller.equilibrium_newton import bracketed, digits_of_forces, newton_polish, settled
 from trackroller.equilibrium_roller import LAST_SLIP, ContactLaw, Loads, Roller
 
 __all__ = ["FAILED", "FULL_SLIP", "LIFT_OFF", "ROLLING", "ContactLaw", "Equilibrium", "Loads", "solve_equilibrium"]
@@ -161,7 +161,7 @@ def _balance(loads, law, rows, low, high, whole, unsure) -> tuple[_Found, np.nda
     """
     roller = Roller(loads, law, rows)
     w, n = bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
-    found = _Found(*newton_polish(roller, w, n, low, high))
+    found = _Found(*newton_polish(roller, w, n, low, high, settled(roller)))
     slides = np.zeros(rows.size, bool)
     bad = np.flatnonzero(~(found.best <= loads.converged) | unsure)
     if bad.size and loads.falling:
@@ -172,7 +172,7 @@ def _balance(loads, law, rows, low, high, whole, unsure) -> tuple[_Found, np.nda
     elif bad.size:  # slow and sure
         roller = Roller(loads, law, rows[bad])
         w, n = bracketed(roller, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
-        found.put(bad, newton_polish(roller, w, n, low[bad], high[bad]))
+        found.put(bad, newton_polish(roller, w, n, low[bad], high[bad], settled(roller)))
     return found, slides
 
 

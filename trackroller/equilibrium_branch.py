@@ -35,6 +35,7 @@ def follow_friction(loads, law, rows, low, high):
         roller = Roller(eased, law, rows[go])
         if k == 0:
             w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
+        # to the last digit: small differences grow along a branch that nearly locks
         best[go], w_new, n_new, f[:, :, go] = newton_polish(roller, w[go], normal[:, go], low[go], high[go])
         fine = best[go] <= 1e-8
         lost[go], found[go] = lost[go] | ~fine, found[go] | np.isfinite(best[go])

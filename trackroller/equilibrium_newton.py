@@ -40,14 +40,14 @@ def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance:
         moved = np.abs(new - w[active])
         w[active] = new
         # where the balance holds, what is left is for Newton's method
-        unmet = np.abs(t) > (_settled(roller) if fine else 0.0) * roller.torque_scale[active]
+        unmet = np.abs(t) > (settled(roller) if fine else 0.0) * roller.torque_scale[active]
         active = active[(moved > tolerance) & (hi - lo > tolerance) & unmet]
         if active.size == 0:
             break
     return w, normal
 
 
-def _settled(roller: Roller) -> float:
+def settled(roller: Roller) -> float:
     """Relative change of forces that is not followed further."""
     return SETTLED * roller.goal if roller.goal > CLOSED else 0.0
 
@@ -62,7 +62,7 @@ def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.nd
         new = roller.floored(roller.normal_forces(f[0][:, go] / normal[:, k], k), k)
         moved = np.max(np.abs(new - normal[:, k]), axis=0)
         normal[:, k] = new
-        go = go[~(moved < _settled(roller) * roller.load[k])]
+        go = go[~(moved < settled(roller) * roller.load[k])]
         if go.size == 0:
             break
     return f
@@ -87,8 +87,11 @@ def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
     return jac
 
 
-def newton_polish(roller: Roller, w, normal, w_low, w_high, steps: int = 14):
-    """Newton-Broyden polish of all three unknowns with the fine law; returns residual (m,) with w, normal, forces."""
+def newton_polish(roller: Roller, w, normal, w_low, w_high, enough: float = 0.0, steps: int = 14):
+    """Newton-Broyden polish of all three unknowns with the fine law; returns residual (m,) with w, normal, forces.
+
+    It ends at a residual of `enough`; without, where rounding and the noise of the law end it.
+    """
     m = w.size
     best = np.full(m, np.inf)
     w_best, n_best, f_best = w.copy(), normal.copy(), np.full((3, 2, m), np.nan)
@@ -106,7 +109,7 @@ def newton_polish(roller: Roller, w, normal, w_low, w_high, steps: int = 14):
         best[hit], w_best[hit] = size[better], w_a[better]
         n_best[:, hit], f_best[:, :, hit] = n_a[:, better], f[:, :, better]
         stalled = (size > 0.3 * best[active]) & ~better if k > 8 else np.zeros(active.size, bool)
-        worth = (size > max(1e-15, _settled(roller))) & np.isfinite(size)
+        worth = (size > max(1e-15, enough)) & np.isfinite(size)
         go = worth & ~stalled & ~((best[active] < roller.goal) & ~better)
         active, r = active[go], r[go]
         if active.size == 0:
