@@ -320,3 +320,17 @@ def test_friction_too_steep_for_elastic_surfaces_is_told():
     assert not marked(gentle, "kalker") and not marked({}, "kalker")
     assert linear_falling(50.0, 0.4).steepest_fall == pytest.approx(0.6 / 50.0)
     assert constant().steepest_fall == table([0, 1], [0.2, 0.3]).steepest_fall == 0.0
+
+
+def test_a_roller_without_balance_for_steep_friction_says_so():
+    """Its pressures are unknown; the bit judges by those without friction."""
+    soft = {"like": "1.7225-normalised", "youngs_modulus": 44e3, "poisson_ratio": 0.486}
+    lost = tr.Case(
+        axis_distance=12.907, guide_profile_radius=15.743, roller_profile_radius=-22.148, guide_curve_radius=543.85,
+        contact_angle=61.379, radial_force=-611.3, axial_force=-94.48, motor_force=-113.87, friction_coefficient=0.53,
+        velocity=1166.4, roller_material=soft, guide_material="EN AW-7075",
+        friction_law={"kind": "linear", "lowest": 0.7, "speed": 100.0},
+    )  # fmt: skip
+    found = tr.solve(lost, contact_model="kalker", outputs="forces")
+    assert int(found.regime) == 3 and np.isnan(found.normal_force).all()
+    assert int(found.validity) & 1 << list(VALIDITY_BITS).index("steep_friction")

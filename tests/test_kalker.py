@@ -327,6 +327,24 @@ def test_a_refined_start_keeps_linear_shares_of_the_traction_bound():
     assert np.all(start[0, 0][fine == 0] == 0)
 
 
+def test_dissipation_in_the_elements_meets_the_work_put_in_with_second_order():
+    """Steady rolling stores no energy: sum tau.s = tau.w. The local sum tends to that with the elements squared."""
+    ellipses = patch([0.3, 0.15, 0.4, 0.1], [0.18, 0.3, 0.1, 0.4], 700.0)
+    slips = creepage([1e-3, -5e-4, 4e-4, 8e-4], 0.0, [1.5e-2, 1e-2, 2e-2, 4e-3])
+
+    def residual(elements, extrapolate=False):
+        settings = KalkerSettings(elements=elements, extrapolate=extrapolate, tolerance=1e-9)
+        return solve_patch(ellipses, slips, 0.25, STEEL, settings)
+
+    plain = [np.abs(residual(n).energy_residual) for n in (20, 40, 80)]
+    orders = np.log2([plain[0] / plain[1], plain[1] / plain[2]])
+    assert np.all((orders > 1.6) & (orders < 2.6)), orders
+    found, fine = residual(40, True), residual(160, True)
+    assert 0.02 < found.stick_fraction.max() < 0.7
+    assert np.all(np.abs(found.energy_residual) < 0.4 * plain[1]) and np.abs(found.energy_residual).max() < 5e-4
+    np.testing.assert_allclose(found.works.dissipated, fine.friction_energy_per_distance, rtol=2e-3)
+
+
 def test_threads_share_patches_without_changing_a_digit(monkeypatch):
     rng = np.random.default_rng(8)
     ellipses = patch(rng.uniform(0.1, 0.5, 12), rng.uniform(0.1, 0.5, 12), rng.uniform(300, 900, 12))

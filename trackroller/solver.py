@@ -217,6 +217,7 @@ def _solve_group(table: CaseTable, options: Options) -> Block:
     wanted = set(options.outputs)
     stages.forces(results)
     stages.contact(results, options)
+    stages.steep_friction(results, options)
     if "friction_work" in wanted:
         stages.friction_work(results, options)
     stages_stress.stop(results, options)

@@ -106,6 +106,29 @@ def contact(results: Results, options: Options) -> None:
         v["stick_area_fraction"] = results.full(_stick_share(results))
 
 
+def steep_friction(results: Results, options: Options) -> None:
+    """Marks cases with mu p_max v max(-df/dv)/G above 1: friction falls on the slip that elasticity gives way by.
+
+    An element under traction tau moves by about tau/G of the travel; where friction falls with that by more than the
+    traction itself, its state is not unique. That is why most rollers without a balance have none: the pressure of
+    those is judged by their forces without friction.
+    """
+    scene = results.scene
+    table, loads = scene.table, scene.loads
+    if not loads.falling or options.contact_model == "sliding":
+        return
+    r, g = table.roller, table.guide
+    shear = Elastic.of_pair(r.youngs_modulus, r.poisson_ratio, g.youngs_modulus, g.poisson_ratio).shear_modulus
+    fall = law_of(table.friction_law[0]).steepest_fall * table.velocity * (1000.0 / 60.0)
+    plain = 0.5 * (np.abs(loads.radial_force) / np.cos(loads.contact_angle)
+                   + np.abs(loads.axial_force) / np.sin(loads.contact_angle))  # fmt: skip
+    pressure = np.where(results.regime == eq.FAILED, loads.shape.pressure * np.cbrt(plain),
+                        np.max(results.values["max_pressure"], axis=1))  # fmt: skip
+    with np.errstate(invalid="ignore"):
+        steep = loads.friction * pressure * fall / shear > 1.0
+    results.bits |= np.where(steep, 1 << list(VALIDITY_BITS).index("steep_friction"), 0).astype(np.int32)
+
+
 def _stick_share(results: Results) -> np.ndarray:
     """Share of each existing patch that sticks; a table of the contact model knows it without tractions."""
     model, good = results.scene.model, results.good

@@ -8,8 +8,6 @@ import numpy as np
 
 from trackroller import fatigue
 from trackroller.case import CaseTable
-from trackroller.contact.common import Elastic
-from trackroller.contact.friction_laws import law_of
 from trackroller.contact.slip import pole_split
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import rolling_radius
@@ -80,24 +78,8 @@ def validity(table: CaseTable, block: Block) -> None:
                                     v["rolling_radius_shift"]) for k, sign in ((0, 1.0), (1, -1.0))]  # fmt: skip
         warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & (np.maximum(*split) > 0.1))
         warn("large_slip", np.abs(v["slip"]) > 0.1)
-        elastic_slip = block.model != CONTACT_MODELS.index("sliding")
-        warn("steep_friction", elastic_slip & (_steepness(table, np.max(v["max_pressure"], axis=1)) > 1.0))
         if "peak_stress" in v:
             limits = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)[:, None, :]
             knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)[:, None, :]
             warn("static", np.any(v["peak_stress"] > limits, axis=(1, 2)))
             warn("deep_life", np.any(v["peak_stress"] < knee, axis=(1, 2)))
-
-
-def _steepness(table: CaseTable, max_pressure: np.ndarray) -> np.ndarray:
-    """mu p_max v max(-df/dv)/G, shape (n,): by how much friction falls on the slip that elasticity gives way by.
-
-    An element under traction tau moves by about tau/G of the travel; where friction falls with that by more than the
-    traction itself, its state is not unique.
-    """
-    fall = np.zeros(len(table))
-    for text in np.unique(table.friction_law.astype(str)):
-        fall[table.friction_law == text] = law_of(text or None).steepest_fall
-    r, g = table.roller, table.guide
-    shear = Elastic.of_pair(r.youngs_modulus, r.poisson_ratio, g.youngs_modulus, g.poisson_ratio).shear_modulus
-    return table.friction_coefficient * max_pressure * fall * table.velocity * (1000.0 / 60.0) / shear

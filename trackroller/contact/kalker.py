@@ -92,7 +92,7 @@ class PatchSolution:
     friction_energy_per_distance : dissipation per travelled distance [N], from the works of the rigid slip and of
         the pressures
     pressure_work : what the pressures add where the tractions move unlike surfaces along the normal [N]
-    energy_residual : relative difference of the dissipation summed over the elements and that work
+    energy_residual : relative difference of the dissipation summed over the elements and that work, extrapolated
     error_estimate : (n, 3) |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation
     residual, steps, products : largest residual of the friction law over mu p_max, Newton steps, products
     converged : residual within its tolerance
@@ -176,7 +176,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     value = fine[:, :3]
     error = np.full((n, 3), np.nan)
     pressed = fine[:, batch.PRESSURE_WORK]
-    whole = work = fine[:, batch.WORK] + pressed
+    work, energy = fine[:, batch.WORK] + pressed, batch.energy_residual(fine)
     if coarse is not None:
         error = np.abs(value - coarse[:, :3])
         middle = Creepage(creep.longitudinal + creep.spin * _centre(ellipse), creep.lateral, creep.spin)
@@ -185,10 +185,10 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         value = value + weights * (value - coarse[:, :3])
         pressed = pressed + weight * (pressed - coarse[:, batch.PRESSURE_WORK])
         work = work + weight * (work - coarse[:, batch.WORK] - coarse[:, batch.PRESSURE_WORK])
+        # observed to be of second order wherever a part of the patch slides
+        energy = energy + extrapolation.SECOND_ORDER * (energy - batch.energy_residual(coarse))
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + _centre(ellipse) * value[:, 1]], axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        energy = np.where(whole != 0, fine[:, batch.POWER] / whole - 1.0, 0.0)
     good = fine[:, batch.RESIDUAL] <= settings.tolerance
     return PatchSolution(
         Resultants(value[:, 0], value[:, 1], value[:, 2]), traction, slip, stick, fine[:, batch.STICK], work, pressed,

@@ -124,6 +124,13 @@ def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, tra
     share_rows(work, a.size, 1, 1)
 
 
+def energy_residual(report: np.ndarray) -> np.ndarray:
+    """Dissipation summed over the elements over the work of rigid slip and pressures, less 1; (n,)."""
+    work = report[:, WORK] + report[:, PRESSURE_WORK]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(work != 0, report[:, POWER] / work - 1.0, 0.0)
+
+
 @njit(cache=True)
 def refine(coarse, coarse_height, height, fine):
     """Start of a grid (n, 2, 2 ny, 2 nx) from the one with half the elements.
