@@ -52,7 +52,7 @@ def test_whole_equilibria_agree_with_contact(name, change, terms):
     # the tangent's work, in which CONTACT's resultants were summed up too
     np.testing.assert_allclose(ds.friction_energy_balance, record["friction_power_per_speed"], rtol=3e-3)
     # the drive torque has the lever arms of the tangent, which the slip of the profile has not
-    assert float(ds.energy_residual) < (5e-3 if "profile" in terms else 1.5e-3)
+    assert float(ds.energy_residual) < (6e-3 if "profile" in terms else 5e-4)
 
 
 def test_curve_puts_its_work_in_beside_the_motor():
