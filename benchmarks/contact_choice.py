@@ -23,7 +23,7 @@ import numpy as np
 import trackroller as tr
 from trackroller.case import to_table
 from trackroller.contact import choice
-from trackroller.solver import Options
+from trackroller.options import Options
 
 sys.path.insert(0, str(Path(__file__).parent))
 from peak_coverage import random_case

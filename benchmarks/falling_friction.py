@@ -29,7 +29,7 @@ from trackroller.case import CaseTable, to_table
 from trackroller.equilibrium import ROLLING, solve_equilibrium
 from trackroller.equilibrium_newton import newton_polish
 from trackroller.equilibrium_roller import LAST_SLIP, Roller
-from trackroller.solver import Options
+from trackroller.options import Options
 
 RUNS = ("sliding:standard", "fastsim:standard", "kalker:preview", "kalker:standard")
 SPEED = 100.0  # mm/s, characteristic of every law; the velocity sets the slip over it

@@ -24,7 +24,7 @@ from trackroller.case import to_table
 from trackroller.contact.common import Elastic
 from trackroller.contact.kalker import KalkerSettings
 from trackroller.contact.kalker_law import KalkerLaw
-from trackroller.solver import Options
+from trackroller.options import Options
 
 ABOUT = (
     "r_Delta0 [mm] of the free-rolling cases of contact.json on one grid of the exact theory without extrapolation, "

@@ -23,7 +23,8 @@ from trackroller.case import Case, to_table
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.kalker import Creepage, KalkerSettings, solve_patch
 from trackroller.contact.kalker_law import KalkerLaw
-from trackroller.solver import Options, solve
+from trackroller.options import Options
+from trackroller.solver import solve
 
 STEEL = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
 STEPS = (0.02, 0.05, 0.1, 0.2)

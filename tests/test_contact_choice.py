@@ -13,7 +13,7 @@ import xarray as xr
 import trackroller as tr
 from trackroller.case import to_table
 from trackroller.contact import choice
-from trackroller.solver import Options
+from trackroller.options import Options
 from trackroller.study import ladder
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))

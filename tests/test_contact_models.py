@@ -76,8 +76,8 @@ def test_gridded_tractions_give_the_stress_of_the_formula():
     from trackroller.contact.models import traction_share
     from trackroller.equilibrium import solve_equilibrium
     from trackroller.halfspace.peak import find_peaks
+    from trackroller.options import Options
     from trackroller.scene import Results
-    from trackroller.solver import Options
 
     options = Options()
     scene = stages.prepare(to_table([tr.Case()]), options)

@@ -20,7 +20,7 @@ from trackroller.contact.normal import lift
 from trackroller.contact.normal_patch import GridPatch
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import stress_from_tractions
-from trackroller.solver import Options
+from trackroller.options import Options
 
 PARABOLAS = {"guide_profile": {"parabola": 6.0}, "roller_profile": {"parabola": -7.0}}
 LOADS = {"motor_force": -20.0, "friction_coefficient": 0.25}

@@ -7,8 +7,8 @@ import trackroller as tr
 from trackroller import requirements, stages, stages_stress
 from trackroller.case import to_table
 from trackroller.explain import explain
+from trackroller.options import Options
 from trackroller.scene import Results
-from trackroller.solver import Options
 
 EVERYTHING = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 

@@ -15,7 +15,7 @@ from trackroller.contact.sliding import rolling_slip
 from trackroller.contact.slip import contour_over_tangent, turning_of
 from trackroller.errors import InputError
 from trackroller.explain import explain
-from trackroller.solver import Options
+from trackroller.options import Options
 from trackroller.study.config import parse_study
 from trackroller.study.identity import fingerprints
 

@@ -49,7 +49,7 @@ def _print_study(path: Path, results: Path) -> None:
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
     from trackroller.case import to_table
     from trackroller.cli_case import case_of
-    from trackroller.solver import Options
+    from trackroller.options import Options
 
     case, told = case_of(path, words)
     if no_shortcuts:
@@ -59,7 +59,7 @@ def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None
 
 def _explain_study(path: Path, no_shortcuts: bool) -> None:
     from trackroller.case import to_table
-    from trackroller.solver import Options
+    from trackroller.options import Options
     from trackroller.study.entries import OPTION_FACTORS
     from trackroller.study.plan import case_options
 

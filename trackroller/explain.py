@@ -11,7 +11,7 @@ from trackroller import requirements
 
 if TYPE_CHECKING:
     from trackroller.case import CaseTable
-    from trackroller.solver import Options
+    from trackroller.options import Options
 
 
 @dataclass(frozen=True)

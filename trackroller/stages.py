@@ -6,7 +6,6 @@ Those that look for stresses stand in `stages_stress`, what each case makes of t
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,11 +21,10 @@ from trackroller.contact.slip import turning_of
 from trackroller.contact.table_model import TableModel
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
+from trackroller.options import Options
 from trackroller.requirements import Mirror, is_frictionless, is_mirror_symmetric
 from trackroller.scene import Results, Scene, surface_tractions
 
-if TYPE_CHECKING:
-    from trackroller.solver import Options
 SIGN_CONVENTIONS = (
     "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
     "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"

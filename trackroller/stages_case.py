@@ -15,7 +15,8 @@ from trackroller.parameters import CONTACT_MODELS
 
 if TYPE_CHECKING:
     from trackroller.blocks import Block
-    from trackroller.solver import Options
+    from trackroller.options import Options
+
 LIFE_CONVENTIONS = (
     "Woehler line N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is "
     "taken as the amplitude (as published); below sigma_D: elementary runs the line on, haibach uses the slope 2k - 1, "

@@ -23,7 +23,7 @@ from trackroller.threads import share_rows
 if TYPE_CHECKING:
     from trackroller.case import CaseTable
     from trackroller.halfspace.peak import Peak
-    from trackroller.solver import Options
+    from trackroller.options import Options
 
 REFINED_ERROR, FINEST_ERROR = 4.0, 5e-3  # estimated error of a peak, over the tolerance and at least, to refine above
 REFINEMENTS = 2, 4  # times the elements

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,12 +16,10 @@ from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.stress import von_mises
+from trackroller.options import Options
 from trackroller.requirements import distinct_rows, normalised_patches
 from trackroller.scene import Results, surface_tractions
 from trackroller.stop import holds, parse_condition
-
-if TYPE_CHECKING:
-    from trackroller.solver import Options
 
 
 def _patches(results: Results, options: Options, slip: Slip | None = None) -> np.ndarray:

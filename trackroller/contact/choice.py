@@ -33,7 +33,7 @@ from trackroller.geometry import curvatures, rolling_radius
 
 if TYPE_CHECKING:
     from trackroller.case import CaseTable
-    from trackroller.solver import Options
+    from trackroller.options import Options
 
 MAP = "contact_choice.npz"
 CHEAPER = ("sliding", "fastsim")  # cheapest first; then the exact theory

@@ -18,7 +18,7 @@ from trackroller.equilibrium import ROLLING, Equilibrium, solve_equilibrium
 
 if TYPE_CHECKING:
     from trackroller.case import CaseTable
-    from trackroller.solver import Options
+    from trackroller.options import Options
 
 FARTHEST_POLE = 3.0  # over the half-width; farther away it makes no difference
 

@@ -39,7 +39,7 @@ def choice_map(tolerance: float = 0.05) -> Figure:
 def _regions(axes: Axes, tolerance: float) -> None:
     from trackroller.case import Case, to_table
     from trackroller.contact import choice
-    from trackroller.solver import Options
+    from trackroller.options import Options
 
     mus, angles = np.geomspace(0.02, 0.6, POINTS), np.linspace(12.0, 78.0, POINTS)
     cases = [Case(friction_coefficient=float(mu), contact_angle=float(angle), axial_force=0, motor_force=0)

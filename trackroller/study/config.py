@@ -266,7 +266,7 @@ def load_study(path: str | Path, database: Any = None) -> Study:
 
 
 def _check_slip_terms(study: Study) -> None:
-    from trackroller.solver import check_slip_terms
+    from trackroller.options import check_slip_terms
 
     models = study.factors.get("contact_model", {}).get("values", [study.config.contact_model])
     for model in models:

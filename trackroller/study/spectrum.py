@@ -197,7 +197,7 @@ def _probabilities(values: Any) -> tuple[float, ...]:
 
 def _options(values: Mapping[str, Any]) -> dict[str, Any]:
     """Options of the solver, refused now rather than after the work."""
-    from trackroller.solver import Options
+    from trackroller.options import Options
 
     Options(**values)
     return dict(values)
