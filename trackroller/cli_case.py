@@ -16,8 +16,20 @@ from trackroller.study.yamlfile import parse_mapping, read_mapping
 if TYPE_CHECKING:
     import xarray as xr
 
-OPTIONS = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
-           "contact_tolerance", "stop_if", "shortcuts", "slip_terms")
+OPTIONS = (
+    "outputs",
+    "contact_model",
+    "spin_model",
+    "accuracy",
+    "hertz",
+    "stress_bodies",
+    "life_rule",
+    "normal",
+    "contact_tolerance",
+    "stop_if",
+    "shortcuts",
+    "slip_terms",
+)
 
 
 def settings_of(words: list[str]) -> dict[str, Any]:

@@ -158,8 +158,15 @@ def _table_2(found: dict[str, Any]) -> list[Block]:
     known = reference()["table_2"]
     rows = [(f"paper, {name}", f"{entry['surface_points']} points", f"{entry['minutes']:g} min",
              f"{entry['peak_stress']:.1f} (below the surface)") for name, entry in known.items()]  # fmt: skip
-    rows += [(f"ours, `{name}`", "see [accuracy.md](accuracy.md)", f"{1000 * entry['seconds']:.0f} ms",
-              f"{max(entry['peak_stress'][0]):.1f} (on the surface)") for name, entry in found["accuracy"].items()]
+    rows += [
+        (
+            f"ours, `{name}`",
+            "see [accuracy.md](accuracy.md)",
+            f"{1000 * entry['seconds']:.0f} ms",
+            f"{max(entry['peak_stress'][0]):.1f} (on the surface)",
+        )
+        for name, entry in found["accuracy"].items()
+    ]
     rows.append(("ours, at the published place", "48 plane waves and rays", "-", f"{found['inner']['free'][0]:.1f}"))
     return [("table", (("setting", "discretisation", "time", "σ_DEH,max of contact 1 [MPa]"), rows)),
             ("p", "Free, μ = 0.3. Ours is the CPU time of the whole case, both contacts and bodies, life included. "

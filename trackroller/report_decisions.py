@@ -64,8 +64,11 @@ def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
     rows = []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
-        ranks = [f"{r.name} {_value(r.value, r.low, r.high)}" for r in words.order(sens, output)[:4]
-                 if r.value > 0 or (r.value and words.headline(sens) in words.SIGNED)]
+        ranks = [
+            f"{r.name} {_value(r.value, r.low, r.high)}"
+            for r in words.order(sens, output)[:4]
+            if r.value > 0 or (r.value and words.headline(sens) in words.SIGNED)
+        ]
         advice = words.advice_of(sens, output)
         unit = f" [{effect_unit(sens, output)}]" if words.headline(sens) in ("mu_star", "effect") else ""
         rows.append((words.upper(words.of_output(sens, output)) + unit, ranks, str(part["note"].item()), advice))

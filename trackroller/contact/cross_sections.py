@@ -116,6 +116,7 @@ def arcs(radii: Sequence[float], ends: Sequence[float]) -> CrossSection:
 
 def _steep_ends(starts, sine, kappa, order) -> tuple[float, float]:
     """Where the arcs become as steep as STEEPEST, within their first and last piece."""
+
     def reach(s, curvature, sign):
         if curvature == 0.0:
             return np.inf

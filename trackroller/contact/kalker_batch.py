@@ -144,8 +144,12 @@ def refine(coarse, coarse_height, height, fine):
             for j in range(2 * nx):
                 near_j, far_j = j // 2, min(max(j // 2 + 2 * (j % 2) - 1, 0), nx - 1)
                 x, y, total = 0.0, 0.0, 0.0
-                for m, q, weight in ((near_i, near_j, 9.0), (far_i, near_j, 3.0), (near_i, far_j, 3.0),
-                                     (far_i, far_j, 1.0)):
+                for m, q, weight in (
+                    (near_i, near_j, 9.0),
+                    (far_i, near_j, 3.0),
+                    (near_i, far_j, 3.0),
+                    (far_i, far_j, 1.0),
+                ):
                     if coarse_height[m, q] > 0.0:
                         x += weight * coarse[k, 0, m, q] / coarse_height[m, q]
                         y += weight * coarse[k, 1, m, q] / coarse_height[m, q]

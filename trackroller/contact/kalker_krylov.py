@@ -98,7 +98,6 @@ def multiply(field, p, q, leading, hy, rolling, work, product):
                 product[i, j] = halo[i + 1, j]
 
 
-
 @njit(cache=True, nogil=True)
 def solve(value, slips, derivative, turn, rho, first, count, p, q, leading, hy, rolling, tolerance, factors, basis,
           work, step):  # fmt: skip

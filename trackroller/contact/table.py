@@ -88,9 +88,7 @@ def _evaluate(first, last, knots, values, points, out):
                     for j in range(4):
                         w = basis[0, h] * basis[1, i] * basis[2, j]
                         for k in range(4):
-                            total += (
-                                w * basis[3, k] * values[start[0] + h, start[1] + i, start[2] + j, start[3] + k, f]
-                            )
+                            total += w * basis[3, k] * values[start[0] + h, start[1] + i, start[2] + j, start[3] + k, f]
             out[row, f] = total
 
 

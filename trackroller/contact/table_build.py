@@ -1,7 +1,7 @@
 """Makes the table of `trackroller.contact.table` with the exact solver and measures it on a fresh random sample.
 
-    python -m trackroller.contact.table_build              some minutes on one core
-    python -m trackroller.contact.table_build --check N    measures the table on N random patches and stores the errors
+python -m trackroller.contact.table_build              some minutes on one core
+python -m trackroller.contact.table_build --check N    measures the table on N random patches and stores the errors
 """
 
 from __future__ import annotations

@@ -85,8 +85,7 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
     for key, found in series.items():
         k = list(SERIES).index(key)
         taken += _series(axes, found, quantity, colours[k], style.MARKERS[k], style.LINES[k], SERIES[key])
-    _presets(axes, records, summary["presets"], quantity)
-    _names(axes, taken)
+    letters = _presets(axes, records, summary["presets"], quantity)
     axes.set_xlabel(style.with_unit("CPU time a case", "ms"))
     axes.set_ylabel(f"Relative error of the {words} [{unit}]")
     axes.margins(x=0.12, y=0.06)
@@ -94,6 +93,7 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)
     style.head(figure, f"What accuracy of the {words} costs",
                "filled: 99 % of the designs lie below; hollow: median")  # fmt: skip
+    _names(axes, taken, letters)  # last: legend and title decide where the points come to lie
     caption = (f"Error of the {words} against a converged solution of the same contact model, over the CPU time a "
                "case. Filled marks: 99th percentile of the designs; hollow: median; rings: presets. Labels: Gauss "
                "points, quadrature and effort of the search, or elements across the patch.")  # fmt: skip
@@ -116,8 +116,9 @@ def _series(axes: Axes, found: list[Record], quantity: str, colour: Any, marker:
     return [(cost[i], high[i], found[i]["label"], colour) for i in np.flatnonzero(front)]
 
 
-def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quantity: str) -> None:
-    told = False
+def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quantity: str) -> list[tuple[float, float]]:
+    """Rings and letters of the presets; result: the points ringed."""
+    ringed: list[tuple[float, float]] = []
     for name, parts in presets.items():
         for r in (r for r in records if r["ladder"] and r["ladder"] in parts.values()):
             high = levels(r, quantity)[2]
@@ -126,21 +127,30 @@ def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quan
             place = 1e3 * r["cost"], high
             axes.plot(*place, marker="o", markersize=8.5, markerfacecolor="none", linestyle="none", zorder=4,
                       markeredgecolor="black", markeredgewidth=0.9,
-                      label=None if told else "taken by P(review), S(tandard), R(eference)")  # fmt: skip
+                      label=None if ringed else "taken by P(review), S(tandard), R(eference)")  # fmt: skip
             axes.annotate(name[0].upper(), place, xytext=(-9, -9), fontsize=6.5, textcoords="offset points",
                           fontweight="bold")  # fmt: skip
-            told = True
+            ringed.append(place)
+    return ringed
 
 
-def _names(axes: Axes, points: list) -> None:
-    """Names beside the points, left out where they would run into one that stands already."""
+def _names(axes: Axes, points: list, letters: list[tuple[float, float]]) -> None:
+    """Names beside the points where there is room, clear of marks, preset letters and other names; else left out."""
     axes.figure.draw_without_rendering()  # type: ignore[union-attr]
-    placed: list[tuple[float, float]] = []
-    for x, y, text, colour in points:
-        u, v = axes.transData.transform((x, y)) * 72.0 / axes.figure.dpi
-        if all(abs(u - a) > 3.2 * (len(text) + 1) or abs(v - b) > 7.0 for a, b in placed):
-            placed.append((u, v))
-            axes.annotate(text, (x, y), xytext=(3.5, 3.0), textcoords="offset points", fontsize=6.0, color=colour)
+    scale = 72.0 / axes.figure.dpi
+    taken = [
+        (u - 9.0, v - 9.0, u - 4.0, v - 2.5) for u, v in axes.transData.transform(letters or np.empty((0, 2))) * scale
+    ]
+    marks = axes.transData.transform([(x, y) for x, y, _, _ in points]) * scale
+    taken += [(u - 3.0, v - 3.0, u + 3.0, v + 3.0) for u, v in marks]
+    for (x, y, text, colour), (u, v) in zip(points, marks, strict=True):
+        width, height = 4.4 * len(text), 5.0
+        for dx, dy in ((3.5, 3.0), (4.5, -2.5), (3.5, -8.0), (-width - 3.5, 3.0)):
+            box = (u + dx, v + dy, u + dx + width, v + dy + height)
+            if not any(box[0] < c and a < box[2] and box[1] < d and b < box[3] for a, b, c, d in taken):
+                taken.append(box)
+                axes.annotate(text, (x, y), xytext=(dx, dy), textcoords="offset points", fontsize=6.0, color=colour)
+                break
 
 
 def _sentence(series: dict[Any, list[Record]], quantity: str, words: str) -> str:

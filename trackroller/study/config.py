@@ -218,8 +218,19 @@ class Study:
     @property
     def options(self) -> dict[str, Any]:
         """Keyword arguments of `solve`; those that are factors are missing."""
-        names = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
-                 "contact_tolerance", "stop_if", "slip_terms")
+        names = (
+            "outputs",
+            "contact_model",
+            "spin_model",
+            "accuracy",
+            "hertz",
+            "stress_bodies",
+            "life_rule",
+            "normal",
+            "contact_tolerance",
+            "stop_if",
+            "slip_terms",
+        )
         values = {name: getattr(self.config, name) for name in names if name not in self.factors}
         return values
 

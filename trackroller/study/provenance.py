@@ -25,6 +25,7 @@ def git_commit() -> str:
     if not (root / ".git").exists():
         return "unknown"
     try:
+
         def git(*words: str) -> str:
             # no optional locks: a run that is killed here must not leave the repository locked
             return subprocess.run(["git", "--no-optional-locks", "-C", str(root), *words], capture_output=True,

@@ -39,8 +39,17 @@ if TYPE_CHECKING:
 LOAD_FIELDS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity",
                "guide_curve_radius", "guide_overrollings_per_hour")  # fmt: skip
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
-OPTIONS = ("contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
-           "contact_tolerance", "slip_terms")
+OPTIONS = (
+    "contact_model",
+    "spin_model",
+    "accuracy",
+    "hertz",
+    "stress_bodies",
+    "life_rule",
+    "normal",
+    "contact_tolerance",
+    "slip_terms",
+)
 FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", *OPTIONS)
 
 
