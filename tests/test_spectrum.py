@@ -15,7 +15,8 @@ from trackroller.errors import InputError
 from trackroller.fatigue import life_cycles
 from trackroller.materials import builtin_database
 from trackroller.study.damage import summary
-from trackroller.study.spectrum import Spectrum, load_spectrum, overrollings_per_shift, solve_spectrum
+from trackroller.study.spectrum import Spectrum, load_spectrum, solve_spectrum
+from trackroller.study.spectrum_file import overrollings_per_shift
 
 ROOT = Path(__file__).parent.parent
 RADIUS = 21.75 - 6 * math.cos(math.radians(30))

@@ -8,12 +8,12 @@ import numpy as np
 
 from trackroller import fatigue
 from trackroller.parameters import REGIMES
+from trackroller.study.spectrum_file import Spectrum, overrollings_per_shift
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.materials import Material, MaterialDatabase
-    from trackroller.study.spectrum import Spectrum
 
 BODIES = ("roller", "guide")
 _BCB, _CB = ("block", "contact", "body"), ("contact", "body")
@@ -63,8 +63,6 @@ def damage_per_shift(
 
 def damage_dataset(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) -> xr.Dataset:
     """Data set of the damage from the solved blocks; see `spectrum.solve_spectrum`."""
-    from trackroller.study.spectrum import overrollings_per_shift
-
     stress = solved["peak_stress"].transpose("case", "contact", "body").values
     overrollings = overrollings_per_shift(spectrum)
     cycles = running_cycles(overrollings, stress, solved["regime"].values)
