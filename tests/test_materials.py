@@ -16,12 +16,10 @@ from trackroller.materials import (
     Material,
     add_material,
     builtin_database,
-    friction_rows,
     load_database,
-    material_details,
-    material_rows,
 )
-from trackroller.materials_file import BUILTIN_FILE, ENVIRONMENT, build_database
+from trackroller.materials.file import BUILTIN_FILE, ENVIRONMENT, build_database
+from trackroller.materials.tables import friction_rows, material_details, material_rows
 
 ROOT = Path(__file__).parent.parent
 PUBLISHED = {  # E, nu, R_m, sigma_D/R_m, N_Rm, N_k

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from trackroller.cli_case import settings_of
-from trackroller.materials import add_material, friction_rows, load_database, material_details, material_rows
+from trackroller.materials import add_material, load_database
+from trackroller.materials.tables import friction_rows, material_details, material_rows
 
 
 def _table(rows: list[dict[str, str]]) -> None:

@@ -34,7 +34,7 @@ def workflow_plan(config: Mapping[str, Any], check: bool, tell: Any = None) -> P
 
 def study_inputs(study: Study) -> list[str]:
     """Files a study's cases depend on: study file, table, materials of the user."""
-    from trackroller.materials_file import find_user_file
+    from trackroller.materials.file import find_user_file
     from trackroller.study.design import table_path
 
     found = [str(study.path)] if study.path is not None else []

@@ -12,9 +12,10 @@ from typing import Any
 import yaml
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.material_properties import PROPERTIES
-from trackroller.materials import Material
-from trackroller.materials_file import TEXTS, VALUE_KEYS, build_database, read_database
+from trackroller.materials.entries import TEXTS, VALUE_KEYS
+from trackroller.materials.file import build_database, read_database
+from trackroller.materials.material import Material
+from trackroller.materials.properties import PROPERTIES
 
 HEADER = """\
 # Your own materials and friction coefficients, laid over the built-in ones.

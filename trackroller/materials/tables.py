@@ -1,0 +1,55 @@
+"""The database as rows of text, for lists on a screen."""
+
+from __future__ import annotations
+
+from trackroller.materials.database import MaterialDatabase
+from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
+
+
+def material_rows(database: MaterialDatabase) -> list[dict[str, str]]:
+    """One row a material for a list: name, family, its values as texts, number of placeholders, origin."""
+    rows = []
+    for material in database.materials.values():
+        row = {"name": material.name, "family": material.family or "-"}
+        for name in REQUIRED:
+            prop = PROPERTIES[name]
+            heading = prop.symbol if prop.unit == "-" else f"{prop.symbol} [{prop.unit}]"
+            row[heading] = f"{getattr(material, name):g}"
+        row["placeholders"] = str(len(material.placeholders))
+        row["origin"] = ", ".join(dict.fromkeys(r.origin for r in material.records.values())) or "inline"
+        row["description"] = material.description
+        rows.append(row)
+    return rows
+
+
+def material_details(database: MaterialDatabase, name: str) -> list[dict[str, str]]:
+    """One row a value of a material: field, symbol, value, unit, source, mark, note, origin."""
+    material = database.material(name)
+    rows = []
+    for prop in PROPERTIES.values():
+        value = getattr(material, prop.name)
+        if value is None:
+            continue
+        record = material.records.get(prop.name, Value(value, prop.unit, "not given"))
+        rows.append(_row(prop.name, prop.symbol, record))
+    derived = Value(material.fatigue_limit, "MPa", "R_m times sigma_D/R_m", origin="derived")
+    return [*rows, _row("fatigue_limit", "sigma_D", derived)]
+
+
+def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
+    """One row a pair and level of the friction table."""
+    rows = []
+    for pair, levels in database.friction_table.items():
+        names = sorted(pair) if len(pair) == 2 else [*pair, *pair]
+        for level, record in levels.items():
+            head = {"pair": " - ".join(names), "level": level}
+            rows.append(head | _row("friction_coefficient", "mu", record))
+    return rows
+
+
+def _row(name: str, symbol: str, record: Value) -> dict[str, str]:
+    return {
+        "field": name, "symbol": symbol, "value": f"{record.value:g}", "unit": record.unit,
+        "source": record.source, "placeholder": "placeholder" if record.placeholder else "",
+        "note": record.note, "origin": record.origin,
+    }  # fmt: skip
