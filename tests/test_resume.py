@@ -305,7 +305,7 @@ def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, sol
 
 
 def test_doubled_latin_hypercube_is_one_again_and_every_size_keeps_its_rows():
-    from trackroller.study.growth import grown_lhs
+    from trackroller.study.grown_lhs import grown_lhs
 
     small, large, odd = (grown_lhs(3, sizes, 4) for sizes in ([20], [20, 40], [20, 40, 57]))
     assert (large[:20] == small).all() and (odd[:40] == large).all()

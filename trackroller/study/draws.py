@@ -19,7 +19,7 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import PARAMETERS
 from trackroller.study import designs
 from trackroller.study.factors import TAIL, Factor, column
-from trackroller.study.growth import check_sizes, grown_lhs
+from trackroller.study.grown_lhs import check_sizes, grown_lhs
 
 MAX_ROWS = 50_000_000  # more rows than this are a typing error, not a study
 Drawn = tuple[dict[str, np.ndarray], np.ndarray, dict[str, Any]]
