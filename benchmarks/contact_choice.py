@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 import trackroller as tr
+from trackroller import contact_choice as choice
 from trackroller.case import to_table
-from trackroller.contact import choice
 from trackroller.options import Options
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -66,7 +66,7 @@ def solve_all(cases: list[tr.Case], exact: str = "preview") -> dict[str, np.ndar
 def error_parts(found: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Errors of the forces and of the peak stress by cheaper model, shape (2, model, n); and which cases roll, (n,).
 
-    They are those of `contact.choice`; inf for another regime, or where the cheaper model did not converge.
+    They are those of `contact_choice`; inf for another regime, or where the cheaper model did not converge.
     """
     f = {name: value.astype(float) for name, value in found.items() if name in KEPT}
     normal, square = f["normal_force"][-1], f["semi_axis_lateral"][-1] * f["semi_axis_rolling"][-1]

@@ -23,7 +23,7 @@ from trackroller import stages
 from trackroller.case import to_table
 from trackroller.contact.common import Elastic
 from trackroller.contact.kalker import KalkerSettings
-from trackroller.contact.kalker_law import KalkerLaw
+from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.options import Options
 
 ABOUT = (

@@ -22,7 +22,7 @@ from trackroller import stages
 from trackroller.case import Case, to_table
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.kalker import Creepage, KalkerSettings, solve_patch
-from trackroller.contact.kalker_law import KalkerLaw
+from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.options import Options
 from trackroller.solver import solve
 

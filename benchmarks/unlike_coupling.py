@@ -15,10 +15,10 @@ import argparse
 import numpy as np
 
 from trackroller.contact.common import Elastic
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.kalker import Creepage, KalkerSettings, PatchSolution, solve_patch
 from trackroller.contact.normal import lift, solve_normal
-from trackroller.contact.normal_patch import GridPatch
 from trackroller.materials import load_database
 
 LOAD, WIDER, ROUNDS = 146.0, 1.2, 6

@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 import trackroller as tr
+from trackroller import contact_choice as choice
 from trackroller.case import to_table
-from trackroller.contact import choice
 from trackroller.options import Options
 from trackroller.study import ladder
 

@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.contact import fastsim, fastsim_grid
+from trackroller.contact import fastsim
 from trackroller.contact.common import Elastic, Slip
+from trackroller.contact.fastsim import grid as fastsim_grid
 from trackroller.contact.friction_laws import exponential_falling
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import exact_shape
-from trackroller.contact.kalker_grid import unit_cells
-from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.kalker.cells import unit_cells
 
 STEEL = Elastic(np.array([79e3]), np.array([0.33]), np.zeros(1))
 MU = np.array([0.3])

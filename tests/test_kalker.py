@@ -7,14 +7,15 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from trackroller.contact import kalker, kalker_batch
+from trackroller.contact import kalker
 from trackroller.contact.common import Elastic, Ellipse, Slip
 from trackroller.contact.friction_laws import exponential_falling, linear_falling, table
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.kalker import Creepage, KalkerSettings, solve_patch
-from trackroller.contact.kalker_extrapolation import weights
-from trackroller.contact.kalker_grid import unit_cells
-from trackroller.contact.kalker_law import KalkerLaw
+from trackroller.contact.kalker import batch as kalker_batch
+from trackroller.contact.kalker.cells import unit_cells
+from trackroller.contact.kalker.extrapolation import weights
+from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.geometry import curvatures, rolling_radius
 
 # 58 equilibria by CONTACT (open-source release 2025) on 40x40 and 60x60 elements, first order: extrapolated here

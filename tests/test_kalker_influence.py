@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from trackroller.contact import kalker_influence as influence
-from trackroller.contact.kalker_grid import unit_cells
+from trackroller.contact import influence
+from trackroller.contact.kalker.cells import unit_cells
 
 NU = 0.31
 

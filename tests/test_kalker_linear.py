@@ -7,7 +7,7 @@ import pytest
 
 from trackroller.contact import kalker, linear
 from trackroller.contact.common import Elastic, Ellipse
-from trackroller.contact.kalker_polynomial import LinearTheory
+from trackroller.contact.linear_polynomial import LinearTheory
 from trackroller.errors import InputError
 
 # Kalker (1990), Three-Dimensional Elastic Bodies in Rolling Contact, table E.3

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.contact import linear, table, table_build
+from trackroller.contact import linear, table
 from trackroller.contact.common import Elastic, Ellipse
+from trackroller.contact.table import build as table_build
 
 
 def _forces(solution) -> np.ndarray:

@@ -8,9 +8,9 @@ from scipy.special import gamma
 
 from trackroller.contact.cross_sections import Gap, arcs, parabola, with_edges
 from trackroller.contact.hertz import exact_shape
-from trackroller.contact.kalker_grid import unit_cells
+from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.normal import TOLERANCE, displacement, solve_normal
-from trackroller.contact.normal_family import LATTICE, Family, largest_pressure, patch_area
+from trackroller.contact.normal.family import LATTICE, Family, largest_pressure, patch_area
 
 LOAD = 1e-3  # over the contact modulus [mm^2]
 

@@ -10,14 +10,16 @@ import pytest
 import xarray as xr
 
 import trackroller as tr
-from trackroller.contact import kalker, normal_models, normal_sliding, sliding
+from trackroller.contact import kalker, sliding
 from trackroller.contact.common import Elastic, Slip
 from trackroller.contact.friction_laws import linear_falling
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import exact_shape
-from trackroller.contact.kalker_grid import unit_cells
-from trackroller.contact.kalker_influence import pressure_displacements
+from trackroller.contact.influence import pressure_displacements
+from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.normal import lift
-from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.normal import models as normal_models
+from trackroller.contact.normal import sliding as normal_sliding
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import stress_from_tractions
 from trackroller.options import Options

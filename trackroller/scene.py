@@ -13,7 +13,7 @@ from trackroller import equilibrium as eq
 from trackroller.case import CaseTable
 from trackroller.contact.common import DetailedSlip, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.models import ContactModel
-from trackroller.contact.normal_models import GridModel
+from trackroller.contact.normal.models import GridModel
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.requirements import Mirror
 

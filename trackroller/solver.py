@@ -120,7 +120,7 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarra
     """Contact model and rows of cases that can be solved in one batch; without friction there are no tractions."""
     model = np.full(len(table), options.contact_model, dtype=object)
     if options.contact_model == "auto":
-        from trackroller.contact.choice import choose
+        from trackroller.contact_choice import choose
 
         model = choose(table, options)
     bare = requirements.is_frictionless(table) & options.shortcuts

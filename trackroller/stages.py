@@ -14,11 +14,11 @@ from trackroller import stages_grid
 from trackroller.case import CaseTable
 from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import law_of
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.models import ContactModel, contact_model
-from trackroller.contact.normal_patch import GridPatch
 from trackroller.contact.slip import turning_of
-from trackroller.contact.table_model import TableModel
+from trackroller.contact.table.model import TableModel
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
 from trackroller.options import Options

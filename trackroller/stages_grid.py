@@ -9,11 +9,11 @@ import numpy as np
 from trackroller import equilibrium as eq
 from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import FrictionLaw
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import contact_modulus
-from trackroller.contact.normal_family import Box, patch_box
-from trackroller.contact.normal_models import GridModel, grid_model
-from trackroller.contact.normal_patch import GridPatch
-from trackroller.contact.normal_patches import Patches
+from trackroller.contact.normal.family import Box, patch_box
+from trackroller.contact.normal.models import GridModel, grid_model
+from trackroller.contact.normal.patches import Patches
 from trackroller.drawn_profiles import gap, treats_sides_alike
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import von_mises

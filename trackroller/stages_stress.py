@@ -9,9 +9,9 @@ import numpy as np
 from trackroller import stages_grid
 from trackroller.contact import sliding
 from trackroller.contact.common import Slip
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.models import traction_share
-from trackroller.contact.normal_patch import GridPatch
-from trackroller.contact.table_model import TableModel
+from trackroller.contact.table.model import TableModel
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebval, chebvander
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants
-from trackroller.contact.kalker_polynomial import LinearTheory
+from trackroller.contact.linear_polynomial import LinearTheory
 from trackroller.errors import InputError
 
 LARGEST_RATIO = 50.0  # and its inverse the smallest

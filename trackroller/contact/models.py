@@ -97,7 +97,7 @@ class KalkerModel:
     def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
                  profile_slip: bool = False) -> None:  # fmt: skip
         from trackroller.contact.kalker import KalkerSettings
-        from trackroller.contact.kalker_law import KalkerLaw
+        from trackroller.contact.kalker.law import KalkerLaw
 
         chosen = KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, chosen, travel_speed)
@@ -202,7 +202,7 @@ def contact_model(
         return SlidingModel(settings, spin_model, law, travel)
     if name == "kalker":
         if settings.name == "preview" and law.is_constant and not profile:  # the table knows tangents only
-            from trackroller.contact.table_model import TableModel
+            from trackroller.contact.table.model import TableModel
 
             return TableModel(elastic, lambda: KalkerModel(settings, elastic, law, travel))
         return KalkerModel(settings, elastic, law, travel, profile)

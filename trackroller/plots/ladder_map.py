@@ -37,8 +37,8 @@ def choice_map(tolerance: float = 0.05) -> Figure:
 
 
 def _regions(axes: Axes, tolerance: float) -> None:
+    from trackroller import contact_choice as choice
     from trackroller.case import Case, to_table
-    from trackroller.contact import choice
     from trackroller.options import Options
 
     mus, angles = np.geomspace(0.02, 0.6, POINTS), np.linspace(12.0, 78.0, POINTS)
@@ -66,7 +66,7 @@ def _regions(axes: Axes, tolerance: float) -> None:
 
 
 def _shares(axes: Axes) -> None:
-    from trackroller.contact import choice
+    from trackroller import contact_choice as choice
 
     m = choice.stored()
     at, left = np.arange(len(m["tolerances"])), np.zeros(len(m["tolerances"]))

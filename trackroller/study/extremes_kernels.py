@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.contact.hertz import axis_ratio
-from trackroller.contact.kalker_influence import displacements, pressure_displacements
+from trackroller.contact.influence import displacements, pressure_displacements
 from trackroller.contact.sliding import resultants
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import von_mises

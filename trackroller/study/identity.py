@@ -25,7 +25,8 @@ _MATERIAL_VALUES = ("youngs_modulus", "poisson_ratio", "tensile_strength", "fati
                     "cycles_at_tensile_strength", "cycles_at_fatigue_limit")  # fmt: skip
 _PHYSICS = ("solver.py", "scene.py", "stages.py", "stages_case.py", "stages_grid.py", "stages_stress.py",
             "equilibrium.py", "equilibrium_branch.py", "equilibrium_falling.py", "equilibrium_newton.py",
-            "equilibrium_roller.py", "geometry.py", "fatigue.py", "accuracy.py", "contact", "halfspace")  # fmt: skip
+            "equilibrium_roller.py", "geometry.py", "fatigue.py", "accuracy.py", "contact", "contact_choice.py",
+            "contact_choice_probe.py", "halfspace")  # fmt: skip
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:
@@ -88,7 +89,7 @@ def physics_code() -> str:
     digest = hashlib.sha256()
     for entry in _PHYSICS:
         path = root / entry
-        for file in sorted(path.glob("*.py")) if path.is_dir() else [path]:
+        for file in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
             if file.is_file():
                 digest.update(file.name.encode() + b"\0" + file.read_bytes())
     return digest.hexdigest()[:16]

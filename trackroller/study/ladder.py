@@ -190,7 +190,7 @@ def compare(study_file: Path, out: Path) -> None:
 
 def map_sentences() -> list[str]:
     """What the random designs behind `contact_model="auto"` say."""
-    from trackroller.contact import choice
+    from trackroller import contact_choice as choice
 
     m = choice.stored()
     said = [f"Of {int(m['checked'])} random designs, auto takes"]

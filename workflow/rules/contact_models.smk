@@ -5,7 +5,13 @@ COMPARED = f"{config.get('results', 'results')}/contact_models"
 rule contact_models:
     input:
         study="config/studies/contact_models.yaml",
-        code=sources("study/ladder.py", "plots/ladder.py", "contact"),
+        code=sources(
+            "study/ladder.py",
+            "plots/ladder.py",
+            "contact",
+            "contact_choice.py",
+            "contact_choice_probe.py",
+        ),
     output:
         report=f"{COMPARED}/report.html",
         figures=directory(f"{COMPARED}/figures"),

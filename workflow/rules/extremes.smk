@@ -23,6 +23,8 @@ rule extremes_run:
             "equilibrium_newton.py",
             "equilibrium_roller.py",
             "contact",
+            "contact_choice.py",
+            "contact_choice_probe.py",
             "halfspace",
             "study/extremes.py",
             "study/extremes_checks.py",

@@ -17,6 +17,8 @@ rule paper:
             "equilibrium_newton.py",
             "equilibrium_roller.py",
             "contact",
+            "contact_choice.py",
+            "contact_choice_probe.py",
             "halfspace",
             "paper.py",
             "paper_page.py",

@@ -27,6 +27,8 @@ rule tradeoff_part:
             "equilibrium_newton.py",
             "equilibrium_roller.py",
             "contact",
+            "contact_choice.py",
+            "contact_choice_probe.py",
             "halfspace",
             "study/tradeoff_settings.py",
             "study/tradeoff_sample.py",

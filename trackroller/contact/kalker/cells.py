@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from trackroller.contact.common import Ellipse
-from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.grid_patch import GridPatch
 
 
 def _column_integrals(x: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

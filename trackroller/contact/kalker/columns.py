@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from trackroller.contact.kalker_influence import FAST, LEADING_SHARE
+from trackroller.contact.influence import FAST, LEADING_SHARE
 
 
 @njit(cache=True)

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from trackroller.contact.kalker_influence import coupling_slip, influence
-from trackroller.contact.kalker_loops import reals
-from trackroller.contact.kalker_newton import Problem, newton
+from trackroller.contact.influence import coupling_slip, influence
+from trackroller.contact.kalker.loops import reals
+from trackroller.contact.kalker.newton import Problem, newton
 from trackroller.threads import share_rows
 
 # columns of the numbers reported for each patch

@@ -1,7 +1,7 @@
 """Makes the table of `trackroller.contact.table` with the exact solver and measures it on a fresh random sample.
 
-python -m trackroller.contact.table_build              some minutes on one core
-python -m trackroller.contact.table_build --check N    measures the table on N random patches and stores the errors
+python -m trackroller.contact.table.build              some minutes on one core
+python -m trackroller.contact.table.build --check N    measures the table on N random patches and stores the errors
 """
 
 from __future__ import annotations
@@ -13,10 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from trackroller.contact import kalker, table
+from trackroller.contact import kalker
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.contact.sliding import clustered_rule
+from trackroller.contact.table import spline as table
 
 RHO = 15  # intervals of rho
 THETA = 13  # nodes of theta between 0 and 90 deg, at the middles of as many equal parts
@@ -236,7 +237,7 @@ def write(path: Path, tables: table.Tables) -> None:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path(table.__file__).parents[1] / "data" / table.TABLE)
+    parser.add_argument("--output", type=Path, default=Path(table.__file__).parents[2] / "data" / table.TABLE)
     parser.add_argument("--check", type=int, metavar="N", help="make nothing: measure the stored table on N patches")
     options = parser.parse_args(arguments)
     if options.check:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from trackroller.contact.kalker_influence import FAST
+from trackroller.contact.influence import FAST
 from trackroller.contact.knots import interval
 
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants
-from trackroller.contact.kalker_grid import unit_cells
-from trackroller.contact.kalker_influence import influence
-from trackroller.contact.kalker_newton import Problem, newton
+from trackroller.contact.influence import influence
+from trackroller.contact.kalker.cells import unit_cells
+from trackroller.contact.kalker.newton import Problem, newton
 
 
 @dataclass(frozen=True)

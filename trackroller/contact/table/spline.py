@@ -10,7 +10,7 @@ so that rho = 0 is the linear theory and rho = 1 complete sliding; both are exac
 F_A/(mu N rho sin(theta)), F_T/(mu N rho cos(theta)) and M_R/(mu N c rho cos(theta)), is smooth and even at both ends of
 theta, which makes the forces odd in the creepages as they must be. Unlike materials act in the main as one more
 longitudinal creepage, r_x + kappa C11 s(g) with a polynomial s in ln g; what they do beyond that is a second, coarser
-table in kappa. Both are tensor products of cubic splines; made by `trackroller.contact.table_build`.
+table in kappa. Both are tensor products of cubic splines; made by `trackroller.contact.table.build`.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def evaluate(spline: Spline, points: np.ndarray) -> np.ndarray:
 class Tables:
     """`like` over (rho, theta, ln g, nu), `unlike` over (rho, theta from -90 to 90 deg, ln g, kappa), `shift` s(ln g).
 
-    `errors` against the exact solver on a fresh random sample, as `table_build` measured them.
+    `errors` against the exact solver on a fresh random sample, as `table.build` measured them.
     """
 
     like: Spline

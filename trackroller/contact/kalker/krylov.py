@@ -10,9 +10,9 @@ import math
 import numpy as np
 from numba import njit
 
-from trackroller.contact.kalker_columns import apply_inverse, factorise
-from trackroller.contact.kalker_influence import FAST, HALO, convolve, differences
-from trackroller.contact.kalker_loops import reals
+from trackroller.contact.influence import FAST, HALO, convolve, differences
+from trackroller.contact.kalker.columns import apply_inverse, factorise
+from trackroller.contact.kalker.loops import reals
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.table import spline as table
 
 PEAK_ERROR = 0.12  # of the peak stress per unit of the friction coefficient
 

@@ -24,11 +24,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.contact.choice_probe import Probe, force_error, probe
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.hertz import contact_modulus, exact_shape
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.contact.table import LARGEST_COUPLING
+from trackroller.contact_choice_probe import Probe, force_error, probe
 from trackroller.geometry import curvatures, rolling_radius
 
 if TYPE_CHECKING:

@@ -18,11 +18,11 @@ from functools import partial
 import numpy as np
 
 from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractions
-from trackroller.contact.fastsim import FastsimSettings, FastsimSolution, flexibilities
-from trackroller.contact.fastsim_strips import strip_chords, strip_fields, strip_sums
+from trackroller.contact.fastsim.patch import FastsimSettings, FastsimSolution, flexibilities
+from trackroller.contact.fastsim.strips import strip_chords, strip_fields, strip_sums
 from trackroller.contact.friction_laws import constant
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.linear import LARGEST_RATIO
-from trackroller.contact.normal_patch import GridPatch
 from trackroller.threads import share_rows
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from trackroller.contact.common import Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.sliding import spin_model_index
 
 POINTS = 4  # Gauss points across each element

@@ -22,7 +22,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
-from trackroller.contact.fastsim_point import enter, step
+from trackroller.contact.fastsim.point import enter, step
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
 from trackroller.threads import share_rows

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import njit
 
-from trackroller.contact.fastsim_point import enter, step
+from trackroller.contact.fastsim.point import enter, step
 
 LONG = 8  # loaded elements from which the ends of an interval are extrapolated
 SUBSTEPS = 8  # between the centres of elements, for tractions

@@ -7,119 +7,18 @@ element: |tau| <= mu p, and tau = -mu p s/|s| where it slides. Rectangular eleme
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 
-from trackroller.contact import kalker_batch as batch
-from trackroller.contact import kalker_extrapolation as extrapolation
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
-from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.kalker_grid import cells, unit_cells
-from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.friction_laws import constant
+from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.kalker import batch, extrapolation
+from trackroller.contact.kalker.cells import cells, unit_cells
+from trackroller.contact.kalker.problem import Creepage, KalkerSettings, PatchSolution, joined
 
 BLOCK = 256  # patches whose tractions are held at once
-
-
-@dataclass(frozen=True)
-class KalkerSettings:
-    """Discretisation and stopping rule.
-
-    elements : number along each axis of the ellipse (even if `extrapolate`)
-    tolerance : largest residual of the friction law in any element, over mu p_max; the stopping rule
-    steps, krylov : limits of Newton steps and of the Krylov space of one step
-    extrapolate : resultants from grids with `elements` and half of them
-    profile_slip : rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x
-    law : friction as a function of the slip speed; constant if not given
-    travel_speed : of the roller [mm/s], which turns slips into speeds, where a call does not give its own
-    """
-
-    elements: int = 40
-    tolerance: float = 1e-6
-    steps: int = 60
-    krylov: int = 80
-    extrapolate: bool = True
-    profile_slip: bool = False
-    law: FrictionLaw | None = None
-    travel_speed: float = 1.0
-
-
-@dataclass(frozen=True)
-class Creepage:
-    """Rigid slip of the roller against the guide per travel speed: xi along y_C, eta along x_C, spin phi [1/mm].
-
-    w_x = lateral - spin y, w_y = longitudinal + spin x (+ extra(x), the profile part); arrays (n,).
-    `extra` maps lateral positions (n, nx) [mm] to slips, or is None.
-    """
-
-    longitudinal: np.ndarray
-    lateral: np.ndarray
-    spin: np.ndarray
-    slip: Slip | None = None
-
-    @classmethod
-    def of_slip(cls, slip: Slip, profile: bool = False, curve_radius: np.ndarray | None = None) -> Creepage:
-        """From the kinematics of the roller.
-
-        profile : rolling slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x
-        curve_radius : of the guide [mm], (n,), signed, inf if straight: the roller turns with the curve, so that the
-            spin is -sin(alpha)/r_A (1 + r_A/(r_Curve + r_C,G cos(alpha))); not given: as on a straight guide
-        """
-        longitudinal, spin = np.asarray(slip.longitudinal, float), np.asarray(slip.spin, float)
-        if curve_radius is not None:
-            spin = spin * (1.0 + slip.rolling_radius / (curve_radius + slip.guide_profile_radius * slip.cosine))
-        return cls(longitudinal, np.zeros_like(longitudinal), spin, slip if profile else None)
-
-    def take(self, rows) -> Creepage:
-        slip = None if self.slip is None else self.slip.take(rows)
-        return Creepage(self.longitudinal[rows], self.lateral[rows], self.spin[rows], slip)
-
-    def along(self, x: np.ndarray) -> np.ndarray:
-        """Rolling part of the rigid slip at lateral positions x (n, nx) [mm]."""
-        tangent = self.longitudinal[:, None] + self.spin[:, None] * x
-        return tangent if self.slip is None else tangent + self.slip.beyond_tangent(x)
-
-
-@dataclass(frozen=True)
-class PatchSolution:
-    """Solution of n patches.
-
-    resultants : on the roller, extrapolated if asked for
-    traction, slip : (n, 2, ny, nx), x_C and y_C part, over mu p_max and per travel speed
-    stick : (n, ny, nx) where the surfaces stick
-    stick_fraction : share of the ellipse that sticks [-]
-    friction_energy_per_distance : dissipation per travelled distance [N], from the works of the rigid slip and of
-        the pressures
-    pressure_work : what the pressures add where the tractions move unlike surfaces along the normal [N]
-    energy_residual : relative difference of the dissipation summed over the elements and that work, extrapolated
-    error_estimate : (n, 3) |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation
-    residual, steps, products : largest residual of the friction law over mu p_max, Newton steps, products
-    converged : residual within its tolerance
-    """
-
-    resultants: Resultants
-    traction: np.ndarray
-    slip: np.ndarray
-    stick: np.ndarray
-    stick_fraction: np.ndarray
-    friction_energy_per_distance: np.ndarray
-    pressure_work: np.ndarray
-    energy_residual: np.ndarray
-    error_estimate: np.ndarray
-    residual: np.ndarray
-    steps: np.ndarray
-    products: np.ndarray
-    converged: np.ndarray
-
-    @property
-    def works(self) -> Works:
-        """Dissipation summed over the elements, and what the pressures put in."""
-        return Works(self.friction_energy_per_distance * (1.0 + self.energy_residual), self.pressure_work)
-
-    def take(self, index) -> PatchSolution:
-        """The patches `index`."""
-        return PatchSolution(self.resultants.take(index), *(getattr(self, f.name)[index] for f in fields(self)[1:]))
 
 
 def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings, elements: int, traction):
@@ -208,13 +107,6 @@ def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np
                                                   ellipse.max_pressure)))  # fmt: skip
     g, nu, k = (_full(v, n) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling))
     return ellipse, _full(friction, n), Elastic(g, nu, k)
-
-
-def joined(parts: list[PatchSolution], order) -> PatchSolution:
-    """Solutions one after the other, then taken in an order."""
-    rest = [np.concatenate([getattr(p, f.name) for p in parts])[order] for f in fields(PatchSolution)[1:]]
-    forces = [np.concatenate([getattr(p.resultants, f.name) for p in parts])[order] for f in fields(Resultants)]
-    return PatchSolution(Resultants(*forces), *rest)
 
 
 def solve_patch(

@@ -15,7 +15,7 @@ import numpy as np
 
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.hertz import exact_shape
-from trackroller.contact.normal import NormalSolution, displacement, solve_normal
+from trackroller.contact.normal.pressure import NormalSolution, displacement, solve_normal
 
 LATTICE = 1.6  # ratio of neighbouring loads
 FINER = 4  # times the elements across, where an edge is rounded

@@ -8,8 +8,9 @@ import numpy as np
 
 from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
-from trackroller.contact.kalker import Creepage, KalkerSettings, PatchSolution, joined, solve_patch
-from trackroller.contact.normal_patch import GridPatch
+from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.kalker.patch import solve_patch
+from trackroller.contact.kalker.problem import Creepage, KalkerSettings, PatchSolution, joined
 
 NEAR = 0.3  # change of creepage over the slip in the patch
 # A patch under a law that falls too steeply has several states or none. After so many solutions that did not converge

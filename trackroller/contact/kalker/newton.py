@@ -15,10 +15,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.kalker_columns import column_ranges, column_slips
-from trackroller.contact.kalker_influence import Influence, leading_rows
-from trackroller.contact.kalker_krylov import multiply, solve
-from trackroller.contact.kalker_loops import find_slits, hold, jacobian, law_of_slip, reals, residual
+from trackroller.contact.influence import Influence, leading_rows
+from trackroller.contact.kalker.columns import column_ranges, column_slips
+from trackroller.contact.kalker.krylov import multiply, solve
+from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual
 
 # Where many elements are wrongly thought to slide between sticking ones, Newton's method frees one a step, from the
 # leading edge on, by short steps. After SHORT steps of at most half length they are taken as sticking at once; the

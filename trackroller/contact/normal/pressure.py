@@ -14,7 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from trackroller.contact.kalker_influence import displacements, pressure_displacements
+from trackroller.contact.influence import displacements, pressure_displacements
 
 TOLERANCE = 1e-7  # of the gap in the patch, over the approach
 ITERATIONS = 400

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact import normal_sliding
 from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw
-from trackroller.contact.normal import TOLERANCE
-from trackroller.contact.normal_patch import GridPatch
-from trackroller.contact.normal_patches import Patches, Pressing
+from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.normal import sliding as normal_sliding
+from trackroller.contact.normal.patches import Patches, Pressing
+from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.errors import InputError
 
 ROUNDS = 3  # of the normal and the tangential problem, where these change each other
@@ -110,8 +110,8 @@ class GridFastsimModel(_OnGrid):
 
     def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
                  profile_slip: bool = False) -> None:  # fmt: skip
-        from trackroller.contact import fastsim_grid
         from trackroller.contact.fastsim import FastsimSettings
+        from trackroller.contact.fastsim import grid as fastsim_grid
 
         super().__init__(patches, profile_slip)
         self.elastic, self.travel, self._grid = elastic, travel_speed, fastsim_grid
@@ -141,7 +141,7 @@ class GridKalkerModel(_OnGrid):
     def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
                  profile_slip: bool = False) -> None:  # fmt: skip
         from trackroller.contact.kalker import KalkerSettings
-        from trackroller.contact.kalker_law import KalkerLaw
+        from trackroller.contact.kalker.law import KalkerLaw
 
         super().__init__(patches, profile_slip)
         settings = KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)

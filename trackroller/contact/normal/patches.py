@@ -10,9 +10,9 @@ import numpy as np
 
 from trackroller.contact.common import SurfaceTractions
 from trackroller.contact.cross_sections import Gap
-from trackroller.contact.normal import lift
-from trackroller.contact.normal_family import Family, Node
-from trackroller.contact.normal_patch import GridPatch, rim_means
+from trackroller.contact.grid_patch import GridPatch, rim_means
+from trackroller.contact.normal.family import Family, Node
+from trackroller.contact.normal.pressure import lift
 from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import ShapeError
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from trackroller.contact import table as tables
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, _Rows
-from trackroller.contact.table_model import TableModel
+from trackroller.contact.table.model import TableModel
 from trackroller.equilibrium import ROLLING, Equilibrium, solve_equilibrium
 
 if TYPE_CHECKING:

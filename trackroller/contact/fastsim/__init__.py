@@ -1,0 +1,14 @@
+"""Kalker"s simplified theory of rolling contact (FASTSIM)."""
+
+from __future__ import annotations
+
+from trackroller.contact.fastsim.patch import (
+    FastsimSettings,
+    FastsimSolution,
+    flexibilities,
+    resultants,
+    solve_patch,
+    tractions,
+)
+
+__all__ = ["FastsimSettings", "FastsimSolution", "flexibilities", "resultants", "solve_patch", "tractions"]

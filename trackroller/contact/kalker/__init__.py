@@ -1,0 +1,8 @@
+"""Kalker"s exact theory of rolling contact: stick and slip on the elastic half-space."""
+
+from __future__ import annotations
+
+from trackroller.contact.kalker.patch import resultants, solve_patch, to_tractions, tractions
+from trackroller.contact.kalker.problem import Creepage, KalkerSettings, PatchSolution
+
+__all__ = ["Creepage", "KalkerSettings", "PatchSolution", "resultants", "solve_patch", "to_tractions", "tractions"]

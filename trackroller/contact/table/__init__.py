@@ -1,0 +1,7 @@
+"""A table of dimensionless results of the exact theory, as splines."""
+
+from __future__ import annotations
+
+from trackroller.contact.table.spline import LARGEST_COUPLING, RATIOS, TableSolution, solve_patch, stored
+
+__all__ = ["LARGEST_COUPLING", "RATIOS", "TableSolution", "solve_patch", "stored"]
