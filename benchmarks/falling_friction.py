@@ -24,12 +24,12 @@ import numpy as np
 from peak_coverage import printable, random_case
 
 import trackroller as tr
-from trackroller import stages
 from trackroller.case import CaseTable, to_table
 from trackroller.equilibrium import ROLLING, solve_equilibrium
-from trackroller.equilibrium_newton import newton_polish
-from trackroller.equilibrium_roller import LAST_SLIP, Roller
+from trackroller.equilibrium.newton import newton_polish
+from trackroller.equilibrium.roller import LAST_SLIP, Roller
 from trackroller.options import Options
+from trackroller.stages import mechanics as stages
 
 RUNS = ("sliding:standard", "fastsim:standard", "kalker:preview", "kalker:standard")
 SPEED = 100.0  # mm/s, characteristic of every law; the velocity sets the slip over it

@@ -19,12 +19,12 @@ import numpy as np
 
 import trackroller as tr
 from trackroller import equilibrium as eq
-from trackroller import stages
 from trackroller.case import to_table
 from trackroller.contact.common import Elastic
 from trackroller.contact.kalker import KalkerSettings
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.options import Options
+from trackroller.stages import mechanics as stages
 
 ABOUT = (
     "r_Delta0 [mm] of the free-rolling cases of contact.json on one grid of the exact theory without extrapolation, "

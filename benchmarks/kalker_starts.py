@@ -18,13 +18,13 @@ import time
 import numpy as np
 
 from trackroller import equilibrium as eq
-from trackroller import stages
 from trackroller.case import Case, to_table
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.kalker import Creepage, KalkerSettings, solve_patch
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.options import Options
 from trackroller.solver import solve
+from trackroller.stages import mechanics as stages
 
 STEEL = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
 STEPS = (0.02, 0.05, 0.1, 0.2)

@@ -19,9 +19,9 @@ import numpy as np
 from trackroller.accuracy import FORCE_QUANTITIES, accuracy_settings
 from trackroller.errors import InputError
 from trackroller.solver import solve
-from trackroller.study.tradeoff_errors import percentiles, relative_errors
-from trackroller.study.tradeoff_measure import cpu, reference_solution
-from trackroller.study.tradeoff_sample import sample
+from trackroller.study.tradeoff.errors import percentiles, relative_errors
+from trackroller.study.tradeoff.measure import cpu, reference_solution
+from trackroller.study.tradeoff.sample import sample
 
 OUTPUTS = ("forces", "contact", "peak_stress", "life")
 QUANTITIES = (*FORCE_QUANTITIES, "peak_stress")

@@ -12,7 +12,7 @@ from pathlib import Path
 from adopt import DATA, copy_figures, main
 
 from trackroller.pages import markdown
-from trackroller.study.extremes_page import blocks, read
+from trackroller.study.extremes.page import blocks, read
 
 KEPT = DATA / "extremes.json"
 MADE_BY = "made by docs/adopt_extremes.py from docs/data/extremes.json"

@@ -14,7 +14,7 @@ from trackroller import parameters as p
 from trackroller.accuracy import PRESETS
 from trackroller.dataset import VALIDITY_BITS, VARIABLES
 from trackroller.pages import markdown
-from trackroller.study import tradeoff_page
+from trackroller.study.tradeoff import page as tradeoff_page
 
 FOLDER = Path(__file__).parent
 START, END = "<!-- presets: made by docs/generate.py -->\n", "<!-- end of presets -->"

@@ -71,13 +71,14 @@ def test_fastsim_is_a_step_towards_kalker(contact_records, kalker):
 
 def test_gridded_tractions_give_the_stress_of_the_formula():
     """The kernel fed with sliding tractions on a grid finds the peak of the closed slip field."""
-    from trackroller import stages, stages_stress
     from trackroller.case import to_table
     from trackroller.contact.models import traction_share
     from trackroller.equilibrium import solve_equilibrium
     from trackroller.halfspace.peak import find_peaks
     from trackroller.options import Options
-    from trackroller.scene import Results
+    from trackroller.stages import mechanics as stages
+    from trackroller.stages import stress as stages_stress
+    from trackroller.stages.scene import Results
 
     options = Options()
     scene = stages.prepare(to_table([tr.Case()]), options)

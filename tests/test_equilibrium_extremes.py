@@ -7,8 +7,8 @@ import pytest
 
 import trackroller as tr
 from trackroller.dataset import VALIDITY_BITS
-from trackroller.study.extremes import scaled
-from trackroller.study.extremes_random import random_extremes
+from trackroller.study.extremes.random_cases import random_extremes
+from trackroller.study.extremes.scenes import scaled
 
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
 

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trackroller.study.extremes import scenes, thinned
-from trackroller.study.extremes_checks import examine, run_cases
-from trackroller.study.extremes_kernels import KERNELS
-from trackroller.study.extremes_random import random_extremes
+from trackroller.study.extremes.checks import examine, run_cases
+from trackroller.study.extremes.kernels import KERNELS
+from trackroller.study.extremes.random_cases import random_extremes
+from trackroller.study.extremes.scenes import scenes, thinned
 
 ROOT = Path(__file__).parent.parent
 

@@ -12,7 +12,7 @@ from trackroller import expressions
 from trackroller.errors import InputError
 from trackroller.plots.study_view import StudyView
 from trackroller.plots.woehler import curve, woehler
-from trackroller.report_decisions import decisions
+from trackroller.report.decisions import decisions
 from trackroller.study import words
 from trackroller.study.config import parse_study
 from trackroller.study.delta import delta

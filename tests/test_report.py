@@ -16,7 +16,7 @@ from synthetic_results import PAIRS, grid_study, sampled_study
 from trackroller.plots.study import draw_all
 from trackroller.plots.study_view import StudyView
 from trackroller.report import contents, models_used, write_report
-from trackroller.report_tables import causes, regime_table, validity_table
+from trackroller.report.tables import causes, regime_table, validity_table
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FACTORS = {"friction_coefficient": [0.05, 0.3, 0.4], "roller_profile_radius": [-8.0, -7.0, -6.4],

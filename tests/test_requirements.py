@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller import requirements, stages, stages_stress
+from trackroller import requirements
 from trackroller.case import to_table
 from trackroller.explain import explain
 from trackroller.options import Options
-from trackroller.scene import Results
+from trackroller.stages import mechanics as stages
+from trackroller.stages import stress as stages_stress
+from trackroller.stages.scene import Results
 
 EVERYTHING = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 

@@ -113,9 +113,9 @@ def test_fastsim_tractions_have_the_slip_of_the_profile():
 
 
 def test_preview_serves_the_curve_by_table_and_the_profile_by_elements():
-    from trackroller import stages
     from trackroller.contact.models import KalkerModel
     from trackroller.contact.table.model import TableModel
+    from trackroller.stages import mechanics as stages
 
     for terms, kind in ((("curve",), TableModel), (("profile",), KalkerModel)):
         scene = stages.prepare(to_table([tr.Case()]), Options(contact_model="kalker", accuracy="preview",

@@ -13,10 +13,13 @@ from trackroller import accuracy as ac
 from trackroller.contact.sliding import rolling_slip
 from trackroller.contact.slip import pole_split
 from trackroller.errors import InputError
-from trackroller.study import tradeoff, tradeoff_page, tradeoff_settings, tradeoff_summary
-from trackroller.study.tradeoff_errors import observed_order, percentiles, relative_errors, tolerance_bound
-from trackroller.study.tradeoff_measure import reference_solution
-from trackroller.study.tradeoff_sample import sample
+from trackroller.study.tradeoff import page as tradeoff_page
+from trackroller.study.tradeoff import parts as tradeoff
+from trackroller.study.tradeoff import settings as tradeoff_settings
+from trackroller.study.tradeoff import summary as tradeoff_summary
+from trackroller.study.tradeoff.errors import observed_order, percentiles, relative_errors, tolerance_bound
+from trackroller.study.tradeoff.measure import reference_solution
+from trackroller.study.tradeoff.sample import sample
 
 OUTPUTS = ("forces", "contact", "peak_stress", "life")
 

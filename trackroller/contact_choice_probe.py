@@ -70,7 +70,7 @@ class Probe(_Rows):
 
 
 def _solve(table: CaseTable, options: Options, model: str) -> tuple[Any, Equilibrium]:
-    from trackroller import stages
+    from trackroller.stages import mechanics as stages
 
     scene = stages.prepare(table, replace(options, contact_model=model, accuracy="preview", outputs=("forces",)))
     if model == "kalker":

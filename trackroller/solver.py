@@ -11,14 +11,17 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from trackroller import equilibrium as eq
-from trackroller import requirements, stages, stages_case, stages_stress
+from trackroller import requirements
 from trackroller.accuracy import Accuracy, error_attributes
 from trackroller.blocks import Block, join
 from trackroller.case import Case, CaseTable, to_table
 from trackroller.errors import InputError
 from trackroller.options import Options
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS
-from trackroller.scene import Results
+from trackroller.stages import case as stages_case
+from trackroller.stages import mechanics as stages
+from trackroller.stages import stress as stages_stress
+from trackroller.stages.scene import Results
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
-from trackroller.study.tradeoff_summary import levels
+from trackroller.study.tradeoff.summary import levels
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,16 +6,8 @@ rule paper:
     input:
         code=sources(
             "solver.py",
-            "scene.py",
-            "stages.py",
-            "stages_case.py",
-            "stages_grid.py",
-            "stages_stress.py",
-            "equilibrium.py",
-            "equilibrium_branch.py",
-            "equilibrium_falling.py",
-            "equilibrium_newton.py",
-            "equilibrium_roller.py",
+            "stages",
+            "equilibrium",
             "contact",
             "contact_choice.py",
             "contact_choice_probe.py",

@@ -61,11 +61,7 @@ rule report:
         figures=f"{RESULTS}/figures",
         sensitivity=f"{RESULTS}/sensitivity.nc",
         code=sources(
-            "report.py",
-            "report_decisions.py",
-            "report_inputs.py",
-            "report_papers.py",
-            "report_tables.py",
+            "report",
             "templates",
             "plots/style.py",
             "plots/study_view.py",

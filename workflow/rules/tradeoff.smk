@@ -1,5 +1,5 @@
 # Error against cost of stages and contact models: snakemake --cores all tradeoff
-from trackroller.study.tradeoff import load_sizes
+from trackroller.study.tradeoff.parts import load_sizes
 
 TRADEOFF = f"{config.get('results', 'results')}/tradeoff"
 TRADEOFF_SIZES = "config/tradeoff.yaml"
@@ -16,25 +16,17 @@ rule tradeoff_part:
         sizes=TRADEOFF_SIZES,
         code=sources(
             "solver.py",
-            "scene.py",
-            "stages.py",
-            "stages_case.py",
-            "stages_grid.py",
-            "stages_stress.py",
-            "equilibrium.py",
-            "equilibrium_branch.py",
-            "equilibrium_falling.py",
-            "equilibrium_newton.py",
-            "equilibrium_roller.py",
+            "stages",
+            "equilibrium",
             "contact",
             "contact_choice.py",
             "contact_choice_probe.py",
             "halfspace",
-            "study/tradeoff_settings.py",
-            "study/tradeoff_sample.py",
-            "study/tradeoff_errors.py",
-            "study/tradeoff_measure.py",
-            "study/tradeoff_stages.py",
+            "study/tradeoff/settings.py",
+            "study/tradeoff/sample.py",
+            "study/tradeoff/errors.py",
+            "study/tradeoff/measure.py",
+            "study/tradeoff/stages.py",
         ),
     output:
         f"{TRADEOFF}/parts/{{part}}.nc",
@@ -70,8 +62,8 @@ rule tradeoff_show:
     input:
         measured=f"{TRADEOFF}/tradeoff.nc",
         code=sources(
-            "study/tradeoff_page.py",
-            "study/tradeoff_summary.py",
+            "study/tradeoff/page.py",
+            "study/tradeoff/summary.py",
             "plots/tradeoff.py",
             "plots/style.py",
         ),

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from trackroller.study.extremes_run import run, write
+from trackroller.study.extremes.run import run, write
 from trackroller.study.workflow import log_to
 
 log_to(snakemake.log[0])

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from trackroller.plots.extremes import draw_extremes
-from trackroller.study.extremes_page import html, read
+from trackroller.study.extremes.page import html, read
 from trackroller.study.workflow import log_to
 
 log_to(snakemake.log[0])

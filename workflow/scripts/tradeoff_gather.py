@@ -1,6 +1,6 @@
 """Gather the parts of the trade-off."""
 
-from trackroller.study.tradeoff import write_gathered
+from trackroller.study.tradeoff.parts import write_gathered
 from trackroller.study.workflow import log_to
 
 log_to(snakemake.log[0])

@@ -1,6 +1,6 @@
 """Measure one part of the trade-off."""
 
-from trackroller.study.tradeoff import write_part
+from trackroller.study.tradeoff.parts import write_part
 from trackroller.study.workflow import log_to
 
 log_to(snakemake.log[0])

@@ -1,6 +1,6 @@
 """Summary, figures and report of the trade-off."""
 
-from trackroller.study.tradeoff_page import write_results
+from trackroller.study.tradeoff.page import write_results
 from trackroller.study.workflow import log_to
 
 log_to(snakemake.log[0])

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.solver import solve
-from trackroller.study.extremes import FORCES, Scene, mirrored, scaled
-from trackroller.study.extremes_search import located
+from trackroller.study.extremes.scenes import FORCES, Scene, mirrored, scaled
+from trackroller.study.extremes.search import located
 
 if TYPE_CHECKING:
     import xarray as xr

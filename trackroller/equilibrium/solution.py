@@ -14,10 +14,10 @@ import numpy as np
 
 from trackroller.contact.common import Resultants
 from trackroller.contact.sliding import tractions_full_slip
-from trackroller.equilibrium_branch import follow_friction, self_locking
-from trackroller.equilibrium_falling import balance_again, first_balance
-from trackroller.equilibrium_newton import bracketed, digits_of_forces, newton_polish, settled
-from trackroller.equilibrium_roller import LAST_SLIP, ContactLaw, Loads, Roller
+from trackroller.equilibrium.branch import follow_friction, self_locking
+from trackroller.equilibrium.falling import balance_again, first_balance
+from trackroller.equilibrium.newton import bracketed, digits_of_forces, newton_polish, settled
+from trackroller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
 
 __all__ = ["FAILED", "FULL_SLIP", "LIFT_OFF", "ROLLING", "ContactLaw", "Equilibrium", "Loads", "solve_equilibrium"]
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)

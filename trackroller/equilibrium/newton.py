@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.equilibrium_roller import Roller
+from trackroller.equilibrium.roller import Roller
 
 SMALL = 0.01  # rolling radius over patch
 EPS = 2.0**-53

@@ -15,11 +15,11 @@ import yaml
 from trackroller.case import Case
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import PARAMETERS
-from trackroller.study import tradeoff_settings as settings
 from trackroller.study.files import write_whole
-from trackroller.study.tradeoff_measure import measure
-from trackroller.study.tradeoff_sample import SEED, sample
-from trackroller.study.tradeoff_stages import measure_stages
+from trackroller.study.tradeoff import settings
+from trackroller.study.tradeoff.measure import measure
+from trackroller.study.tradeoff.sample import SEED, sample
+from trackroller.study.tradeoff.stages import measure_stages
 
 MODELS = ("sliding", "fastsim", "kalker")
 BLOCKS = {"sliding": 128, "fastsim": 64, "kalker": 16}  # designs that all settings solve in turn
@@ -127,7 +127,7 @@ def _mean(group: Sequence[xr.Dataset], value: Callable[[xr.Dataset], Any]) -> An
 def write_gathered(parts: Sequence[str], sizes_path: str, out: str) -> None:
     """Gather the parts, with the designs and what is needed to repeat them."""
     from trackroller.study.provenance import git_commit, versions
-    from trackroller.study.tradeoff_paper import paper_table
+    from trackroller.study.tradeoff.paper import paper_table
 
     sizes = load_sizes(sizes_path)
     sets = [xr.load_dataset(path) for path in parts]

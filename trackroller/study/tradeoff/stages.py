@@ -17,9 +17,9 @@ from trackroller.geometry import curvatures, rolling_radius
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
 from trackroller.solver import solve
-from trackroller.study.tradeoff_errors import QUANTITIES
-from trackroller.study.tradeoff_measure import cpu, labelled
-from trackroller.study.tradeoff_settings import ALL, REFERENCE_SEARCHES, Setting, accuracy_of
+from trackroller.study.tradeoff.errors import QUANTITIES
+from trackroller.study.tradeoff.measure import cpu, labelled
+from trackroller.study.tradeoff.settings import ALL, REFERENCE_SEARCHES, Setting, accuracy_of
 
 GRID_POINTS = (11, 21, 41, 61, 81, 121)
 WAVES = (4, 6, 8, 12, 16, 24, 32)

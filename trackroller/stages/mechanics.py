@@ -1,6 +1,6 @@
 """The stages of a solution up to the tractions: each takes the `Results` so far and adds its own quantities.
 
-Those that look for stresses stand in `stages_stress`, what each case makes of them in `stages_case`.
+Those that look for stresses stand in `stages.stress`, what each case makes of them in `stages.case`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 
 from trackroller import equilibrium as eq
-from trackroller import stages_grid
 from trackroller.case import CaseTable
 from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import law_of
@@ -23,7 +22,8 @@ from trackroller.dataset import VALIDITY_BITS
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
 from trackroller.options import Options
 from trackroller.requirements import Mirror, is_frictionless, is_mirror_symmetric
-from trackroller.scene import Results, Scene, surface_tractions
+from trackroller.stages import grid as stages_grid
+from trackroller.stages.scene import Results, Scene, surface_tractions
 
 SIGN_CONVENTIONS = (
     "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "

@@ -11,7 +11,7 @@ from typing import Any
 from trackroller.accuracy import PROMISES, accuracy_settings, preset_rungs, read_ladders, rounded_up
 from trackroller.errors import InputError
 from trackroller.pages import Block, page_html
-from trackroller.study.tradeoff_errors import QUANTITIES
+from trackroller.study.tradeoff.errors import QUANTITIES
 
 Record = dict[str, Any]
 LADDER_NAMES = {"forces": "quadrature of the forces (full sliding)", "peak": "search of the peak stress",
@@ -184,7 +184,7 @@ def write_results(tradeoff_nc: str, summary_json: str, figures: str, page: str) 
 
     from trackroller.plots.tradeoff import draw_all
     from trackroller.study.files import write_whole
-    from trackroller.study.tradeoff_summary import summary
+    from trackroller.study.tradeoff.summary import summary
 
     ds = xr.load_dataset(tradeoff_nc)
     found = summary(ds)

@@ -11,8 +11,8 @@ import xarray as xr
 
 from trackroller.case import Case
 from trackroller.solver import solve
-from trackroller.study.tradeoff_errors import QUANTITIES, relative_errors
-from trackroller.study.tradeoff_settings import ALL, Setting, references
+from trackroller.study.tradeoff.errors import QUANTITIES, relative_errors
+from trackroller.study.tradeoff.settings import ALL, Setting, references
 
 Patch = dict[str, Any]
 

@@ -17,7 +17,7 @@ from trackroller.contact.normal.patches import Patches
 from trackroller.drawn_profiles import gap, treats_sides_alike
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
 from trackroller.halfspace.stress import von_mises
-from trackroller.scene import Results, surface_tractions
+from trackroller.stages.scene import Results, surface_tractions
 from trackroller.threads import share_rows
 
 if TYPE_CHECKING:

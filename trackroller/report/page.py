@@ -13,10 +13,10 @@ import numpy as np
 from trackroller.plots import style
 from trackroller.plots.study_loads import surface_share
 from trackroller.plots.study_view import StudyView, study_settings
-from trackroller.report_decisions import decisions
-from trackroller.report_inputs import base_table, factor_table, materials_table, record_table
-from trackroller.report_papers import conventions, papers
-from trackroller.report_tables import causes, design_rows, ranked, reasons, regime_table, validity_table
+from trackroller.report.decisions import decisions
+from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
+from trackroller.report.papers import conventions, papers
+from trackroller.report.tables import causes, design_rows, ranked, reasons, regime_table, validity_table
 
 if TYPE_CHECKING:
     import xarray as xr

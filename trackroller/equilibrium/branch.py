@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.equilibrium_newton import bracketed, newton_polish
-from trackroller.equilibrium_roller import LIFTED, ContactLaw, Loads, Roller
+from trackroller.equilibrium.newton import bracketed, newton_polish
+from trackroller.equilibrium.roller import LIFTED, ContactLaw, Loads, Roller
 
 
 def follow_friction(loads, law, rows, low, high):

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller import stages_grid
 from trackroller.contact import sliding
 from trackroller.contact.common import Slip
 from trackroller.contact.grid_patch import GridPatch
@@ -18,7 +17,8 @@ from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.stress import von_mises
 from trackroller.options import Options
 from trackroller.requirements import distinct_rows, normalised_patches
-from trackroller.scene import Results, surface_tractions
+from trackroller.stages import grid as stages_grid
+from trackroller.stages.scene import Results, surface_tractions
 from trackroller.stop import holds, parse_condition
 
 

@@ -1,6 +1,6 @@
 """Catalogue of edge scenes as data: series of cases that run to the ends of the parameters, and what must hold there.
 
-A scene is a series of cases along one quantity. Its claims are names of `trackroller.study.extremes_checks.CHECKS`.
+A scene is a series of cases along one quantity. Its claims are names of `trackroller.study.extremes.checks.CHECKS`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.equilibrium_roller import LIFTED
+from trackroller.equilibrium.roller import LIFTED
 
 CaseDict = dict[str, Any]
 STEEL: CaseDict = {

@@ -7,9 +7,9 @@ from typing import Any
 from trackroller.case import Case
 from trackroller.parameters import ACCURACIES
 from trackroller.solver import solve
-from trackroller.study.tradeoff_measure import cpu
-from trackroller.study.tradeoff_settings import REFERENCE_SEARCHES, accuracy_of
-from trackroller.study.tradeoff_stages import PUBLISHED_START, Patches, grid_peak, patches_of
+from trackroller.study.tradeoff.measure import cpu
+from trackroller.study.tradeoff.settings import REFERENCE_SEARCHES, accuracy_of
+from trackroller.study.tradeoff.stages import PUBLISHED_START, Patches, grid_peak, patches_of
 
 CASE = Case(motor_force=0.0, friction_coefficient=0.3, radial_force=-200.0, axial_force=30.0, guide_curve_radius=220.0)
 # setting, points across the surface, points across the volume, depths, minutes, peak [MPa]: as printed

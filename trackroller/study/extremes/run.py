@@ -12,10 +12,10 @@ import numpy as np
 
 from trackroller.parameters import REGIMES
 from trackroller.solver import solve
-from trackroller.study.extremes import BASE, scaled, scenes
-from trackroller.study.extremes_checks import FAILED, NEEDED, examine, run_cases
-from trackroller.study.extremes_kernels import KERNELS
-from trackroller.study.extremes_random import random_extremes
+from trackroller.study.extremes.checks import FAILED, NEEDED, examine, run_cases
+from trackroller.study.extremes.kernels import KERNELS
+from trackroller.study.extremes.random_cases import random_extremes
+from trackroller.study.extremes.scenes import BASE, scaled, scenes
 
 Record = dict[str, Any]
 ACCURACIES = {"sliding": "standard", "kalker": "preview", "fastsim": "preview"}

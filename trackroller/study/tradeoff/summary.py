@@ -12,8 +12,8 @@ import xarray as xr
 from trackroller.accuracy import FORCE_QUANTITIES, preset_rungs, read_ladders
 from trackroller.parameters import ACCURACIES
 from trackroller.study.pareto import pareto_mask
-from trackroller.study.tradeoff_errors import QUANTITIES, observed_order, percentiles, tolerance_bound
-from trackroller.study.tradeoff_settings import REFERENCE_ELEMENTS
+from trackroller.study.tradeoff.errors import QUANTITIES, observed_order, percentiles, tolerance_bound
+from trackroller.study.tradeoff.settings import REFERENCE_ELEMENTS
 
 MOST_RUNGS = 10
 LADDERS = {("equilibrium", "sliding"): "forces", ("peak", "sliding"): "peak", ("elements", "fastsim"): "fastsim",

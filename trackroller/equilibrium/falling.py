@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.equilibrium_newton import bracketed, newton_polish
-from trackroller.equilibrium_roller import Roller
+from trackroller.equilibrium.newton import bracketed, newton_polish
+from trackroller.equilibrium.roller import Roller
 
 POINTS = 24  # of the search away from no slip
 FIRST, LAST = -1.5, 3.5  # decades of slip over its scale between which it looks

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 
 from trackroller.solver import solve
-from trackroller.study.extremes import Scene
+from trackroller.study.extremes.scenes import Scene
 
 POINTS, ROUNDS = 16, 5  # of the search for a border: 15^-5 of the span
 STEPS = 30  # of the search for a place of the pole

@@ -1,0 +1,1 @@
+"""Numerical stability where quantities become tiny, huge or equal: scenes, claims and random cases."""
