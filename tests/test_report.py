@@ -15,7 +15,8 @@ from synthetic_results import PAIRS, grid_study, sampled_study
 
 from trackroller.plots.study import draw_all
 from trackroller.plots.study_view import StudyView
-from trackroller.report import contents, models_used, write_report
+from trackroller.report import write_report
+from trackroller.report.page import contents, models_used
 from trackroller.report.tables import causes, regime_table, validity_table
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
