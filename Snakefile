@@ -5,7 +5,7 @@ from snakemake.exceptions import WorkflowError
 
 from trackroller.errors import InputError
 from trackroller.study.files import WorkError
-from trackroller.study.workflow import sources, study_inputs, workflow_plan
+from trackroller.workflow import sources, study_inputs, workflow_plan
 
 
 configfile: "config/config.yaml"

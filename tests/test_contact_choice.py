@@ -12,9 +12,9 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller import contact_choice as choice
+from trackroller import ladder
 from trackroller.case import to_table
 from trackroller.options import Options
-from trackroller.study import ladder
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "benchmarks"))
 import contact_choice

@@ -8,7 +8,6 @@ smooth whatever eps. Both use Gauss-Legendre points clustered at the ends, where
 
 from __future__ import annotations
 
-import functools
 import math
 from typing import Any
 
@@ -20,6 +19,7 @@ from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.errors import unknown_name
 from trackroller.halfspace.vectors import exp, inner
 from trackroller.parameters import SPIN_MODELS
+from trackroller.quadrature import clustered_rule
 from trackroller.threads import share_rows
 
 _TINY = 1e-13  # keeps logarithms finite on the column through the pole; its weight there is of order eps^2
@@ -30,14 +30,6 @@ def spin_model_index(name: str) -> int:
     if name not in SPIN_MODELS:
         raise unknown_name("spin_model", name, SPIN_MODELS)
     return SPIN_MODELS.index(name)
-
-
-@functools.lru_cache(maxsize=128)
-def clustered_rule(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights on (0, 1): Gauss-Legendre under v -> 3v^2 - 2v^3, smooth for end-point roots."""
-    v, w = np.polynomial.legendre.leggauss(n)
-    v, w = (v + 1) / 2, w / 2
-    return v * v * (3 - 2 * v), w * 6 * v * (1 - v)
 
 
 @njit(cache=True)

@@ -18,11 +18,11 @@ from trackroller.contact.knots import interval
 from trackroller.contact.sliding import (
     _TINY,
     _breakpoints,
-    clustered_rule,
     pole_offset,
     rolling_slip,
     spin_model_index,
 )
+from trackroller.quadrature import clustered_rule
 from trackroller.threads import share_rows
 
 FEW_KNOTS = 8  # laws with more are smooth enough for one rule

@@ -23,7 +23,6 @@ import math
 import numpy as np
 from numba import njit
 
-from trackroller.contact.sliding import clustered_rule
 from trackroller.errors import InputError
 from trackroller.halfspace.ellipse_kernels import (
     FIXED,
@@ -45,6 +44,7 @@ from trackroller.halfspace.ellipse_kernels import (
 )
 from trackroller.halfspace.kernels import point_kernel
 from trackroller.halfspace.vectors import FAST, inner
+from trackroller.quadrature import clustered_rule
 from trackroller.threads import share_rows
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")

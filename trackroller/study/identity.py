@@ -24,7 +24,7 @@ RESULTS_VERSION = 12  # raise it with every change of the solver that changes nu
 _MATERIAL_VALUES = ("youngs_modulus", "poisson_ratio", "tensile_strength", "fatigue_limit",
                     "cycles_at_tensile_strength", "cycles_at_fatigue_limit")  # fmt: skip
 _PHYSICS = ("solver.py", "stages", "equilibrium", "geometry.py", "fatigue.py", "accuracy.py", "contact",
-            "contact_choice.py", "contact_choice_probe.py", "halfspace")  # fmt: skip
+            "contact_choice.py", "contact_choice_probe.py", "halfspace", "quadrature.py")  # fmt: skip
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:

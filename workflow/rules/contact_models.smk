@@ -6,7 +6,7 @@ rule contact_models:
     input:
         study="config/studies/contact_models.yaml",
         code=sources(
-            "study/ladder.py",
+            "ladder.py",
             "plots/ladder.py",
             "contact",
             "contact_choice.py",

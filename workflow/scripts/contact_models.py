@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from trackroller.study.ladder import compare
-from trackroller.study.workflow import log_to
+from trackroller.ladder import compare
+from trackroller.workflow import log_to
 
 log_to(snakemake.log[0])
 compare(Path(snakemake.input.study), Path(snakemake.output.report).parent)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from trackroller.study.gather import write_design
-from trackroller.study.workflow import log_to, workflow_plan
+from trackroller.workflow import log_to, workflow_plan
 
 log_to(snakemake.log[0])
 write_design(workflow_plan(snakemake.config, check=False).study, Path(snakemake.output[0]))

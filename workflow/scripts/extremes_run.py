@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from trackroller.study.extremes.run import run, write
-from trackroller.study.workflow import log_to
+from trackroller.workflow import log_to
 
 log_to(snakemake.log[0])
 write(run(), Path(snakemake.output[0]))

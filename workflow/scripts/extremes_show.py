@@ -4,7 +4,7 @@ from pathlib import Path
 
 from trackroller.plots.extremes import draw_extremes
 from trackroller.study.extremes.page import html, read
-from trackroller.study.workflow import log_to
+from trackroller.workflow import log_to
 
 log_to(snakemake.log[0])
 page = Path(snakemake.output.page)

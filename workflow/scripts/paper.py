@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from trackroller.paper_page import write_results
-from trackroller.study.workflow import log_to
+from trackroller.workflow import log_to
 
 log_to(snakemake.log[0])
 write_results(Path(snakemake.output.data).parent)

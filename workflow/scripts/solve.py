@@ -5,7 +5,7 @@ from pathlib import Path
 
 from trackroller.study.files import StudyFolder
 from trackroller.study.solve import solve_chunk
-from trackroller.study.workflow import log_to
+from trackroller.workflow import log_to
 
 log_to(snakemake.log[0])
 summary = solve_chunk(StudyFolder(Path(snakemake.output[0]).parent.parent), snakemake.wildcards.chunk)

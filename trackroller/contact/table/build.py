@@ -16,8 +16,8 @@ import numpy as np
 from trackroller.contact import kalker
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.linear import creepage_coefficients
-from trackroller.contact.sliding import clustered_rule
 from trackroller.contact.table import spline as table
+from trackroller.quadrature import clustered_rule
 
 RHO = 15  # intervals of rho
 THETA = 13  # nodes of theta between 0 and 90 deg, at the middles of as many equal parts

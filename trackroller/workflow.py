@@ -46,7 +46,7 @@ def study_inputs(study: Study) -> list[str]:
 
 def sources(*parts: str) -> list[str]:
     """Source files of parts of the package, so that results are redrawn when their code changes."""
-    root = Path(__file__).resolve().parent.parent
+    root = Path(__file__).resolve().parent
     found: list[Path] = []
     for part in parts:
         path = root / part
