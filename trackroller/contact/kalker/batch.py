@@ -12,7 +12,8 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.influence import coupling_slip, influence
-from trackroller.contact.kalker.loops import reals
+from trackroller.contact.kalker.columns import column_ranges
+from trackroller.contact.kalker.loops import reals, row_means
 from trackroller.contact.kalker.newton import Problem, newton
 from trackroller.threads import share_rows
 
@@ -99,6 +100,10 @@ def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, trav
     report[:3] *= scale
     report[[POWER, WORK, PRESSURE_WORK]] *= scale * ratio
     traction[0], traction[1] = found.real, found.imag
+    if speeds.size > 1:  # the slips that the law has seen, so that tractions and slips told agree with it
+        first, count = column_ranges(problem.height)
+        row_means(reals(moved.copy()), first, count, reals(moved))
+        moved[stick] = 0.0
     slip[0], slip[1] = ratio * moved.real, ratio * moved.imag
 
 

@@ -12,7 +12,7 @@ from numba import njit
 
 from trackroller.contact.influence import FAST, HALO, convolve, differences
 from trackroller.contact.kalker.columns import apply_inverse, factorise
-from trackroller.contact.kalker.loops import reals
+from trackroller.contact.kalker.loops import reals, row_means
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)
@@ -40,10 +40,10 @@ def _rotate(hessenberg, givens, rhs, k):
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)
-def arnoldi(direction, product, derivative, turn, rho, basis, k, hessenberg, givens, rhs):
-    """Newton's matrix times `direction`, d - P'(d - rho B d) - turn B d, made orthogonal to basis[: k + 1].
+def arnoldi(direction, product, mean, derivative, turn, rho, basis, k, hessenberg, givens, rhs):
+    """Newton's matrix times `direction`, d - P'(d - rho B d) - turn M B d, made orthogonal to basis[: k + 1].
 
-    `product` is B d. Returns the norm of the residual with this much of the Krylov space.
+    `product` is B d, `mean` its `row_means` M B d. Returns the norm of the residual with this much of the Krylov space.
     """
     ny, nx = derivative.shape[1], derivative.shape[2]
     v = basis[k + 1]
@@ -53,9 +53,10 @@ def arnoldi(direction, product, derivative, turn, rho, basis, k, hessenberg, giv
             dx, dy = direction[i, j, 0], direction[i, j, 1]
             x, y = dx - rho * bx, dy - rho * by
             pxx, pxy, pyy = derivative[0, i, j], derivative[1, i, j], derivative[2, i, j]
+            mx, my = mean[i, j, 0], mean[i, j, 1]
             place = 2 * (i * nx + j)
-            v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * bx - turn[1, i, j] * by
-            v[place + 1] = dy - pxy * x - pyy * y - turn[2, i, j] * bx - turn[3, i, j] * by
+            v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * mx - turn[1, i, j] * my
+            v[place + 1] = dy - pxy * x - pyy * y - turn[2, i, j] * mx - turn[3, i, j] * my
     for i in range(k + 1):
         h = dot(basis[i], v)
         hessenberg[i, k] = h
@@ -99,11 +100,12 @@ def multiply(field, p, q, leading, hy, rolling, work, product):
 
 
 @njit(cache=True, nogil=True)
-def solve(value, slips, derivative, turn, rho, first, count, p, q, leading, hy, rolling, tolerance, factors, basis,
-          work, step):  # fmt: skip
+def solve(value, slips, derivative, turn, falls, rho, first, count, p, q, leading, hy, rolling, tolerance, factors,
+          basis, work, step):  # fmt: skip
     """Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES into `step`; how many products.
 
-    slips, first, count : `column_slips` and `column_ranges`; derivative, turn : of `jacobian`; p, q : of `Influence`
+    slips, first, count : `column_slips` and `column_ranges`; derivative, turn : of `jacobian`, turn if friction
+    `falls`; p, q : of `Influence`
     tolerance : of the linear residual, over that of `value`, which is lost
     factors (nx, 2, ny, ny), basis (Krylov space + 1, 2 ny nx), work : see `convolve`; space to work in
     """
@@ -112,6 +114,7 @@ def solve(value, slips, derivative, turn, rho, first, count, p, q, leading, hy, 
     limit = basis.shape[0] - 1
     hessenberg, givens, rhs = np.zeros((limit + 1, limit)), np.zeros((2, limit)), np.zeros(limit + 1)
     product = np.empty_like(value)
+    mean = np.zeros((ny, nx, 2))
     value_reals, step_reals, product_reals = reals(value), reals(step), reals(product)
     flat = value_reals.reshape(-1)
     norm = math.sqrt(dot(flat, flat))
@@ -122,7 +125,9 @@ def solve(value, slips, derivative, turn, rho, first, count, p, q, leading, hy, 
     for k in range(limit):
         apply_inverse(factors, first, count, basis[k].reshape(ny, nx, 2), step_reals)
         multiply(step, p, q, leading, hy, rolling, work, product)
-        rest = arnoldi(step_reals, product_reals, derivative, turn, rho, basis, k, hessenberg, givens, rhs)
+        if falls:
+            row_means(product_reals, first, count, mean)
+        rest = arnoldi(step_reals, product_reals, mean, derivative, turn, rho, basis, k, hessenberg, givens, rhs)
         done = k + 1
         if rest <= tolerance * norm:
             break

@@ -18,8 +18,25 @@ def reals(field):
 
 
 @njit(cache=True, nogil=True)
+def row_means(field, first, count, out):
+    """Means of each element (weight 1/2) and its neighbours in the rolling direction (1/4), within the patch."""
+    out[:] = field
+    for j in range(count.size):
+        low, high = first[j], first[j] + count[j] - 1
+        for i in range(low, high + 1):
+            behind, ahead = max(i - 1, low), min(i + 1, high)
+            for c in range(2):
+                out[i, j, c] = 0.5 * field[i, j, c] + 0.25 * (field[behind, j, c] + field[ahead, j, c])
+
+
+@njit(cache=True, nogil=True)
 def law_of_slip(slip, height, scale, knots, factors, bound, slope):
-    """Traction bound height f(scale |s|) and its derivative with respect to |s|; f linear between its knots."""
+    """Traction bound height f(scale |s|) and its derivative with respect to |s|; f linear between its knots.
+
+    `slip` are the `row_means`: friction that falls with the slip of its own element alone would let the slips of
+    neighbours swing against each other, to which the differences of displacements answer far more than to any
+    slip that elements resolve. The bound is of second order in the element size either way.
+    """
     last = knots.size - 1
     for i in range(height.shape[0]):
         for j in range(height.shape[1]):
@@ -58,10 +75,11 @@ def residual(traction, slip, bound, rho, out):
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)
-def jacobian(traction, slip, bound, slope, rho, derivative, turn):
+def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
     """Derivative of P_g at z = tau - rho s: xx, xy, yy into `derivative` (3, ny, nx).
 
-    And n (dg/d|s|) s/|s| of sliding elements, n the direction of z, into `turn` (4, ny, nx: xx, xy, yx, yy).
+    And n (dg/d|m|) m/|m| of sliding elements, n the direction of z and m the `row_means` of the slip, into `turn`
+    (4, ny, nx: xx, xy, yx, yy).
     """
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):
@@ -79,6 +97,7 @@ def jacobian(traction, slip, bound, slope, rho, derivative, turn):
                 derivative[0, i, j] = factor * zy * zy
                 derivative[1, i, j] = -factor * zx * zy
                 derivative[2, i, j] = factor * zx * zx
+                sx, sy = mean[i, j, 0], mean[i, j, 1]
                 speed = math.hypot(sx, sy)
                 steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
             turn[0, i, j], turn[1, i, j] = steep * zx * sx, steep * zx * sy

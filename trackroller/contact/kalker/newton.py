@@ -18,7 +18,7 @@ import numpy as np
 from trackroller.contact.influence import Influence, leading_rows
 from trackroller.contact.kalker.columns import column_ranges, column_slips
 from trackroller.contact.kalker.krylov import multiply, solve
-from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual
+from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
 
 # Where many elements are wrongly thought to slide between sticking ones, Newton's method frees one a step, from the
 # leading edge on, by short steps. After SHORT steps of at most half length they are taken as sticking at once; the
@@ -70,6 +70,7 @@ class _Newton:
         self.basis = np.empty((krylov + 1, 2 * ny * nx))
         self.derivative, self.turn = np.empty((3, ny, nx)), np.empty((4, ny, nx))
         self.bound, self.slope, self.held = np.empty((ny, nx)), np.zeros((ny, nx)), np.zeros((ny, nx), bool)
+        self.mean, self.falls = np.zeros((ny, nx, 2)), problem.knots.size > 1
         self.value, self.product = np.empty((ny, nx), complex), np.empty((ny, nx), complex)
         self.work = np.empty((2, *functions.p.shape), complex)
         self.kernel = functions.p, functions.q, self.leading, functions.hy, problem.rolling
@@ -82,7 +83,9 @@ class _Newton:
     def state(self, traction: np.ndarray, slip: np.ndarray) -> _State:
         """The state there; its residual and traction bounds are kept."""
         p = self.problem
-        law_of_slip(reals(slip), p.height, p.scale, p.knots, p.factors, self.bound, self.slope)
+        if self.falls:
+            row_means(reals(slip), self.first, self.count, self.mean)
+        law_of_slip(self.mean, p.height, p.scale, p.knots, p.factors, self.bound, self.slope)
         return _State(traction, slip, *residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value)))
 
     def slits(self, at: _State) -> bool:
@@ -92,12 +95,12 @@ class _Newton:
     def step(self, at: _State, tolerance: float, leap: bool) -> tuple[np.ndarray, np.ndarray, int]:
         """Newton's step, the slips it causes and the products it took; with the kept slits sticking if a leap."""
         slip = reals(at.slip)
-        jacobian(reals(at.traction), slip, self.bound, self.slope, self.rho, self.derivative, self.turn)
+        jacobian(reals(at.traction), slip, self.mean, self.bound, self.slope, self.rho, self.derivative, self.turn)
         if leap:
             hold(self.held, slip, self.rho, reals(self.value), self.derivative, self.turn)
         step = np.empty_like(self.value)
-        products = solve(self.value, self.slips, self.derivative, self.turn, self.rho, self.first, self.count,
-                         *self.kernel, tolerance, self.factors, self.basis, self.work, step)  # fmt: skip
+        products = solve(self.value, self.slips, self.derivative, self.turn, self.falls, self.rho, self.first,
+                         self.count, *self.kernel, tolerance, self.factors, self.basis, self.work, step)  # fmt: skip
         return step, self.multiply(step), products + 1
 
     def search(self, at: _State, step: np.ndarray, change: np.ndarray) -> tuple[_State, float]:
