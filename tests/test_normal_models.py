@@ -328,3 +328,34 @@ def test_unlike_and_like_materials_in_one_batch_keep_their_digits():
         alone = tr.solve([case], ("forces", "contact"), **options)
         for name in ("normal_force", "lateral_force", "rolling_radius_shift", "max_pressure", "residual"):
             np.testing.assert_array_equal(together[name][i], alone[name][0])
+
+
+def test_the_peak_below_a_groove_edge_is_found_and_said_to_be_unknown():
+    """The edge cuts the patch of contact 2: its pressure is singular there, and so is the stress."""
+    cut = tr.Case(motor_force=0, friction_coefficient=0.1, roller_profile={"arc": -7, "edge": {"outer": 0.3}})
+    ds = tr.solve(cut, normal="halfspace", outputs=("peak_stress", "tractions"))
+    peak = ds.peak_stress.sel(contact=2, body="roller")
+    t = ds.sel(contact=2)
+    x, y = t.patch_x.values, t.patch_y.values
+    loaded = x[np.nonzero(t.pressure.values.max(axis=0))[0]]
+    ends = loaded.min() - 0.5 * (x[1] - x[0]), loaded.max() + 0.5 * (x[1] - x[0])
+    below = np.array([(end, 0.0, z) for end in ends for z in np.linspace(0.0, 0.02, 21)])
+    stress = tr.stress_from_tractions(x, y, t.pressure, t.shear_lateral, t.shear_rolling, below, poisson_ratio=0.33)
+    at_edge = tr.von_mises(stress).max()
+    assert at_edge > 1.05 * float(ds.peak_stress.sel(contact=1, body="roller"))
+    assert float(peak) > 0.98 * at_edge
+    assert float(ds.error_estimate.sel(contact=2, body="roller")) > 0.1
+    assert float(ds.error_estimate.sel(contact=1).max()) < 0.01
+
+
+def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
+    """Waves of 0.5 um every 0.1 mm: the field that stresses come from has the pressure that is told."""
+    x = np.arange(-4.5, 4.501, 0.0125)
+    waves = np.sqrt(36.0 - x * x) + 5e-4 * np.cos(20.0 * np.pi * (np.abs(x) - 3.0))
+    drawn = {"points": np.column_stack([x, waves]).tolist()}
+    case = tr.Case(motor_force=0, friction_coefficient=0.1, guide_profile=drawn)
+    rough, fine = (tr.solve(case, normal="halfspace", accuracy=a, outputs=("contact", "peak_stress", "tractions"))
+                   for a in ("standard", "reference"))  # fmt: skip
+    np.testing.assert_allclose(rough.pressure.max(("y", "x")), rough.max_pressure, rtol=0.05)
+    off = np.abs(rough.peak_stress / fine.peak_stress - 1.0)
+    assert np.all(off < 0.1) and np.all(off < rough.error_estimate)

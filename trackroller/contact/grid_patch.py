@@ -94,6 +94,7 @@ def _centres(elements: int) -> np.ndarray:
 
 
 PARTS = 4  # of an element's side, over which the pressure near the rim is averaged
+CUT_OFF, KEPT = 0.85, 0.93  # shares of the largest pressure that means keep: none of them counts, all of them do
 
 
 def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
@@ -113,7 +114,8 @@ def rim_means(pressure: np.ndarray) -> np.ndarray:
 
     Collocation loads an element or does not. Near the rim p^2 is linear, and in Hertz's theory quadratic, so it
     is continued outward and interpolated, and its root averaged. Tractions in stick feel the difference: the rolling
-    resultants converge as those on an ellipse only with it.
+    resultants converge as those on an ellipse only with it. Ridges a few elements wide are all rim: where the means
+    would cut the summit off, the pressure stays as it was solved.
     """
     ny, nx = pressure.shape
     known = np.pad(pressure > 0, 1)
@@ -126,4 +128,7 @@ def rim_means(pressure: np.ndarray) -> np.ndarray:
         pieces = [v[1:-1] * (1 - abs(x)) + (v[2:] if x > 0 else v[:-2]) * abs(x) for x in t]
         square = np.moveaxis(np.stack(pieces, axis=1).reshape(-1, v.shape[1]), 0, axis)
     means = np.sqrt(np.maximum(square, 0.0)).reshape(ny, PARTS, nx, PARTS).mean(axis=(1, 3))
-    return means * (pressure.sum() / means.sum())
+    means *= pressure.sum() / means.sum()
+    kept, least = means.max() / pressure.max(), CUT_OFF
+    share = min(max((kept - least) / (KEPT - least), 0.0), 1.0)
+    return means if share == 1.0 else share * means + (1.0 - share) * pressure

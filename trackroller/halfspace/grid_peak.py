@@ -21,12 +21,14 @@ from trackroller.halfspace.peak import Peak
 from trackroller.threads import share_rows
 
 DEPTHS = (0.0, 0.06, 0.15, 0.3, 0.48, 0.7, 1.0)  # of the scanned planes, over the smaller half side of the patch
+EDGE_ROWS, EDGE_DEPTHS = 9, (0.0, 0.25, 0.5, 1.0)  # looked at below an edge; depths over the width of an element
 APART = 0.25  # half sides between seeds
 WORTH = 0.9  # of the highest seed, from which others climb too
 # The error falls nearly with the square of the element size for smooth pressures, so a third of the change from a grid
 # of twice the size is added; changes above SMOOTH tell of a singular pressure, where nothing is.
 SMOOTH = 0.05
 ERROR_SHARE = 0.3  # of that change, left as the estimated error; all of it above SMOOTH
+STEEP = 0.35  # step of the pressure between neighbours, over the largest, that tells of an edge
 ERROR_FLOOR = 2e-3  # what the solved pressure itself may be off by
 
 
@@ -133,6 +135,21 @@ def _seeds(values: np.ndarray, load: GridLoad, depths: np.ndarray, count: int) -
     return found
 
 
+def _edge_seeds(value, load: GridLoad) -> list[np.ndarray]:
+    """The highest place below the sharpest edge of the pressure, if there is one: it lies between the nodes."""
+    pressure = np.pad(load.tractions[:, :, 2], ((0, 0), (1, 1)))
+    step = np.abs(np.diff(pressure, axis=1))
+    sharpest = int(np.argmax(step.max(axis=0)))
+    if not step[:, sharpest].max() > STEEP * pressure.max():
+        return []
+    h = load.x[1] - load.x[0]
+    rows = np.flatnonzero(step[:, sharpest] > 0.5 * step[:, sharpest].max())
+    rows = rows[np.linspace(0, rows.size - 1, min(rows.size, EDGE_ROWS)).astype(int)]
+    x = load.x[0] + (sharpest - 0.5) * h
+    places = np.array([(x, load.y[j], h * z) for j in rows for z in EDGE_DEPTHS])
+    return [places[int(np.argmax(value(places)))]]
+
+
 def _climb(value, start: np.ndarray, steps: np.ndarray, smallest: float) -> tuple[np.ndarray, float]:
     """Maximum of `value` (of points (n, 3)) near `start`: six neighbours, a parabola along each axis, then closer."""
     place, first = start.copy(), steps.copy()
@@ -178,11 +195,13 @@ def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, smallest: f
             return _von_mises(body_stress(stress_parts(grid, points), nu, sign))
 
         starts = _seeds(surface[body], load, depths[:1], seeds) + _seeds(below[body], coarse, depths[1:], seeds)
+        inner = len(starts)
+        starts += _edge_seeds(value, load)
         heights = [float(value(seed[None])[0]) for seed in starts]
         best, possible = -math.inf, -math.inf
         for k in np.argsort(heights)[::-1]:
-            if heights[k] < WORTH * max(heights):
-                break
+            if k < inner and heights[k] < WORTH * max(heights):
+                continue
             place, top = _climb(value, starts[k], 0.5 * steps, smallest)
             change = (top - float(value(place[None], grid=coarse)[0])) / top
             smooth = abs(change) < SMOOTH

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 REFINED_ERROR, FINEST_ERROR = 4.0, 5e-3  # estimated error of a peak, over the tolerance and at least, to refine above
 REFINEMENTS = 2, 4  # times the elements
 LARGEST_GRID = 160  # elements across that are refined to
+RESOLVED = 0.95  # of the largest pressure that means over 2 x 2 elements keep
 SLIGHT = 1e-3  # of the largest pressure
 NEAR = 4.0  # elements of depth down to which subsurface fields need the full grid
 
@@ -106,8 +107,9 @@ def peaks(results: Results, asked: np.ndarray, poisson_ratio: np.ndarray, option
     if not isinstance(patches, GridPatch) or not getattr(model, "refines", False):
         return peak
     flat = np.flatnonzero(asked)
-    # a singular pressure stays what it is
+    # a pressure that is singular, or on ridges too narrow for its elements, stays what it is
     allowed = (results.slides_along[flat] == 0) & ~patches.reaches_edge[flat] & (results.friction[flat] > 0)
+    allowed &= [load.coarse.tractions[:, :, 2].max() > RESOLVED * load.tractions[:, :, 2].max() for load in loads]
     goal = max(REFINED_ERROR * options.settings.tolerance, FINEST_ERROR)
     for times in REFINEMENTS:
         rows = np.flatnonzero(allowed & (peak.error.max(axis=1) > goal))
