@@ -93,7 +93,7 @@ def render() -> str:
     lines += ["### regime\n", "`regime` is an integer; each row has one.\n"]
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += ["### contact_model_used, stopped\n",
-              "`contact_model_used` (with `contact_model: auto`): 0 sliding, 1 fastsim, 2 kalker.",
+              "`contact_model_used`, as `auto` chose it or as asked for: 0 sliding, 1 fastsim, 2 kalker.",
               "`stopped` (with `stop_if`): 1 where the condition holds.\n"]
     lines += ["### validity\n", "`validity` is a sum of bits; 0 means that nothing is to be said.\n"]
     bits = [(1 << i, f"`{name}`", meaning) for i, (name, meaning) in enumerate(VALIDITY_BITS.items())]

@@ -134,3 +134,31 @@ def test_the_comparison_is_drawn(small):
     # the exact theory has the more stick the more friction
     share = fields.stick_area_fraction.sel(contact_model="kalker").max("contact")
     assert float(share[1]) > float(share[0])
+
+
+def test_auto_does_not_keep_what_says_itself_that_it_is_in_doubt():
+    """The sliding model's forces are within the tolerance here, but its stress is infinite where the slip turns."""
+    inf = float("inf")
+    doubtful = tr.Case(
+        axis_distance=20.161324, guide_profile_radius=10.071315, roller_profile_radius=inf, guide_curve_radius=1708.16,
+        contact_angle=37.24502, radial_force=-540.4773, axial_force=18.69199, motor_force=-190.34137,
+        friction_coefficient=0.41400733, roller_material="EN AW-7075", guide_material="EN AW-7075",
+    )  # fmt: skip
+    cases = [tr.Case(friction_coefficient=0.02, motor_force=0, axial_force=0), doubtful]
+    assert list(_chosen(cases, 0.05)) == ["sliding", "sliding"]
+    found, exact = (tr.solve(cases, outputs=("forces", "peak_stress"), contact_model=m) for m in ("auto", "kalker"))
+    assert found.contact_model_used.values.tolist() == [0, 2]
+    assert float(found.error_estimate.max()) < 0.05
+    np.testing.assert_allclose(found.peak_stress, exact.peak_stress, rtol=0.05)
+
+
+def test_where_the_table_gives_all_that_is_asked_for_fastsim_is_not_tried():
+    cases = [tr.Case(friction_coefficient=mu, motor_force=0) for mu in (0.05, 0.1, 0.2, 0.3)]
+    quick = tr.solve(cases, outputs="forces", contact_model="auto", accuracy="preview")
+    assert set(quick.contact_model_used.values.tolist()) <= {0, 2}
+
+
+def test_every_case_tells_its_contact_model():
+    for number, name in enumerate(("sliding", "fastsim", "kalker")):
+        ds = tr.solve(tr.Case(), outputs="forces", contact_model=name, accuracy="preview")
+        assert int(ds.contact_model_used) == number

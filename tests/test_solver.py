@@ -28,7 +28,8 @@ def test_every_variable_is_labelled():
         assert ds[name].attrs["units"] and ds[name].attrs["long_name"]
         if name in VARIABLES:
             assert ds[name].dims == ("case", *VARIABLES[name].dims)
-    assert {v.name for v in VARIABLES.values()} == set(ds.data_vars) - {"regime", "converged", "validity"}
+    flags = {"regime", "converged", "validity", "contact_model_used"}
+    assert {v.name for v in VARIABLES.values()} == set(ds.data_vars) - flags
     assert ds.regime.attrs["flag_meanings"].split() == list(parameters.REGIMES)
 
 

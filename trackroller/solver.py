@@ -113,10 +113,21 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 def _solve_block(table: CaseTable, options: Options) -> Block:
     """Cases that share a contact model, a friction law and profiles are solved together."""
     groups = list(_groups(table, options))
-    if len(groups) == 1:
-        return _solve_group(table, replace(options, contact_model=groups[0][0]))
-    found = join([_solve_group(table.take(rows), replace(options, contact_model=model)) for model, rows in groups])
-    return found.take(np.argsort(np.concatenate([rows for _, rows in groups])))
+    parts = [_solve_group(table.take(rows), replace(options, contact_model=model)) for model, rows in groups]
+    found = join(parts).take(np.argsort(np.concatenate([rows for _, rows in groups])))
+    return _without_doubt(table, found, options) if options.contact_model == "auto" else found
+
+
+def _without_doubt(table: CaseTable, found: Block, options: Options) -> Block:
+    """The solutions of `auto`, those exactly that say themselves that they may miss the tolerance."""
+    from trackroller.contact_choice import in_doubt
+
+    again = in_doubt(table, found, options.contact_tolerance)
+    if not again.size:
+        return found
+    place = np.arange(len(table))
+    place[again] = len(table) + np.arange(again.size)
+    return join([found, _solve_block(table.take(again), replace(options, contact_model="kalker"))]).take(place)
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:
@@ -180,9 +191,9 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }
     flags = {"regime": block.regime, "converged": block.converged, "validity": block.bits}
+    flags["contact_model_used"] = block.model
     if options.contact_model == "auto":
         attrs["contact_tolerance"] = options.contact_tolerance
-        flags["contact_model_used"] = block.model
     if options.stop_if is not None:
         attrs["stop_if"] = options.stop_if
         flags["stopped"] = block.stopped

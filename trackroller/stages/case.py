@@ -55,6 +55,15 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
     v["roller_life_hours"], v["guide_life_hours"] = roller.min(axis=1), guide.min(axis=1)
 
 
+def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
+    """Cases (n,) where the slip of the sliding model vanishes well apart from its spin pole, see `pole_split`."""
+    alpha = np.deg2rad(table.contact_angle)
+    split = [pole_split(v["semi_axis_lateral"][:, k], sign * np.sin(alpha), np.cos(alpha), table.guide_profile_radius,
+                        v["rolling_radius_shift"]) for k, sign in ((0, 1.0), (1, -1.0))]  # fmt: skip
+    with np.errstate(invalid="ignore"):
+        return np.maximum(*split) > 0.1
+
+
 def validity(table: CaseTable, block: Block) -> None:
     """Bits that warn where the model leaves its ground, see `dataset.VALIDITY_BITS`."""
     v = block.values
@@ -75,9 +84,7 @@ def validity(table: CaseTable, block: Block) -> None:
         # ASSUME: the database holds no yield strength, so R_m stands for it
         warn("yield", np.max(v["max_pressure"], axis=1) > 1.6 * strength)
         warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
-        split = [pole_split(v["semi_axis_lateral"][:, k], sign * np.sin(alpha), np.cos(alpha), r_g,
-                                    v["rolling_radius_shift"]) for k, sign in ((0, 1.0), (1, -1.0))]  # fmt: skip
-        warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & (np.maximum(*split) > 0.1))
+        warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & split_pole(table, v))
         warn("large_slip", np.abs(v["slip"]) > 0.1)
         if "peak_stress" in v:
             limits = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)[:, None, :]

@@ -84,7 +84,7 @@ def contact(results: Results, options: Options) -> None:
     v["semi_axis_lateral"] = results.by_contact(e.semi_axis_lateral)
     v["semi_axis_rolling"] = results.by_contact(e.semi_axis_rolling)
     v["max_pressure"] = results.by_contact(e.max_pressure)
-    v["max_shear"] = results.by_contact(results.friction * e.max_pressure)
+    v["max_shear"] = results.by_contact(results.friction * e.max_pressure)  # where all slides under a constant law
     if isinstance(e, GridPatch):
         stages_grid.contact(results, e, 1 << list(VALIDITY_BITS).index("conformal"))
     else:
@@ -100,8 +100,10 @@ def contact(results: Results, options: Options) -> None:
     v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
     if results.scene.model.full_sliding or results.scene.frictionless:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
-    elif "contact" in options.outputs:
+    elif "contact" in options.outputs or "max_shear" in (options.stop_if or ""):
         v["stick_area_fraction"] = results.full(_stick_share(results))
+        if not isinstance(results.scene.model, TableModel):  # which knows the bound of the shear only
+            v["max_shear"] = results.full(_largest_shear(results))
 
 
 def steep_friction(results: Results, options: Options) -> None:
@@ -137,6 +139,15 @@ def _stick_share(results: Results) -> np.ndarray:
     slip = replace(results.slip, shift=np.where(np.isfinite(results.slip.shift), results.slip.shift, 0.0)).take(good)
     share = model.stick(results.ellipse.take(good), slip, results.friction[good], results.rows[good])
     return np.where(rolls, share, 0.0)
+
+
+def _largest_shear(results: Results) -> np.ndarray:
+    """Largest |tau| of each existing patch [MPa]; under an ellipse the grid misses it as it misses the pressure's."""
+    t = surface_tractions(results)
+    largest = np.max(np.hypot(t.shear_lateral, t.shear_rolling), axis=(1, 2))
+    if isinstance(results.ellipse, GridPatch):
+        return largest
+    return largest * results.ellipse.max_pressure[results.good] / np.max(t.pressure, axis=(1, 2))
 
 
 def friction_work(results: Results, options: Options) -> None:
