@@ -248,6 +248,20 @@ def _search(patches: _Patches, rules: tuple, settings: PeakSettings, smallest: f
     out[:, :, 1:4] = climbs.u[best].reshape(n, 2, 3)
 
 
+def _change_by_elements(patches: _Patches, found: np.ndarray, rule: np.ndarray) -> np.ndarray:
+    """Relative change of the peaks (n, 2, 5) of `_search` where elements of twice the size have the mean tractions."""
+    n, _, ny, nx = patches.fields.shape
+    if ny % 2 or nx % 2:
+        return np.zeros((n, 2))
+    blocks = patches.fields.reshape(n, 2, ny // 2, 2, nx // 2, 2)
+    inside = np.any(blocks != 0.0, axis=1, keepdims=True).sum(axis=(3, 5))
+    means = blocks.sum(axis=(3, 5)) / np.maximum(inside, 1)
+    coarse = _Patches(patches.rows, np.ascontiguousarray(means), patches.poisson_ratio, patches.slender)
+    of, body = (index.ravel() for index in np.indices((n, 2)))
+    other = coarse.stress(of, body, np.ascontiguousarray(found[:, :, 1:4]).reshape(2 * n, 3), rule, rule)
+    return np.abs(other.reshape(n, 2) / found[:, :, 0] - 1.0)
+
+
 def find_peaks(
     patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSettings, fields: np.ndarray | None = None
 ) -> Peak:
@@ -261,7 +275,7 @@ def find_peaks(
     fields : traction over its bound at element centres, (n, 2, ny, nx), for models other than full sliding
 
     Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error holds the change from the climb's quadrature
-    to the summit's and the last gain of the climb.
+    to the summit's, the last gain of the climb, and with `fields` the change on elements of twice the size.
     """
     patches = np.ascontiguousarray(patches)
     out = np.empty((len(patches), 2, 5))
@@ -277,6 +291,8 @@ def find_peaks(
         )
         found = np.empty((group.size, 2, 5))
         _search(some, rules, settings, settings.step / factor, found)
+        if fields is not None:
+            found[:, :, 4] += _change_by_elements(some, found, rules[3])
         out[group] = found
     # a missed or not quite climbed ridge shows nowhere: measured, it grows so with friction and slenderness
     out[:, :, 4] += (settings.floor * (1.0 + 10.0 * patches[:, FRICTION] ** 2 * np.sqrt(long / short)))[:, None]
