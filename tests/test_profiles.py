@@ -139,8 +139,8 @@ def test_edges_cut_and_round_the_material():
         ({"points": [[i, 0.0] for i in range(6)], "frame": "contact"}, "both sides"),
         ({"points": [[i, 0.0] for i in range(6)], "smooth": -1}, "noise"),
         ({"points": [[i, 0.0] for i in range(6)], "frame": "sektion"}, "section"),
-        ({"file": "/etc/passwd"}, "below the working directory"),
-        ({"file": "../points.csv"}, "below the working directory"),
+        ({"file": "/etc/passwd"}, "a relative path without '..'. Put the file below"),
+        ({"file": "../points.csv"}, "a relative path without '..'. Put the file below"),
         ({"file": "missing.csv"}, "a file below"),
     ],
 )

@@ -11,6 +11,7 @@ import numpy as np
 from trackroller.case import FIELDS, Case
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import REGIMES
+from trackroller.point_files import files_beside
 from trackroller.study.files import WorkError, write_whole
 from trackroller.study.yamlfile import parse_mapping, read_mapping
 
@@ -54,7 +55,8 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
     for key in ("outputs", "slip_terms"):
         if isinstance(options.get(key), str):
             options[key] = [part.strip() for part in options[key].split(",")]
-    return Case.from_dict(values), options
+    with files_beside(path):
+        return Case.from_dict(values), options
 
 
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:

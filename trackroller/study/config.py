@@ -23,6 +23,7 @@ from trackroller.parameters import (
     SLIP_TERMS,
     STRESS_BODIES,
 )
+from trackroller.point_files import files_beside
 from trackroller.stop import parse_condition
 from trackroller.study.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.factors import LISTS
@@ -273,7 +274,8 @@ def load_study(path: str | Path, database: Any = None) -> Study:
     missing or not YAML, unknown keys or names, values out of bounds, contradicting geometry.
     """
     path = Path(path)
-    return parse_study(parse_mapping(read_text(path, "study file"), "study file"), path, database)
+    with files_beside(path):
+        return parse_study(parse_mapping(read_text(path, "study file"), "study file"), path, database)
 
 
 def _check_slip_terms(study: Study) -> None:
