@@ -199,6 +199,30 @@ def test_points_in_other_units_are_refused_in_both_frames(factor):
             tr.solve(tr.Case(roller_profile={"points": near, "frame": "contact"}), normal="halfspace", outputs="forces")
 
 
+@pytest.mark.parametrize("body", ["guide_profile", "roller_profile"])
+def test_heights_in_micrometres_are_refused_where_x_is_in_mm(body):
+    """Nothing but a speck of such a curve is flat enough to bear."""
+    curve = [[u, -u * u / 14 * 1000] for u in np.linspace(-1, 1, 41).tolist()]
+    with pytest.raises(tr.InputError, match=rf"{body}.*25 deg.*x and z in mm"):
+        tr.solve(tr.Case(**{body: {"points": curve, "frame": "contact"}}), normal="halfspace", outputs="forces")
+
+
+@pytest.mark.parametrize("groove", [{"arc": -5.9}, {"arcs": [{"radius": -7, "to": 0.4}, {"radius": -5.5}]}])
+def test_a_groove_that_touches_far_from_the_nominal_contact_is_refused(groove):
+    """Tighter than the guide it rides on the rim; a hollow worn beside the contact is no such thing."""
+    with pytest.raises(tr.InputError, match=r"roller_profile.*outward of the nominal contact.*lever arms"):
+        tr.solve(tr.Case(roller_profile=groove), normal="halfspace", outputs="forces")
+
+
+def test_smoothing_that_moves_the_contact_away_is_blamed_itself():
+    points = {"points": circle_points(6.0), "smooth": 2.0}
+    with pytest.raises(tr.InputError, match=r"guide_profile\.smooth = 2\.0.*inclined by.*30 deg.*standard deviation"):
+        tr.solve(tr.Case(guide_profile=points), normal="halfspace", outputs="forces")
+    with pytest.raises(tr.InputError, match=r"overlap.*smooth less"):
+        wide = [[x, math.sqrt(36 - x * x)] for x in np.linspace(-4.5, 4.5, 181).tolist()]
+        tr.solve(tr.Case(guide_profile={"points": wide, "smooth": 0.1}), normal="halfspace", outputs="forces")
+
+
 def test_a_curve_upside_down_or_on_one_side_only_says_so():
     down = [[x, -z] for x, z in circle_points(6.0)]
     with pytest.raises(tr.InputError, match="other way round"):
