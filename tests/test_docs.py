@@ -109,3 +109,18 @@ def test_the_command_is_installed():
 def test_python_interface_is_that_of_the_code():
     done = subprocess.run([sys.executable, str(ROOT / "docs" / "api.py"), "--check"], check=False)
     assert done.returncode == 0, "run: python docs/api.py"
+
+
+def test_errors_of_the_dimensionless_table_are_those_it_states():
+    """Every kind of error that the table was measured for stands in the page, rounded."""
+    from trackroller.contact import table
+
+    stated = table.stored().errors
+    text = (ROOT / "docs" / "contact-models.md").read_text(encoding="utf-8")
+    rows = {"like_force": "bodies of one kind", "unlike_force": "unlike bodies, abs",
+            "like_stick": "share of stick, K = 0", "unlike_stick": "share of stick, unlike"}  # fmt: skip
+    assert {name.rsplit("_", 1)[0] for name in stated if "_" in name} == set(rows)
+    for name, start in rows.items():
+        (cells,) = re.findall(rf"\| {re.escape(start)}[^|]*\|([^|]*)\|([^|]*)\|([^|]*)\|", text)
+        told = [float(cell.strip(" %")) / 100 for cell in cells]
+        assert told == pytest.approx([stated[f"{name}_{what}"] for what in ("median", "p99", "worst")], rel=0.25)

@@ -5,9 +5,11 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import trackroller as tr
 from trackroller.accuracy import PRESETS
+from trackroller.case import to_table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
 from trackroller.contact.friction_laws import constant, exponential_falling, law_of, linear_falling, table
 from trackroller.contact.hertz import HertzShape
@@ -16,6 +18,7 @@ from trackroller.contact.sliding_law import integrals
 from trackroller.dataset import VALIDITY_BITS
 from trackroller.equilibrium import Loads, solve_equilibrium
 from trackroller.errors import InputError
+from trackroller.study.config import parse_study
 
 MAPPINGS = [
     {"kind": "constant"},
@@ -55,10 +58,13 @@ def test_laws_of_the_mapping_are_those_of_the_functions():
         ({"kind": "linear", "speed": "fast"}, ("friction_law.speed", "fast")),
         ({"kind": "linear", "speed": 1, "lowest": 2}, ("friction_law.lowest", "[0, 1]")),
         ({"kind": "linear", "speed": 1, "slope": 2}, ("friction_law.slope", "lowest")),
-        ({"kind": "table", "speed": [0, 1], "friction": [1]}, ("friction_law.speed", "as many")),
+        ({"kind": "table", "speed": [0, 1], "friction": [1]}, ("friction_law.friction", "[1.0]", "as many")),
         ({"kind": "table", "speed": [1, 2], "friction": [1, 1]}, ("friction_law.speed", "rise from 0")),
         ({"kind": "table", "speed": [0, 1], "friction": [0, 1]}, ("friction_law.friction", "the first > 0")),
-        ({"kind": "table", "speed": [0, "x"], "friction": [0, 1]}, ("friction_law.speed", "numbers")),
+        ({"kind": "table", "speed": [0, "x"], "friction": [0, 1]}, ("friction_law.speed", "'x'", "numbers")),
+        ({"kind": "table", "speed": [0, 5], "friction": [0.2, "a"]}, ("friction_law.friction", "'a'", "numbers")),
+        ({"kind": "table", "speed": [0, 5], "friction": 0.2}, ("friction_law.friction", "0.2", "a list")),
+        ({"kind": "table", "speed": [], "friction": []}, ("friction_law.speed", "[]", "a list")),
         (7, ("friction_law", "mapping")),
         ("{broken", ("friction_law", "JSON")),
     ],
@@ -362,3 +368,31 @@ def test_a_roller_without_balance_for_steep_friction_says_so():
     found = tr.solve(lost, contact_model="kalker", outputs="forces")
     assert int(found.regime) == 3 and np.isnan(found.normal_force).all()
     assert int(found.validity) & 1 << list(VALIDITY_BITS).index("steep_friction")
+
+
+MEASURED = {"kind": "table", "speed": [0, 20, 100], "friction": [0.15, 0.12, 0.1]}
+
+
+def test_a_table_holds_as_measured_where_no_friction_coefficient_is_given():
+    """Else it is scaled to the one given, be it the default's number; other laws leave the default."""
+    assert tr.Case(friction_law=MEASURED).friction_coefficient == 0.15
+    assert tr.Case.from_dict({"friction_law": {**MEASURED, "friction": [0.15] * 3}}).friction_coefficient == 0.15
+    assert tr.Case(friction_law=MEASURED, friction_coefficient=0.3).friction_coefficient == 0.3
+    assert tr.Case(friction_law=MAPPINGS[1]).friction_coefficient == tr.Case().friction_coefficient == 0.3
+    assert tr.Case(friction_law=MEASURED, friction_coefficient=None).friction_coefficient is None
+    with pytest.raises(InputError, match=r"friction_coefficient = 3\.0"):
+        tr.Case(friction_law={**MEASURED, "friction": [3, 2, 1]})
+
+
+def test_tables_of_a_study_and_a_design_hold_as_measured():
+    other = {**MEASURED, "friction": [0.2, 0.1, 0.05]}
+    data = {"name": "t", "design": "grid", "factors": {"friction_law": {"values": [MEASURED, other, None]}}}
+    assert parse_study(data).design()["friction_coefficient"].values.tolist() == [0.15, 0.2, 0.3]
+    given = parse_study(data | {"base": {"friction_coefficient": 0.3}}).design()
+    assert given["friction_coefficient"].values.tolist() == [0.3, 0.3, 0.3]
+    based = parse_study({"name": "t", "base": {"friction_law": MEASURED}}).design()
+    assert based["friction_coefficient"].values.tolist() == [0.15]
+    design = xr.Dataset({"friction_law": ("case", np.array([json.dumps(MEASURED), ""], dtype=object))})
+    assert to_table(design).friction_coefficient.tolist() == [0.15, 0.3]
+    with pytest.raises(InputError, match=r"base\.friction_law.*friction_coefficient: 0\.15"):
+        parse_study({"name": "t", "base": {"friction_law": {**MEASURED, "friction": [0.15] * 3}}})

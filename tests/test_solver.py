@@ -114,3 +114,8 @@ def test_friction_from_the_database():
 def test_empty_batch():
     """No cases give an empty data set, not an error."""
     assert tr.solve([]).sizes["case"] == 0
+
+
+def test_a_table_of_hertz_is_refused_where_there_is_no_ellipse():
+    with pytest.raises(tr.InputError, match=r"hertz = 'published'.*normal: halfspace"):
+        tr.solve(tr.Case(), hertz="published", normal="halfspace")

@@ -71,6 +71,8 @@ def test_material_pairs_and_friction_by_pair_are_resolved():
     ({"name": "a", "factors": {"friction_coefficient": {"values": [0.1, -0.1]}}}, ["friction_coefficient", "-0.1"]),
     ({"name": "a", "base": {"friction_coefficient": math.nan}}, ["friction_coefficient", "nan"]),
     ({"name": "a", "base": {"radial_force": 10}}, ["radial_force", "10"]),
+    ({"name": "a", "hertz": "published", "normal": "halfspace"}, ["hertz", "published", "normal: halfspace"]),
+    ({"name": "a", "hertz": "published", "normal": ["hertz", "halfspace"]}, ["hertz", "normal: halfspace"]),
     ({"name": "a", "base": {"roller_profile_radius": -5}}, ["base.roller_profile_radius", "conform"]),
     ({"name": "a", "factors": {"roller_profile_radius": {"values": [-7, -5]}}},
      ["factors.roller_profile_radius", "-5", "conform"]),

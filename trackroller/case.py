@@ -52,13 +52,28 @@ def _number(name: str, value: Any) -> float:
         raise InputError(name, value, parameter.allowed()) from None
 
 
+class Default(float):
+    """The value of a number that was not given."""
+
+
+def _own_friction(law: Any) -> float:
+    """Friction at rest of a case that gives none: that of a table, else the default."""
+    if not law:
+        return PARAMETERS["friction_coefficient"].default
+    from trackroller.contact.friction_laws import at_rest
+
+    own = at_rest(law)
+    return PARAMETERS["friction_coefficient"].default if own is None else own
+
+
 @dataclass(frozen=True)
 class Case:
     """One locating-bearing track roller on its guideway; the defaults are the paper's driven example.
 
     Units and signs are those of `trackroller.parameters.PARAMETERS`. A material is a name of the database
     or a mapping with its values. `friction_coefficient=None` takes the typical value of the material
-    pair ('upper' or 'lower' take the bounds). `friction_law` lets friction depend on the slip speed (see
+    pair ('upper' or 'lower' take the bounds); not given, it is 0.3, or that at rest of a `friction_law` given as a
+    table. `friction_law` lets friction depend on the slip speed (see
     `trackroller.contact.friction_laws.canonical`), `guide_profile` and `roller_profile` are drawn or measured
     cross-sections for `normal="halfspace"` (see `trackroller.profiles.canonical`).
 
@@ -74,7 +89,7 @@ class Case:
     radial_force: float = PARAMETERS["radial_force"].default
     axial_force: float = PARAMETERS["axial_force"].default
     motor_force: float = PARAMETERS["motor_force"].default
-    friction_coefficient: float | str | None = PARAMETERS["friction_coefficient"].default
+    friction_coefficient: float | str | None = Default(PARAMETERS["friction_coefficient"].default)
     velocity: float = PARAMETERS["velocity"].default
     guide_overrollings_per_hour: float | None = None
     roller_material: Any = "1.7225-normalised"
@@ -85,6 +100,8 @@ class Case:
 
     def __post_init__(self) -> None:
         columns: dict[str, np.ndarray] = {}
+        if isinstance(self.friction_coefficient, Default):
+            object.__setattr__(self, "friction_coefficient", _own_friction(self.friction_law))
         for name, parameter in PARAMETERS.items():
             value = getattr(self, name)
             if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
@@ -236,6 +253,12 @@ def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
     return columns, len(rows)
 
 
+def own_frictions(laws: np.ndarray) -> np.ndarray:
+    """Friction coefficients (n,) of cases that give none, from their friction laws (n,)."""
+    known = {repr(law): _own_friction(law) for law in np.ravel(laws)}
+    return np.array([known[repr(law)] for law in np.ravel(laws)]).reshape(np.shape(laws))
+
+
 def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
     n = design.sizes.get("case", 1)
     columns = {}
@@ -251,6 +274,8 @@ def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
             values = variable.values.astype(object)
         else:
             values = np.array(default[name], dtype=object)
+            if name == "friction_coefficient" and "friction_law" in design.data_vars:
+                values = own_frictions(design["friction_law"].values)
         column = np.empty(n, dtype=object)
         column[:] = np.broadcast_to(values, (n,))
         columns[name] = column

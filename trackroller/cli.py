@@ -43,8 +43,8 @@ def solve(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
     no_shortcuts: NoShortcuts = False,
 ) -> None:
-    """Solve one case. Keys are the parameters and materials of a case and the options of a study file."""
-    from trackroller.cli_case import as_text, print_json, solve_case, write_result
+    """Solve one case; exit 1 if it fails. Keys: parameters and materials of a case, options of a study file."""
+    from trackroller.cli_case import as_text, is_failed, print_json, solve_case, write_result
 
     dataset = solve_case(case, settings or [], **({"shortcuts": False} if no_shortcuts else {}))
     if out is not None:
@@ -53,6 +53,10 @@ def solve(
         print_json(dataset)
     elif out is None:
         as_text(dataset)
+    if is_failed(dataset):
+        if as_json or out is not None:
+            print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
+        raise typer.Exit(1)
 
 
 @app.command()

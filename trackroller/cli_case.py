@@ -11,6 +11,8 @@ import numpy as np
 from trackroller.case import FIELDS, Case
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import REGIMES
+from trackroller.point_files import files_beside
+from trackroller.study.files import WorkError, write_whole
 from trackroller.study.yamlfile import parse_mapping, read_mapping
 
 if TYPE_CHECKING:
@@ -53,7 +55,8 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
     for key in ("outputs", "slip_terms"):
         if isinstance(options.get(key), str):
             options[key] = [part.strip() for part in options[key].split(",")]
-    return Case.from_dict(values), options
+    with files_beside(path):
+        return Case.from_dict(values), options
 
 
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
@@ -66,8 +69,6 @@ def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
 
 def write_result(dataset: xr.Dataset, out: Path) -> None:
     """Write a result as netCDF, whole or not at all."""
-    from trackroller.study.files import write_whole
-
     if not out.parent.is_dir():
         raise InputError("--out", str(out), "the folder does not exist")
     write_whole(out, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
@@ -93,7 +94,7 @@ def print_json(dataset: xr.Dataset) -> None:
 
 
 def as_text(dataset: xr.Dataset) -> None:
-    """Print a result as a table: contacts and bodies side by side."""
+    """Print a result as a table: contacts and bodies side by side; quantities without a value are named below."""
     from rich.console import Console
     from rich.table import Table
 
@@ -102,21 +103,36 @@ def as_text(dataset: xr.Dataset) -> None:
     converged = "converged" if int(dataset["converged"]) else "NOT converged"
     console = Console(width=None if Console().is_terminal else 140)
     console.print(f"regime: {regime}, {converged}")
+    if "reason" in dataset:
+        console.print(f"reason: {dataset['reason'].item()}", highlight=False, markup=False)
+    undefined = []
     for dims in ((), ("contact",), ("contact", "body")):
-        names = [n for n, v in dataset.data_vars.items() if v.dims == dims and n not in ("regime", "converged")]
-        if not names:
+        names = [
+            n for n, v in dataset.data_vars.items() if v.dims == dims and n not in ("regime", "converged", "reason")
+        ]
+        blank = [n for n in names if np.isnan(dataset[n].values.astype(float)).all()]
+        undefined += [str(n) for n in blank]
+        if len(names) == len(blank):
             continue
         table = Table("quantity", "unit", title=", ".join(dims) or None, title_justify="left")
         heads = [c for c in columns if len(c) == len(dims)]
         for head in heads:
             table.add_column(" ".join(str(h) for h in head) if dims else "value", justify="right")
         for name in names:
-            values = np.atleast_1d(dataset[name].values.ravel())
-            table.add_row(str(name), str(dataset[name].attrs.get("units", "")), *[f"{v:.6g}" for v in values])
+            if name not in blank:
+                values = np.atleast_1d(dataset[name].values.ravel())
+                table.add_row(str(name), str(dataset[name].attrs.get("units", "")), *[f"{v:.6g}" for v in values])
         console.print(table)
+    if undefined:
+        console.print(f"undefined here: {', '.join(undefined)}")
     fields = [str(n) for n, v in dataset.data_vars.items() if v.ndim > 2]
     if fields:
         console.print(f"fields (write them with -o): {', '.join(fields)}")
+
+
+def is_failed(dataset: xr.Dataset) -> bool:
+    """Has the one case of a result no solution?"""
+    return REGIMES[int(dataset["regime"])] == "failed"
 
 
 def plot_target(target: str, words: list[str], out: Path | None, results: Path) -> None:
@@ -126,6 +142,8 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
         from trackroller.plots.contact import plot_case
 
         dataset = solve_case(path, words, outputs=("forces", "contact", "peak_stress", "tractions", "subsurface"))
+        if is_failed(dataset):
+            raise WorkError(f"{path} has no solution to draw: {dataset['reason'].item()}")
         folder = out or Path(f"{path.stem}-figures")
         drawn = plot_case(dataset, folder)
     else:

@@ -13,6 +13,7 @@ from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, p
 from trackroller.errors import ShapeError
 from trackroller.profiles import FEWEST
 
+ASIDE, FIRST = 0.2, 5e-4  # of that radius: bodies that meet so far from it and so much earlier touch elsewhere
 INTERLOCK = 0.01  # of the guide's profile radius, by which shapes may overlap beside the nominal contact
 ASTRAY = 2.5  # times further or nearer to the middle than the nominal contact a drawn one may be
 NARROWEST, WIDEST = 5e-3, 50.0  # extent of points about the contact, over the guide's profile radius
@@ -68,7 +69,7 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
             raise ShapeError(body, f"points over {wide:.4g} mm", f"{NARROWEST * guide_radius:.4g} to "
                              f"{WIDEST * guide_radius:.4g} mm, beside a guide_profile_radius of {guide_radius:g} mm",
                              "Give x and z in mm.")  # fmt: skip
-        return drawn(x, out * z, noise)
+        return _flat_enough(drawn(x, out * z, noise), body, guide_radius)
     if side == 2 and np.count_nonzero(x <= 0) >= FEWEST:
         x, z = -x[::-1], z[::-1]
     x, z = x[x >= 0], z[x >= 0]
@@ -87,7 +88,18 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
                          f"guide_profile_radius sin(contact_angle) = {nominal:.4g} mm from it",
                          "Give x and z in mm, x = 0 in the middle, and the nominal radius near the drawn one; or use "
                          "frame: contact.")  # fmt: skip
-    return drawn(u - apex, out * w, noise) if u.size else drawn(u, w)
+    return _flat_enough(drawn(u - apex, out * w, noise), body, guide_radius)
+
+
+def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSection:
+    """The shape, if more than a speck of it is flat enough to bear; heights in other units are not."""
+    low, high = shape.limits
+    if high - low > NARROWEST * guide_radius:
+        return shape
+    raise ShapeError(body, f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact",
+                     f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least, beside a "
+                     f"guide_profile_radius of {guide_radius:g} mm",
+                     "Give x and z in mm; smooth what is noise (`smooth`).")  # fmt: skip
 
 
 def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -102,22 +114,15 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
     """Where the curve is parallel to the tangent plane; the place nearest to the apex of a parabola through it."""
     from trackroller.contact.cross_sections import smoothed
 
-    lean = math.degrees(alpha) - np.degrees(np.arctan(np.diff(w) / np.diff(u))) if u.size > 1 else np.zeros(1)
-    remedy = "Draw more of it, or use frame: contact."
-    if lean.min() <= -math.degrees(alpha) <= lean.max():
-        remedy = "It is inclined so the other way round: z counts from the guide towards the roller's axis."
-    problem = ShapeError(body, f"a curve inclined by {lean.min():.4g} to {lean.max():.4g} deg",
-                         f"one that is somewhere inclined by the contact angle of {math.degrees(alpha):.4g} deg",
-                         remedy)  # fmt: skip
     if u.size < FEWEST:
-        raise problem
+        raise _nowhere_parallel(u, w, body, alpha)
     spline = smoothed(u, w, noise)
     slope = spline.derivative()
     places = np.linspace(u[0], u[-1], 40 * u.size + 1)
     values = slope(places)
     turns = np.flatnonzero(values[:-1] * values[1:] <= 0)
     if turns.size == 0:
-        raise problem
+        raise _nowhere_parallel(u, w, body, alpha, (noise, values) if noise else None)
     from scipy.optimize import brentq
 
     roots = np.array([brentq(slope, places[k], places[k + 1]) if values[k] * values[k + 1] < 0
@@ -125,6 +130,24 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
     square, linear, _ = np.polyfit(u - u.mean(), w, 2)
     apex = u.mean() - 0.5 * linear / square if square != 0 else u.mean()
     return float(roots[np.argmin(np.abs(roots - apex))])
+
+
+def _nowhere_parallel(u, w, body: str, alpha: float, smooth: tuple | None = None) -> ShapeError:
+    """The error of points without a contact, or of the curve if `smooth` (noise, slopes that it left) lost it."""
+    steps = np.diff(w) / np.diff(u) if u.size > 1 else np.full(1, math.tan(alpha))
+    angle = math.degrees(alpha)
+    points = angle - np.degrees(np.arctan(steps))
+    lean = points if smooth is None else angle - np.degrees(np.arctan(smooth[1]))
+    low, high = (round(float(v), 3) + 0.0 for v in (lean.min(), lean.max()))
+    wanted = f"one that is somewhere inclined by the contact angle of {angle:.4g} deg"
+    if smooth is not None and points.min() <= angle <= points.max():
+        return ShapeError(f"{body}.smooth", smooth[0], f"less: smoothed so, the curve is inclined by {low:.4g} to "
+                          f"{high:.4g} deg only, and {wanted} is needed (the points are)",
+                          "Give the standard deviation of the noise in mm, some 0.001, or 'auto'.")  # fmt: skip
+    upside_down = points.min() <= -angle <= points.max()
+    remedy = ("It is inclined so the other way round: z counts from the guide towards the roller's axis."
+              if upside_down else "Draw more of it, or use frame: contact.")  # fmt: skip
+    return ShapeError(body, f"a curve inclined by {low:.4g} to {high:.4g} deg", wanted, remedy)
 
 
 def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alpha: float, rolling_radius: float,
@@ -139,14 +162,27 @@ def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alph
     found = Gap(cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
                 cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
                 alpha, rolling_radius, guide_curve_radius)  # fmt: skip
+    less = " Or smooth less: `smooth` is the noise in mm." if '"smooth"' in guide + roller else ""
+    _check_touch(found, "roller_profile" if roller else "guide_profile", guide_radius, less)
+    return found
+
+
+def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> None:
+    """`ShapeError` (its remedy with `more`) for bodies that overlap, or touch far from the nominal contact."""
     x = np.linspace(*found.limits, 801)
     lateral = found.lateral(x)
-    if lateral.min() < -INTERLOCK * guide_radius:
-        raise ShapeError("roller_profile" if roller else "guide_profile",
-                         f"shapes that overlap by {-lateral.min():.3g} mm, {x[np.argmin(lateral)]:.3g} mm outward",
+    first, depth = float(x[np.argmin(lateral)]), float(-lateral.min())
+    if depth > INTERLOCK * guide_radius:
+        raise ShapeError(body, f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward",
                          "shapes that touch at the nominal contact, give or take what load and wear can close",
-                         "Compare both profiles (and the radii of those not drawn) beside that point.")  # fmt: skip
-    return found
+                         "Compare both profiles (and the radii of those not drawn) beside that point."
+                         + more)  # fmt: skip
+    if depth > FIRST * guide_radius and abs(first) > ASIDE * guide_radius:
+        raise ShapeError(body, f"shapes that touch {first:.3g} mm outward of the nominal contact, {depth:.3g} mm "
+                         "before they touch there",
+                         f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it: all lever arms rest on it",
+                         "Make the groove wider than the guide there, or mend contact_angle and the nominal "
+                         "radii." + more)  # fmt: skip
 
 
 def treats_sides_alike(text: str) -> bool:

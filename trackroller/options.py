@@ -51,6 +51,7 @@ class Options:
                                ("normal", NORMAL)):  # fmt: skip
             if getattr(self, field) not in options:
                 raise unknown_name(field, str(getattr(self, field)), options)
+        check_hertz(self.hertz, self.normal)
         self._check_slip()
         accuracy_settings(self.accuracy, self.contact_model, self.outputs)
         tolerance = self.contact_tolerance
@@ -76,6 +77,13 @@ class Options:
     def settings(self) -> Accuracy:
         """What the accuracy means for each stage."""
         return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
+
+
+def check_hertz(hertz: str, normal: str) -> None:
+    """`InputError` for a way to Hertz's ellipse where there is none."""
+    if normal == "halfspace" and hertz != "exact":
+        raise InputError("hertz", hertz, "exact with normal: halfspace, which solves patch and pressure itself",
+                         "Leave hertz out, or take normal: hertz (with circles).")  # fmt: skip
 
 
 def check_slip_terms(terms: Collection[str], contact_model: str) -> None:

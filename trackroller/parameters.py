@@ -82,7 +82,8 @@ _ALL = (
     Parameter("motor_force", "F_Motor", "N", -30.0, "motor force",
               "< 0 driving, 0 free rolling, > 0 braking"),
     Parameter("friction_coefficient", "mu", "-", 0.3, "friction coefficient",
-              "Coulomb coefficient of both contacts; not given: from the friction database", 0.0, 2.0,
+              "Coulomb coefficient of both contacts, at rest; null: from the friction database; left out beside a "
+              "friction_law of kind table: the first of the table", 0.0, 2.0,
               allow_missing=True),
     Parameter("velocity", "v", "m/min", 60.0, "mean travel speed",
               "for friction power and life in hours only", 0.0, open_lower=True),
@@ -109,8 +110,8 @@ DEFAULT_OUTPUTS = ("forces", "contact", "peak_stress", "life")
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
 MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
-    "friction_law": "friction as a function of the slip speed: {kind: constant | linear | exponential | table, ...}; "
-    "not given: constant",
+    "friction_law": "friction as a function of the slip speed in mm/s: {kind: constant | linear | exponential | table, "
+    "...}; it scales friction_coefficient, which holds at rest; not given: constant",
     "guide_profile": "drawn or measured cross-section of the guide, for normal: halfspace; not given: the circle",
     "roller_profile": "drawn or measured cross-section of the roller, for normal: halfspace; not given: the circle",
 }

@@ -21,12 +21,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.point_files import read_points
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
 KEYS = (*FORMS, "frame", "smooth", "edge", "width")
@@ -45,7 +45,7 @@ def canonical(value: Mapping[str, Any], field: str = "profile") -> dict[str, Any
         `parabola: r` its approximation in Hertz's theory;
         `arcs: [{radius: r, to: x}, ..., {radius: r}]` tangent arcs from inside to outside, x from the nominal contact;
         `points: [[x, z], ...]` drawn or measured points [mm], x increasing;
-        `file: name.csv` the same as two columns of a file below the working directory;
+        `file: name.csv` the same as two columns of a file (see `trackroller.point_files.read_points`);
         and for points and files `frame: section | contact` (default section) and `smooth`: the standard deviation of
         the measuring noise [mm], 'auto', or 0 (default: the spline goes through every point);
         for all `edge: {inner: mm, outer: mm, chamfer: mm}`: where the material ends, as distances from the nominal
@@ -162,34 +162,3 @@ def _edge(value: Any, field: str) -> dict[str, float]:
         if key not in EDGE_KEYS:
             raise unknown_name(f"{field} entry", str(key), EDGE_KEYS)
     return {key: _number(value[key], f"{field}.{key}", positive=True) for key in EDGE_KEYS if key in value}
-
-
-def read_points(name: Any, field: str) -> list[list[float]]:
-    """Rows of two numbers from a text file (comma, semicolon, tab or blanks), one line of headings allowed.
-
-    The file lies below the working directory: absolute paths and '..' are refused, so that a study file from somebody
-    else reads nothing of yours.
-    """
-    path = Path(str(name))
-    if not isinstance(name, (str, Path)) or path.is_absolute() or ".." in path.parts or not str(name).strip():
-        raise InputError(field, str(name), "a path below the working directory, without '..'",
-                         "Put the file beside the study and give its relative path.")  # fmt: skip
-    if not path.resolve().is_relative_to(Path.cwd().resolve()) or not path.is_file():
-        raise InputError(field, str(name), f"a file below {Path.cwd()}", "Check its name and the working directory.")
-    rows: list[list[float]] = []
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (UnicodeDecodeError, OSError) as error:
-        raise InputError(field, str(name), f"a readable text file in UTF-8 ({error})",
-                         "Save the points as text: two columns, x and z.") from None  # fmt: skip
-    for number, line in enumerate(text.splitlines(), start=1):
-        cells = line.split("#")[0].replace(";", " ").replace(",", " ").split()
-        if not cells:
-            continue
-        try:
-            rows.append([float(cells[0]), float(cells[1])])
-        except (ValueError, IndexError):
-            if rows or number > 5:
-                raise InputError(f"{field}, line {number}", line, "two numbers x, z [mm]",
-                                 "Decimal points, not commas; remarks after '#'.") from None  # fmt: skip
-    return rows

@@ -16,6 +16,7 @@ from trackroller.accuracy import Accuracy, error_attributes
 from trackroller.blocks import Block, join
 from trackroller.case import Case, CaseTable, to_table
 from trackroller.errors import InputError
+from trackroller.failures import with_reasons
 from trackroller.options import Options
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS
 from trackroller.stages import case as stages_case
@@ -71,7 +72,8 @@ def solve(
 
     Returns
     -------
-    xarray.Dataset with units, long names and the paper's symbols; NaN where a regime leaves a quantity undefined.
+    xarray.Dataset with units, long names and the paper's symbols; NaN where a regime leaves a quantity undefined. Where
+    a case failed or misses its tolerance there is a text `reason`, with what to do about it.
 
     Raises `InputError` for bad input only: a case that cannot be solved is a row with `regime` failed.
     """
@@ -84,7 +86,7 @@ def solve(
     table = to_table(cases, database)
     _check_profiles(table, options)
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
-    return _assemble(join(windows), options, single)
+    return with_reasons(_assemble(join(windows), options, single), table, options)
 
 
 def _check_profiles(table: CaseTable, options: Options) -> None:

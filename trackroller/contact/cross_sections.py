@@ -21,6 +21,8 @@ STEEPEST = 0.999  # sine of the inclination to the tangent plane up to which arc
 # with one plane of contact could not tell what happens there.
 CONTACT_SLOPE = 0.4663
 
+SAFETY = 1.05  # on the noise found in points: too little smoothing hurts more than too much
+
 Curve = Callable[[np.ndarray], np.ndarray]
 
 
@@ -134,8 +136,8 @@ def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossS
     ----------
     u, height : points, u strictly increasing, at least 5 [mm]
     noise : standard deviation of the heights' measuring noise [mm]: the smoothest natural cubic spline whose
-        deviation from the points is that (Reinsch 1967); 'auto': by generalised cross-validation (Craven & Wahba
-        1979); 0: through every point, whose scatter then counts as shape
+        deviation from the points is that (Reinsch 1967); 'auto': with the noise that `noise_of` finds; 0: through every
+        point, whose scatter then counts as shape
     """
     spline = smoothed(u, height, noise)
     slope, zero = spline.derivative(), float(spline(0.0))
@@ -147,10 +149,10 @@ def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
     from scipy.interpolate import CubicSpline, make_smoothing_spline
     from scipy.optimize import brentq
 
+    if noise == "auto":
+        noise = noise_of(u, height)
     if noise == 0.0:
         return CubicSpline(u, height)
-    if noise == "auto":
-        return make_smoothing_spline(u, height)
     unit = (u[-1] - u[0]) ** 3 / u.size
 
     def excess(log_weight: float) -> float:
@@ -163,6 +165,25 @@ def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
     if excess(low) >= 0.0:
         return make_smoothing_spline(u, height, lam=unit * 10.0**low)
     return make_smoothing_spline(u, height, lam=unit * 10.0 ** brentq(excess, low, high, xtol=1e-6))
+
+
+def noise_of(u: np.ndarray, height: np.ndarray) -> float:
+    """Standard deviation of the heights' noise [mm], from what no cubic through five neighbours can follow.
+
+    Arcs and parabolas leave next to nothing there, kinks and steps few large values, which do not count. Noise that
+    neighbours share is not seen. Generalised cross-validation (Craven & Wahba 1979) takes more of it for shape.
+    """
+    count = u.size - 4
+    near = np.stack([u[k : k + count] for k in range(5)])
+    apart = near[:, None] - near[None] + np.eye(5)[:, :, None]
+    weights = 1.0 / apart.prod(axis=1)
+    weights /= np.sqrt((weights**2).sum(axis=0))
+    left = np.abs(sum(weights[k] * height[k : k + count] for k in range(5)))
+    found = 1.4826 * float(np.median(left))
+    for _ in range(3):
+        kept = left[left <= 3.0 * found]
+        found = float(np.sqrt(np.mean(kept**2))) / 0.9866 if kept.size else found
+    return SAFETY * found
 
 
 def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float = 0.0) -> CrossSection:

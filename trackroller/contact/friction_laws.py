@@ -1,7 +1,7 @@
 """Friction coefficient as a function of the local slip speed, for contact models that solve for the slip.
 
 A law is kept as a table that is linear between its knots, so that every contact model reads one form. It scales the
-friction coefficient of the case, which holds at rest.
+friction coefficient of the case, which holds at rest; a case that gives none takes that of a law that tells its own.
 """
 
 from __future__ import annotations
@@ -143,19 +143,35 @@ def table(speed, friction) -> FrictionLaw:
 
     Raises `InputError` unless the speeds rise from 0 and the friction is >= 0, with the first > 0.
     """
-    speeds = values = np.empty(0)
-    try:
-        speeds, values = np.asarray(speed, float), np.asarray(friction, float)
-    except (TypeError, ValueError):
-        _refuse("speed", speed, "lists of numbers: slip speeds and friction coefficients")
-    if speeds.ndim != 1 or speeds.shape != values.shape or speeds.size == 0:
-        _refuse("speed", speeds.shape, "as many slip speeds as friction coefficients, at least one")
+    speeds = _list("speed", speed, "slip speeds in mm/s")
+    values = _list("friction", friction, "friction coefficients")
+    if speeds.size != values.size:
+        _refuse("friction", values.tolist(), f"as many friction coefficients as slip speeds: {values.size} beside the "
+                f"{speeds.size} of speed", "Give one friction coefficient for each slip speed.")  # fmt: skip
     if speeds[0] != 0.0 or np.any(np.diff(speeds) <= 0) or not np.all(np.isfinite(speeds)):
         _refuse("speed", speeds.tolist(), "slip speeds in mm/s that rise from 0")
     if not (values[0] > 0 and np.all(values >= 0) and np.all(np.isfinite(values))):
         _refuse("friction", values.tolist(), "friction coefficients >= 0, the first > 0")
     form = {"kind": "table", "speed": speeds.tolist(), "friction": values.tolist()}
     return FrictionLaw(speeds, values / values[0], form)
+
+
+def _list(part: str, values: object, words: str) -> np.ndarray:
+    told = f"a list of numbers, {words}"
+    if not isinstance(values, (list, tuple, np.ndarray)) or np.size(values) == 0:
+        _refuse(part, values, told)
+    return np.array([_number(part, value, told) for value in values])  # type: ignore[attr-defined]
+
+
+def at_rest(law: Any) -> float | None:
+    """The friction coefficient at rest that a law itself tells: a table's first one, None for other laws.
+
+    Parameters
+    ----------
+    law : a mapping, its JSON text, a `FrictionLaw` or None, see `law_of`
+    """
+    form = law_of(law).form
+    return float(form["friction"][0]) if form.get("kind") == "table" else None
 
 
 def _fields(mapping: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Surface tractions and friction energy over the contact ellipses of one case."""
+"""Surface tractions and friction energy over the contact patches of one case."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
+from trackroller.plots.contact_outline import Patch, framed, patches_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -15,34 +16,6 @@ if TYPE_CHECKING:
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # a longer ellipse than this is not drawn to scale
-
-
-class _Patch:
-    """Arrays of one contact: x (n_x), y (n_y) [mm], fields (n_y, n_x)."""
-
-    def __init__(self, ds: xr.Dataset, contact: int) -> None:
-        self.contact = contact
-        self.ds = ds.sel(contact=contact)
-        self.x, self.y = self.ds["patch_x"].values, self.ds["patch_y"].values
-        self.a = float(self.ds.get("semi_axis_lateral", np.nanmax(np.abs(self.x))))
-        self.b = float(self.ds.get("semi_axis_rolling", np.nanmax(np.abs(self.y))))
-
-    @property
-    def there(self) -> bool:
-        return bool(np.isfinite(self.x).all() and np.isfinite(self.y).all() and np.isfinite(self.a * self.b))
-
-    def field(self, name: str) -> np.ndarray:
-        return np.nan_to_num(self.ds[name].values)
-
-    @property
-    def inside(self) -> np.ndarray:
-        return (self.x[None, :] / self.a) ** 2 + (self.y[:, None] / self.b) ** 2 < 1.0
-
-
-def _patches(ds: xr.Dataset, *names: str) -> list[_Patch]:
-    if not all(n in ds for n in ("patch_x", "patch_y", *names)):
-        return []
-    return [p for p in (_Patch(ds, int(c)) for c in ds["contact"].values) if p.there]
 
 
 def case_text(ds: xr.Dataset) -> str:
@@ -54,14 +27,20 @@ def case_text(ds: xr.Dataset) -> str:
     return f"{text}; normal force {' and '.join(said)}." if said else f"{text}."
 
 
-def _canvas(patches: list[_Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
+def _shapes(patches: list[Patch]) -> str:
+    return "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
+
+
+def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
     """A figure with the patches to one scale unless they are very slender, and room for a profile.
 
     Wide patches lie one above the other, tall ones stand side by side.
     """
     from matplotlib.ticker import MaxNLocator
 
-    a, b, count = max(p.a for p in patches), max(p.b for p in patches), len(patches)
+    boxes, count = np.array([p.box for p in patches]), len(patches)
+    (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
+    a, b = 0.5 * (right - left), 0.5 * (front - rear)
     to_scale, tall = 1 / SLENDER <= b / a <= SLENDER, b > 1.2 * a
     height = float(np.clip((30 if tall else 62) * b / a, 22, 66)) if to_scale else (60.0 if tall else 34.0)
     rows = (1 if tall else count) + profile
@@ -70,8 +49,8 @@ def _canvas(patches: list[_Patch], profile: bool = False) -> tuple[Figure, list[
     grid = figure.add_gridspec(rows, columns, height_ratios=[height] * (rows - profile) + [30] * profile)
     maps = [figure.add_subplot(grid[0, i] if tall else grid[i, 0]) for i in range(count)]
     for i, axes in enumerate(maps):
-        axes.set_xlim(-1.08 * a, 1.08 * a)
-        axes.set_ylim(-1.12 * b, 1.12 * b)
+        axes.set_xlim(left - 0.08 * a, right + 0.08 * a)
+        axes.set_ylim(rear - 0.12 * b, front + 0.12 * b)
         axes.set_aspect("equal" if to_scale else "auto")
         axes.xaxis.set_major_locator(MaxNLocator(2 if tall else 5))
         axes.yaxis.set_major_locator(MaxNLocator(5))
@@ -83,13 +62,14 @@ def _canvas(patches: list[_Patch], profile: bool = False) -> tuple[Figure, list[
     return figure, maps, figure.add_subplot(grid[-1, :]) if profile else None, to_scale
 
 
-def _fill(axes: Axes, patch: _Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
-    """Filled contours cut along the ellipse, and its outline."""
-    from matplotlib.patches import Ellipse
+def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
+    """Filled contours cut along the edge of the patch, and this edge."""
+    from matplotlib.patches import PathPatch
 
     levels = np.linspace(0, top, 17)
-    image = axes.contourf(patch.x, patch.y, np.clip(values, 0, levels[-1]), levels=levels, cmap=cmap)
-    edge = Ellipse((0, 0), 2 * patch.a, 2 * patch.b, facecolor="none", edgecolor="black", linewidth=0.9)
+    x, y, shown = framed(patch.x, patch.y, values) if patch.solved else (patch.x, patch.y, values)
+    image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
+    edge = PathPatch(patch.outline, facecolor="none", edgecolor="black", linewidth=0.9)
     axes.add_patch(edge)
     image.set_clip_path(edge)
     axes.set_title(f"Contact {patch.contact}", loc="left", fontsize=7.5, pad=3)
@@ -113,7 +93,7 @@ def _bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
 
 def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     """Direction and size of the shear traction on the roller, with the spin pole."""
-    patches = _patches(ds, "shear_lateral", "shear_rolling")
+    patches = patches_of(ds, "shear_lateral", "shear_rolling")
     sizes = [np.hypot(p.field("shear_lateral"), p.field("shear_rolling")) for p in patches]
     top, image = max((float(s.max()) for s in sizes), default=0.0), None
     if not top > 0:  # no contact, or no friction
@@ -125,26 +105,29 @@ def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
         _pole(axes, patch)
     _bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
     note = "" if to_scale else " Axes not to one scale."
-    style.head(figure, "Shear traction on the roller", f"{case_text(ds)} Black dot: spin pole.{note}")
+    pole = any(p.spin_pole is not None for p in patches)
+    dot = " Black dot: spin pole." if pole else ""
+    style.head(figure, "Shear traction on the roller", f"{case_text(ds)}{dot}{note}")
     style.finish(figure)
     best = int(np.argmax([s.max() for s in sizes]))
     caption = (
-        "Shear traction on the roller over both contact ellipses (arrows: direction and size; shade: size, MPa). "
-        f"The black dot is the spin pole, about which the surfaces turn on each other. {case_text(ds)}"
+        f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; shade: size, MPa). "
+        + ("The black dot is the spin pole, about which the surfaces turn on each other. " if pole else "")
+        + case_text(ds)
     )
     largest = style.number(float(sizes[best].max()))
     sentence = f"The largest shear traction is {largest} MPa, in contact {patches[best].contact}."
     return figure, style.FigureInfo("contact_shear", caption, sentence)
 
 
-def _arrows(axes: Axes, patch: _Patch, top: float, to_scale: bool) -> None:
+def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
     count = ARROWS if patch.a >= patch.b else ARROWS[::-1]
     columns, rows = (_every(len(v), n) for v, n in ((patch.x, count[0]), (patch.y, count[1])))
     pick = np.ix_(rows, columns)
     keep = patch.inside[pick]
     x, y = np.meshgrid(patch.x[columns], patch.y[rows])
     u, v = patch.field("shear_lateral")[pick], patch.field("shear_rolling")[pick]
-    step = 2 * min(axes.get_xlim()[1] / count[0], axes.get_ylim()[1] / count[1])
+    step = float(min(np.ptp(axes.get_xlim()) / count[0], np.ptp(axes.get_ylim()) / count[1]))
     size: dict[str, Any] = (
         {"angles": "xy", "scale_units": "xy", "scale": top / (1.5 * step)}
         if to_scale
@@ -172,19 +155,20 @@ def _every(length: int, count: int) -> np.ndarray:
     return np.arange((length - 1) % step // 2, length, step)
 
 
-def _pole(axes: Axes, patch: _Patch) -> None:
-    if "spin_pole_lateral" not in patch.ds:
+def _pole(axes: Axes, patch: Patch) -> None:
+    if patch.spin_pole is None:
         return
-    x, y = float(patch.ds["spin_pole_lateral"]), float(patch.ds.get("spin_pole_rolling", 0.0))
-    if abs(x) <= axes.get_xlim()[1] and abs(y) <= axes.get_ylim()[1]:
+    x, y = patch.spin_pole
+    (left, right), (rear, front) = axes.get_xlim(), axes.get_ylim()
+    if left <= x <= right and rear <= y <= front:
         axes.plot(x, y, "o", color="black", markersize=5, markeredgecolor="white", markeredgewidth=0.8, zorder=5)
     elif np.isfinite(x):
-        side = "right" if x > 0 else "left"
+        beyond = x > 0.5 * (left + right)
         axes.annotate(
             f"spin pole at x = {style.number(x)} mm",
-            (0.99 if x > 0 else 0.01, 0.03),
+            (0.99 if beyond else 0.01, 0.03),
             fontsize=6.5,
-            ha=side,
+            ha="right" if beyond else "left",
             xycoords="axes fraction",
         )
 
@@ -192,7 +176,7 @@ def _pole(axes: Axes, patch: _Patch) -> None:
 def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     """Friction energy per area over both patches, and its profile across the running track."""
     name = "friction_energy_density"
-    patches = _patches(ds, name)
+    patches = patches_of(ds, name)
     fields = [np.where(p.inside, p.field(name), 0.0) for p in patches]
     top, image = max((float(f.max()) for f in fields), default=0.0), None
     if not top > 0:
@@ -202,7 +186,7 @@ def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     for axes, patch, field in zip(grid, patches, fields, strict=True):
         image = _fill(axes, patch, field, top, "cividis")
     _bar(figure, image, grid, "Friction energy per area and distance [J/(m mm²)]")
-    profiles = [np.trapezoid(f, p.y, axis=0) for p, f in zip(patches, fields, strict=True)]
+    profiles = [p.summed(f, 0) for p, f in zip(patches, fields, strict=True)]
     for i, (patch, profile) in enumerate(zip(patches, profiles, strict=True)):
         across.plot(
             patch.x, profile, color=style.palette(2)[i], linestyle=style.LINES[i], label=f"contact {patch.contact}"
@@ -219,10 +203,10 @@ def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     )
     style.finish(figure)
     caption = (
-        "Friction energy per area and distance travelled over both contact ellipses, and summed along the rolling "
+        f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
         f"direction: what each strip of the running track takes. {case_text(ds)}"
     )
-    totals = [float(np.trapezoid(p, q.x)) for p, q in zip(profiles, patches, strict=True)]
+    totals = [float(q.summed(p, 0)) for p, q in zip(profiles, patches, strict=True)]
     words = " and ".join(f"{style.number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))
     worst = int(np.argmax([p.max() for p in profiles]))
     place = float(patches[worst].x[int(np.argmax(profiles[worst]))])

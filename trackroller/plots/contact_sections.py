@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.plots import style
+from trackroller.plots.contact_outline import widths
 from trackroller.plots.contact_patch import case_text
 
 if TYPE_CHECKING:
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PLANES = (
-    ("von_mises_xz", "xz_x", "xz_z", "x", "lateral", "semi_axis_lateral"),
-    ("von_mises_yz", "yz_y", "yz_z", "y", "rolling", "semi_axis_rolling"),
+    ("von_mises_xz", "xz_x", "xz_z", "x", "lateral"),
+    ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"),
 )
 
 
@@ -69,16 +70,15 @@ def _to_scale(part: xr.Dataset, plane: tuple[str, ...]) -> bool:
 
 
 def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], top: float) -> Any:
-    name, across, down, axis, words, semi = plane
+    name, across, down, axis, words = plane
     x, z, stress = part[across].values, part[down].values, part[name].values
     levels = np.linspace(0, top, 17)
     image = axes.contourf(x, z, np.clip(stress, 0, top), levels=levels, cmap="cividis")
     axes.contour(x, z, stress, levels=levels[2::2], colors="white", linewidths=0.35, alpha=0.7)
     axes.set_ylim(float(z.max()), float(z.min()) - 0.03 * float(np.ptp(z)))
     axes.set_aspect("equal" if _to_scale(part, plane) else "auto", anchor="W")
-    if semi in part:
-        width = float(part[semi])
-        axes.plot([-width, width], [0, 0], color="black", linewidth=2.2, solid_capstyle="butt", clip_on=False, zorder=4)
+    for ends in widths(part, axis):
+        axes.plot(ends, [0, 0], color="black", linewidth=2.2, solid_capstyle="butt", clip_on=False, zorder=4)
     other = "y" if axis == "x" else "x"
     place = ""
     if f"peak_{other}" in part:

@@ -109,7 +109,7 @@ def _meanings(comment: str, names: list[str]) -> dict[str, str]:
 
 
 def reasons(ds: xr.Dataset) -> Table:
-    """Why cases failed, the most frequent reason first."""
+    """Why cases failed or miss their tolerance, the most frequent reason first."""
     if "reason" not in ds:
         return []
     texts, counts = np.unique(ds["reason"].values.astype(str), return_counts=True)

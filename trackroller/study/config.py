@@ -23,6 +23,7 @@ from trackroller.parameters import (
     SLIP_TERMS,
     STRESS_BODIES,
 )
+from trackroller.point_files import files_beside
 from trackroller.stop import parse_condition
 from trackroller.study.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.factors import LISTS
@@ -273,15 +274,20 @@ def load_study(path: str | Path, database: Any = None) -> Study:
     missing or not YAML, unknown keys or names, values out of bounds, contradicting geometry.
     """
     path = Path(path)
-    return parse_study(parse_mapping(read_text(path, "study file"), "study file"), path, database)
+    with files_beside(path):
+        return parse_study(parse_mapping(read_text(path, "study file"), "study file"), path, database)
 
 
-def _check_slip_terms(study: Study) -> None:
-    from trackroller.options import check_slip_terms
+def _check_options(study: Study) -> None:
+    from trackroller.options import check_hertz, check_slip_terms
 
-    models = study.factors.get("contact_model", {}).get("values", [study.config.contact_model])
-    for model in models:
+    def levels(name: str) -> list[str]:
+        return study.factors.get(name, {}).get("values", [getattr(study.config, name)])
+
+    for model in levels("contact_model"):
         check_slip_terms(study.config.slip_terms, model)
+    for normal in levels("normal"):
+        check_hertz(study.config.hertz, normal)
 
 
 def _cross_check(study: Study) -> None:
@@ -304,7 +310,7 @@ def _cross_check(study: Study) -> None:
                 raise InputError(f"factors.{name}", spec, "a grid needs values, linspace or logspace",
                                  "Or choose a sampled design: lhs, sobol, saltelli, morris.")  # fmt: skip
     check(config, study.factors)
-    _check_slip_terms(study)
+    _check_options(study)
     from trackroller.study.design import check_geometry, check_materials
 
     check_materials(study)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller import expressions
-from trackroller.case import geometry_problem
+from trackroller.case import geometry_problem, own_frictions
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.entries import OPTION_FACTORS
@@ -124,6 +124,9 @@ def _columns(study: Study, design: SampledDesign, n: int) -> dict[str, np.ndarra
             pairs = np.array([None, *map(_split_pair, pairs)], dtype=object)[1:]
         for i, name in enumerate(MATERIAL_FIELDS):
             columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
+    if "friction_coefficient" not in study.config.base and "friction_coefficient" not in design.columns:
+        if "friction_law" in columns:
+            columns["friction_coefficient"] = own_frictions(columns["friction_law"])
     columns["friction_coefficient"] = _friction(study, columns)
     for name in PARAMETERS:
         columns[name] = np.array([math.nan if v is None else v for v in columns[name]], dtype=float)

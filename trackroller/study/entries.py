@@ -57,9 +57,14 @@ def _material_name(value: Any, where: str) -> str:
 def _mapping(name: str, value: Any, where: str) -> str:
     """A friction law or profile as its canonical text."""
     from trackroller.case import mapping_text
+    from trackroller.contact.friction_laws import at_rest
 
     try:
-        return mapping_text(name, value)
+        text = mapping_text(name, value)
+        if name == "friction_law" and not text and (own := at_rest(value)) is not None:
+            raise InputError(name, "a table of one value", "a table whose friction changes with the slip speed",
+                             f"Leave it out and give friction_coefficient: {own:g}.")  # fmt: skip
+        return text
     except InputError as exc:
         field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"
         raise InputError(field, exc.value, exc.allowed, exc.remedy) from None

@@ -150,7 +150,9 @@ def _write(
             start += entry.size
     told = np.array([reasons.get(case, "") for case in np.char.decode(cases)], dtype=object) if reasons else None
     told = np.full(len(cases), "", dtype=object) if told is None else told
-    _put(file, "reason", axes.dims, told.reshape(axes.shape), {"long_name": "why a case failed"})
+    _put(
+        file, "reason", axes.dims, told.reshape(axes.shape), {"long_name": "why a case failed or misses its tolerance"}
+    )
     if labels:
         file.setncattr("coordinates", " ".join(labels))
 

@@ -1,4 +1,7 @@
-"""Values of a factor in a few words: a friction law or a drawn profile is a whole mapping in a result's columns."""
+"""Values of a factor in a few words: a friction law or a drawn profile is a whole mapping in a result's columns.
+
+Words tell all that a value holds, or carry a mark made from it: two levels of a factor never read the same.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from trackroller.parameters import MAPPING_FIELDS
+from trackroller.study.factors import label
+
+EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
 
 
 def short(name: str, value: Any) -> str:
@@ -22,34 +28,64 @@ def short(name: str, value: Any) -> str:
         return str(value)
     try:
         told = value if isinstance(value, Mapping) else json.loads(str(value) or "{}")
-        return _law(told) if name == "friction_law" else _profile(told, str(value))
-    except (ValueError, KeyError, TypeError, AttributeError):
+        return _law(told) if name == "friction_law" else _profile(told)
+    except (ValueError, KeyError, TypeError, AttributeError, IndexError):
         text = str(value)
-        return text if len(text) <= 40 else text[:39] + "…"
+        return text if len(text) <= 40 else f"{text[:34]}… {_mark(text)}"
+
+
+def in_words(name: str, value: Any) -> str:
+    """A level of a factor, number or not, as text for tables and messages."""
+    return short(name, value) if name in MAPPING_FIELDS else label(value)
+
+
+def _mark(told: Any) -> str:
+    """Four signs that tell apart what words would be too long for."""
+    text = told if isinstance(told, str) else json.dumps(told, sort_keys=True, default=float)
+    return f"{zlib.crc32(text.encode()) & 0xFFFF:04x}"
+
+
+def _number(value: Any) -> str:
+    """As few digits as tell the number from its neighbours."""
+    text = f"{float(value):g}"
+    return (text if float(text) == float(value) else f"{float(value):.12g}").replace("-", "−")
 
 
 def _law(told: Mapping[str, Any]) -> str:
     kind = str(told.get("kind", "constant"))
     if kind in ("linear", "exponential"):
         lowest = told.get("lowest", 0.0 if kind == "linear" else 0.4)
-        return f"{kind} to {lowest:g} {'at' if kind == 'linear' else 'over'} {told['speed']:g} mm/s"
+        return f"{kind} to {_number(lowest)} {'at' if kind == 'linear' else 'over'} {_number(told['speed'])} mm/s"
     if kind == "table":
         speed, friction = told["speed"], told["friction"]
-        return f"table, {friction[-1]:g} from {speed[-1]:g} mm/s"
+        last = f"{_number(friction[0])} to {_number(friction[-1])} from {_number(speed[-1])} mm/s"
+        return f"table {last}" if len(speed) <= 2 else f"table {_mark(told)}, {last}"
     return kind
 
 
-def _profile(told: Mapping[str, Any], text: str) -> str:
+def _profile(told: Mapping[str, Any]) -> str:
     form = next((key for key in ("arc", "parabola", "arcs", "points", "file") if key in told), "")
     if not form:
-        return "circle"
-    if form in ("arc", "parabola"):
-        words = f"{form} {float(told[form]):g} mm".replace("-", "−")
+        words = "circle"
+    elif form in ("arc", "parabola"):
+        words = f"{form} {_number(told[form])} mm"
     elif form == "arcs":
-        words = f"{len(told['arcs'])} arcs"
-    else:  # two drawn shapes may have as many points: the mark tells them apart
-        words = f"drawn {zlib.crc32(text.encode()) & 0xFF:02x}"
-        words += f", {len(told['points'])} points" if form == "points" else ""
+        words = _arcs(told["arcs"])
+    elif form == "file":
+        words = f"drawn {told['file']}"
+    else:  # the mark tells drawn shapes apart, and what is smoothed from what is not
+        words = f"drawn {_mark(told)}, {len(told['points'])} points"
     if "width" in told:
-        words += f", {told['width']:g} mm wide"
-    return words + (", cut edges" if "edge" in told else "")
+        words += f", {_number(told['width'])} mm wide"
+    edge = told.get("edge", {})
+    parts = [f"{words_of} {_number(edge[key])}" for key, words_of in EDGES.items() if key in edge]
+    return words + (f", edge {' '.join(parts)} mm" if parts else "")
+
+
+def _arcs(rows: list[Mapping[str, Any]]) -> str:
+    if len(rows) > 2:
+        return f"{len(rows)} arcs {_mark(rows)}"
+    first, last = rows[0], rows[-1]
+    if len(rows) == 1:
+        return f"arc {_number(first['radius'])} mm"
+    return f"arcs {_number(first['radius'])} to {_number(first['to'])}, {_number(last['radius'])} mm"

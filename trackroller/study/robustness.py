@@ -17,6 +17,7 @@ from trackroller.errors import InputError
 from trackroller.fatigue import DECADES, scatter_ranges, woehler_exponent
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.factors import label
+from trackroller.study.levels import in_words
 from trackroller.study.outputs import case_dims, default_names, flat, outputs, read_study, regimes
 from trackroller.study.sampling import SampledDesign
 
@@ -133,7 +134,7 @@ def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list) -
         if values.dtype == object:
             values = np.array([label(v) for v in values], dtype=object)
         outer[name] = ("point", values)
-    point = [", ".join(label(outer[n][1][i]) for n in outer) or "all" for i in range(shape[0])]
+    point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(shape[0])]
     return {
         "output": np.array([c.name for c in columns], dtype=object),
         "output_units": ("output", np.array([c.units for c in columns], dtype=object)),

@@ -26,6 +26,7 @@ import numpy as np
 from trackroller.case import FIELDS, Case
 from trackroller.errors import InputError, unknown_name
 from trackroller.fatigue import PROBABILITIES
+from trackroller.point_files import files_beside
 from trackroller.study.yamlfile import parse_mapping, read_text
 
 LOAD_FIELDS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity",
@@ -110,7 +111,8 @@ def load_spectrum(path: Path | str) -> Spectrum:
     """The load spectrum of a file; raises `InputError` naming file, block, field and value."""
     path = Path(path)
     values = parse_mapping(read_text(path, "load spectrum"), str(path))
-    return Spectrum.from_dict({"name": path.stem} | values, path.parent)
+    with files_beside(path):
+        return Spectrum.from_dict({"name": path.stem} | values, path.parent)
 
 
 def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:

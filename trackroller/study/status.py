@@ -15,8 +15,8 @@ from trackroller.study import store
 from trackroller.study.config import load_study, parse_study
 from trackroller.study.cost import measured_rate, rate
 from trackroller.study.design import build, draw
-from trackroller.study.factors import label
 from trackroller.study.growth import with_history
+from trackroller.study.levels import in_words
 from trackroller.study.plan import identify, study_folder
 from trackroller.study.yamlfile import read_mapping
 
@@ -88,13 +88,13 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     status.by_reason = dict(Counter(reasons.get(cases[i].decode(), "unknown") for i in failed).most_common())
     for name, factor in sampled.factors.items():
         if factor.discrete:
-            counts = Counter(_told(sampled.columns[name][i]) for i in failed)
+            counts = Counter(_told(name, sampled.columns[name][i]) for i in failed)
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
     speed = measured_rate(folder.root / "store") or rate(study.options)
     status.seconds_left = status.missing / speed
     return status
 
 
-def _told(level: Any) -> str:
+def _told(name: str, level: Any) -> str:
     """A level with all its digits, so that neighbours are told apart."""
-    return f"{level:.10g}" if isinstance(level, float) else label(level)
+    return f"{level:.10g}" if isinstance(level, float) else in_words(name, level)

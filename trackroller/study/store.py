@@ -56,7 +56,7 @@ class Layout:
 
 @dataclass
 class Block:
-    """Solved cases: `values` (n, columns) in the order of `layout`, `reasons` for failed rows only."""
+    """Solved cases: `values` (n, columns) in the order of `layout`, `reasons` of rows without a good solution."""
 
     cases: np.ndarray
     values: np.ndarray
@@ -115,16 +115,11 @@ def from_dataset(dataset: xr.Dataset, cases: np.ndarray, seconds: float = 0.0) -
         columns.append(values.reshape(len(cases), -1).astype(float))
     block = Block(np.asarray(cases, dtype="S32"), np.hstack(columns), layout, coords, {}, seconds,
                   {k: _plain(v) for k, v in dataset.attrs.items()})  # fmt: skip
-    _explain(block)
+    told = np.atleast_1d(dataset["reason"].values) if "reason" in dataset else np.full(len(block.cases), "")
+    for i, failed in enumerate(block.failed):
+        if told[i] or failed:
+            block.reasons[block.cases[i].decode()] = str(told[i]) or "no convergence"
     return block
-
-
-def _explain(block: Block) -> None:
-    """A reason for each row that the solver itself has marked as failed."""
-    residual = block.columns("residual")[:, 0] if "residual" in block.layout else None
-    for i in np.flatnonzero(block.failed):
-        told = "" if residual is None or not np.isfinite(residual[i]) else f", residual {residual[i]:.1e}"
-        block.reasons[block.cases[i].decode()] = f"no convergence{told}"
 
 
 def failure(cases: np.ndarray, reason: str) -> Block:

@@ -1,0 +1,126 @@
+"""Where the contact patches of one case lie: Hertz's ellipse, or the loaded elements of a pressure solved on a grid."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.parameters import CONTACT_MODELS
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.path import Path
+
+SLIGHT = 1e-3  # of the largest pressure: less is left over from the solution, not a load
+
+
+class Patch:
+    """One contact: x (nx), y (ny) [mm], fields (ny, nx), and where the material bears."""
+
+    def __init__(self, ds: xr.Dataset, contact: int) -> None:
+        self.contact = contact
+        self.ds = ds.sel(contact=contact)
+        self.x, self.y = self.ds["patch_x"].values, self.ds["patch_y"].values
+        self.solved = ds.attrs.get("normal") == "halfspace" and "pressure" in self.ds
+        self.a = float(self.ds.get("semi_axis_lateral", np.nanmax(np.abs(self.x))))
+        self.b = float(self.ds.get("semi_axis_rolling", np.nanmax(np.abs(self.y))))
+
+    @property
+    def there(self) -> bool:
+        """Does the contact exist?"""
+        return bool(np.isfinite(self.x).all() and np.isfinite(self.y).all() and np.isfinite(self.a * self.b))
+
+    def field(self, name: str) -> np.ndarray:
+        """A field with 0 where it is not defined."""
+        return np.nan_to_num(self.ds[name].values)
+
+    @property
+    def inside(self) -> np.ndarray:
+        """The points or elements that bear."""
+        if self.solved:
+            return _bears(self.ds)
+        return (self.x[None, :] / self.a) ** 2 + (self.y[:, None] / self.b) ** 2 < 1.0
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Ends of the patch: left, right, rear, front [mm]."""
+        if not self.solved:
+            return -self.a, self.a, -self.b, self.b
+        across, along = _strips(self.ds, "x"), _strips(self.ds, "y")
+        return across[0][0], across[-1][1], along[0][0], along[-1][1]
+
+    @property
+    def outline(self) -> Path:
+        """The edge of the patch: an ellipse, or the closed lines around its loaded elements."""
+        from matplotlib.path import Path
+
+        if not self.solved:
+            circle = Path.unit_circle()
+            return Path(np.asarray(circle.vertices) * np.array([self.a, self.b]), circle.codes)
+        from contourpy import contour_generator
+
+        x, y, loaded = framed(self.x, self.y, self.inside.astype(float), 0.0)
+        rings = contour_generator(x, y, loaded).lines(0.5)
+        return Path.make_compound_path(*[Path(np.asarray(ring), closed=True) for ring in rings])
+
+    def summed(self, values: np.ndarray, axis: int) -> np.ndarray:
+        """Integral of a field or profile over y (axis 0 of a field) or x: of elements, or between points of a grid."""
+        places = self.y if values.ndim == 2 and axis == 0 else self.x
+        if self.solved:
+            return values.sum(axis=axis) * (places[1] - places[0])
+        return np.trapezoid(values, places, axis=axis)
+
+    @property
+    def spin_pole(self) -> tuple[float, float] | None:
+        """Where the sliding model lets the surfaces turn on each other [mm]; the others have no such point."""
+        if "spin_pole_lateral" not in self.ds or not _slides(self.ds):
+            return None
+        return float(self.ds["spin_pole_lateral"]), float(self.ds.get("spin_pole_rolling", 0.0))
+
+
+def _slides(ds: xr.Dataset) -> bool:
+    if "contact_model_used" in ds:
+        return CONTACT_MODELS[int(ds["contact_model_used"])] == "sliding"
+    return ds.attrs.get("contact_model", "sliding") == "sliding"
+
+
+def patches_of(ds: xr.Dataset, *names: str) -> list[Patch]:
+    """The contacts that exist, if the fields `names` are there."""
+    if not all(n in ds for n in ("patch_x", "patch_y", *names)):
+        return []
+    return [p for p in (Patch(ds, int(c)) for c in ds["contact"].values) if p.there]
+
+
+def framed(x: np.ndarray, y: np.ndarray, field: np.ndarray, rim: float | None = None) -> tuple[np.ndarray, ...]:
+    """x, y and a field with one more row and column of elements on each side: of the value `rim`, or that beside it."""
+    wide = [np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (x, y)]
+    return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(field, 1, constant_values=rim)
+
+
+def _bears(part: xr.Dataset) -> np.ndarray:
+    """The loaded elements (ny, nx) of one contact whose pressure was solved on a grid."""
+    pressure = np.nan_to_num(part["pressure"].values)
+    return pressure > SLIGHT * pressure.max()
+
+
+def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
+    """First and last edge [mm] of each run of loaded elements along 'x' or 'y'."""
+    centres, loaded = part[f"patch_{axis}"].values, np.any(_bears(part), axis=0 if axis == "x" else 1)
+    half = 0.5 * (centres[1] - centres[0])
+    steps = np.diff(np.concatenate([[0], loaded.astype(int), [0]]))
+    starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1) - 1
+    return [(float(centres[i] - half), float(centres[k] + half)) for i, k in zip(starts, ends, strict=True)]
+
+
+def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
+    """Where one contact `part` bears along 'x' or 'y' [mm], any number of strips; [] if that is not known."""
+    semi = {"x": "semi_axis_lateral", "y": "semi_axis_rolling"}[axis]
+    if part.attrs.get("normal") == "halfspace" and "pressure" in part:
+        return _strips(part, axis)
+    if semi not in part:
+        return []
+    middle = 0.0
+    if part.attrs.get("normal") == "halfspace" and axis == "x":  # the section is drawn about the middle of the patch
+        middle = float(np.mean(part["xz_x"].values))
+    return [(middle - float(part[semi]), middle + float(part[semi]))]

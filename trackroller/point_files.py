@@ -1,0 +1,76 @@
+"""Points of a cross-section from a text file beside the case or study that names it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from pathlib import Path
+from typing import Any
+
+from trackroller.errors import InputError
+
+HEADINGS = 5  # lines before the first point that need not be numbers
+_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")  # a number with a decimal comma
+_beside: ContextVar[Path | None] = ContextVar("beside", default=None)
+
+
+@contextmanager
+def files_beside(path: Path | str | None) -> Iterator[None]:
+    """While a case or study file is read: files that it names are looked for in its folder first."""
+    token = _beside.set(None if path is None else Path(path).parent)
+    try:
+        yield
+    finally:
+        _beside.reset(token)
+
+
+def read_points(name: Any, field: str) -> list[list[float]]:
+    """Rows of two numbers from a text file (comma, semicolon, tab or blanks), lines of headings allowed.
+
+    Decimal commas are understood where something else parts the columns. The file lies beside the case or study file
+    that names it or below the working directory: absolute paths and '..' are refused, so that a study file from
+    somebody else reads nothing of yours.
+    """
+    path = _found(name, field)
+    rows: list[list[float]] = []
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (UnicodeDecodeError, OSError) as error:
+        raise InputError(field, str(name), f"a readable text file in UTF-8 ({error})",
+                         "Save the points as text: two columns, x and z.") from None  # fmt: skip
+    for number, line in enumerate(text.splitlines(), start=1):
+        cells = _cells(line.split("#")[0])
+        if not cells:
+            continue
+        try:
+            rows.append([float(cells[0]), float(cells[1])])
+        except (ValueError, IndexError):
+            if rows or number > HEADINGS:
+                raise InputError(f"{field}, line {number}", line, "two numbers x, z [mm]",
+                                 "Decimal points; decimal commas only between semicolons, tabs or blanks; remarks "
+                                 "after '#'.") from None  # fmt: skip
+    return rows
+
+
+def _found(name: Any, field: str) -> Path:
+    folders = [folder for folder in (_beside.get(), Path.cwd()) if folder is not None]
+    where = " or ".join(dict.fromkeys(f"below {folder.resolve()}" for folder in folders))
+    remedy = f"Put the file {where} and give its path from there."
+    path = Path(str(name))
+    if not isinstance(name, (str, Path)) or path.is_absolute() or ".." in path.parts or not str(name).strip():
+        raise InputError(field, str(name), "a relative path without '..'", remedy)
+    for folder in folders:
+        here = folder / path
+        if here.is_file() and here.resolve().is_relative_to(folder.resolve()):
+            return here
+    raise InputError(field, str(name), f"a file {where}", "Check its name, or put it there.")
+
+
+def _cells(line: str) -> list[str]:
+    """Columns of a line; 1,5;2,5 and blanks or tabs in place of the semicolon have decimal commas."""
+    columns = [cell.strip() for cell in line.split(";")] if ";" in line else line.split()
+    if len(columns) > 1 and (";" in line or all(_COMMA.fullmatch(cell) for cell in columns[:2])):
+        return [cell.replace(",", ".") if _COMMA.fullmatch(cell) else cell for cell in columns]
+    return line.replace(",", " ").split()
