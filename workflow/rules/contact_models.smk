@@ -6,8 +6,10 @@ rule contact_models:
     input:
         study="config/studies/contact_models.yaml",
         code=sources(
-            "ladder.py",
-            "plots/ladder.py",
+            "ladder",
+            "plots",
+            "report",
+            "templates",
             "contact",
             "contact_choice.py",
             "contact_choice_probe.py",
