@@ -73,7 +73,7 @@ def _categories(name: str, values: np.ndarray) -> Groups:
 
 def span(name: str, low: float, high: float) -> str:
     """A level, or a range, in words."""
-    figures = 2 if name in (FRICTION, *DERIVED) else 4
+    figures = 2 if name in (FRICTION, *DERIVED) else 4 if low == high else 3
     low, high = float(f"{low:.{figures}g}"), float(f"{high:.{figures}g}")
     if low == high:
         return style.level_text(name, low)
@@ -90,7 +90,8 @@ def drives(ds: xr.Dataset) -> Groups:
     for s in parts:
         own = np.abs(force[sign == s])
         way = {-1.0: "driven", 0.0: "free rolling", 1.0: "braked"}[s]
-        texts.append(way if s == 0 else f"{way}, {span('', own.min(), own.max())} N")
+        low, high = (style.rounded(float(v), 2) for v in (own.min(), own.max()))
+        texts.append(way if s == 0 else f"{way}, {low} N" if low == high else f"{way}, {low} to {high} N")
     index = np.searchsorted(parts, sign)
     at = np.arange(len(parts), dtype=float)
     return Groups(DRIVE, at, tuple(texts), at, at, index, False)

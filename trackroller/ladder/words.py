@@ -222,6 +222,8 @@ def _by_spin(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
     keep = np.isfinite(one["spin"].values)
     one = one.isel(design=np.flatnonzero(keep))
     along, said = groups(one, "spin", most=4, bins=3), []
+    if all(_share(one[q.name].values, tolerance) == 1.0 for q in _main(one)):
+        return []
     for k, text in enumerate(along.texts):
         part, clauses = one.isel(design=np.flatnonzero(along.index == k)), []
         for q in _main(part):

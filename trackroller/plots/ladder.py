@@ -12,7 +12,7 @@ from trackroller.ladder.errors import GOOD, errors, measured
 from trackroller.ladder.groups import spin_is_its_own
 from trackroller.ladder.words import gap, percent, short, telling_factors
 from trackroller.plots import style
-from trackroller.plots.ladder_panels import Frame, close, frame, line, panels, rolling, set_axis
+from trackroller.plots.ladder_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,12 +99,12 @@ def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     wanted = [q for q in measured(found) if q.name in ("normal_force", "friction_force", "peak_stress")]
     if not names or not wanted:
         return None
-    figure = style.new_figure(30.0 + 30.0 * len(wanted), style.COLUMN_MM * (1 if len(names) < 3 else 2))
+    frames = [shown for name in names if (shown := frame(paired, name, split=False)) is not None]
+    height = 30.0 + 30.0 * len(wanted) + max(label_mm(shown.x) for shown in frames)
+    figure = style.new_figure(height, style.COLUMN_MM * (1 if len(names) < 2 else 2))
     axes = figure.subplots(len(wanted), len(names), sharex="col", sharey="row", squeeze=False)
     handles: dict[str, Any] = {}
-    for column, name in enumerate(names):
-        shown = frame(paired, name, split=False)
-        assert shown is not None
+    for column, shown in enumerate(frames):
         for row, q in enumerate(wanted):
             axes[row, 0].set_ylabel(f"{q.label}\nerror [%]")
             handles |= _error_row(shown, axes[row, column : column + 1], found, q.name)
@@ -210,9 +210,11 @@ def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     for row, (_, values) in zip(axes, rows, strict=True):
         handles |= _lines(shown, row, values)
     if "life" in paired:
+        lived = lives.values[np.isfinite(lives.values)]
         for panel in axes[-1]:
             panel.set_yscale("log")
             mark_unlimited(panel, height)
+        style.log_ticks(axes[-1, 0].yaxis, float(lived.min()), float(lived.max()))
     words = _told(shown, "The more loaded of the two contacts.")
     close(figure, handles, "Peak stress and life by contact model", words)
     return figure, style.FigureInfo("models-peak-life", "Peak von Mises stress and life by contact model.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 SIZE = 2.8
 WIDE = 2 * style.COLUMN_MM
+WRAP, UPRIGHT = 13, 4  # letters of a line of a category's name, and how many categories are named level
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,9 @@ def rolling(ds: xr.Dataset) -> np.ndarray:
 def panels(shown: Frame, labels: list[str], row_mm: float) -> tuple[Figure, Any]:
     """Rows of panels, one a label, over the columns of the frame."""
     titles = shown.titles()
-    figure = style.new_figure(30.0 + row_mm * len(labels), style.COLUMN_MM if len(titles) < 3 else WIDE)
+    figure = style.new_figure(
+        30.0 + row_mm * len(labels) + label_mm(shown.x), style.COLUMN_MM if len(titles) < 3 else WIDE
+    )
     axes = figure.subplots(len(labels), len(titles), sharex=True, sharey="row", squeeze=False)
     for column, title in enumerate(titles):
         axes[0, column].set_title(title, loc="left", pad=3)
@@ -124,12 +128,22 @@ def panels(shown: Frame, labels: list[str], row_mm: float) -> tuple[Figure, Any]
     return figure, axes
 
 
+def label_mm(x: Groups) -> float:
+    """Height that names of categories take under an axis [mm]."""
+    if x.ordered:
+        return 0.0
+    lines = [textwrap.wrap(text, WRAP) for text in x.texts]
+    return 1.6 * max(len(line) for text in lines for line in text) if len(x) > UPRIGHT else 3.0 * max(map(len, lines))
+
+
 def set_axis(axes: Axes, x: Groups) -> None:
     """Scale, ticks and label of the axis of groups."""
     axes.set_xlabel(axis_label(x.name))
     if not x.ordered:
-        slanted = sum(map(len, x.texts)) > 16
-        axes.set_xticks(x.at, x.texts, rotation=35 if slanted else 0, ha="right" if slanted else "center")
+        texts = [textwrap.fill(text, WRAP) for text in x.texts]
+        axes.set_xticks(x.at, texts, rotation=90 if len(x) > UPRIGHT else 0, linespacing=0.95)
+        axes.set_xlim(-0.6, len(x) - 0.4)
+        axes.grid(visible=False, axis="x")
     elif x.at.min() > 0 and x.at.max() > 4 * x.at.min():
         axes.set_xscale("log")
         style.log_ticks(axes.xaxis, float(x.at.min()), float(x.at.max()))
@@ -145,11 +159,15 @@ def line(axes: Axes, x: Groups, band: np.ndarray, model: str, hollow: bool = Fal
          **more: Any) -> Any:  # fmt: skip
     """Median of a model over the groups, and its band where asked for."""
     look = LOOKS[model] | more
+    at = x.at if x.ordered else x.at + 0.14 * (list(LOOKS).index(model) - 1)
     if shade and np.nanmax(band[2] - band[0], initial=0.0) > 0:
-        axes.fill_between(x.at, band[0], band[2], color=look["color"], alpha=0.15, linewidth=0)
+        if x.ordered:
+            axes.fill_between(at, band[0], band[2], color=look["color"], alpha=0.15, linewidth=0)
+        else:
+            axes.vlines(at, band[0], band[2], color=look["color"], alpha=0.3, linewidth=4)
     face = "white" if hollow else look["color"]
     look = look if x.ordered else look | {"linestyle": "none"}
-    return axes.plot(x.at, band[1], markersize=SIZE, markerfacecolor=face, markeredgewidth=0.7, **look)[0]
+    return axes.plot(at, band[1], markersize=SIZE, markerfacecolor=face, markeredgewidth=0.7, **look)[0]
 
 
 def close(figure: Figure, handles: dict[str, Any], title: str, words: str, columns: int = 3) -> Figure:
