@@ -16,7 +16,7 @@ from synthetic_results import grid_study
 import trackroller as tr
 from trackroller import ladder
 from trackroller.ladder.groups import drives, groups
-from trackroller.ladder.product import PATCHES, patch_fields, write_words
+from trackroller.ladder.product import PATCHES, compare, patch_fields, write_words
 from trackroller.ladder.words import levels_kept
 from trackroller.plots.ladder import drawers
 from trackroller.plots.study import draw_all
@@ -193,6 +193,23 @@ def test_the_patches_are_drawn_free_and_driven():
     assert float(share[2]) > float(share[0])  # the exact theory has the more stick the more friction
     labels = [axes.get_ylabel() for axes in patches(fields).axes]
     assert sum("driven −20 N" in text for text in labels) == 1 and sum("free rolling" in text for text in labels) == 2
+
+
+def test_the_shipped_study_may_be_edited(tmp_path):
+    """Another roller, three drives in one file; a fixed drive and the contact angle as a factor in the other."""
+    for factors, base in (
+        ({"friction_coefficient": {"values": [0.05, 0.3]}, "motor_force": {"values": [0, -5, 5]}},
+         {"roller_profile_radius": -8, "radial_force": -90, "axial_force": 0}),
+        ({"contact_angle": {"values": [20, 50]}}, {"motor_force": -5, "friction_coefficient": 0.2}),
+    ):  # fmt: skip
+        path = tmp_path / "contact_models.yaml"
+        path.write_text(yaml.safe_dump({"name": "contact_models", "base": base, "factors": factors, "outputs": OUTPUTS,
+                                        "contact_model": MODELS, "accuracy": "preview"}))  # fmt: skip
+        compare(path, tmp_path / "results" / "contact_models")
+        text = (tmp_path / "results" / "contact_models" / "report.html").read_text(encoding="utf-8")
+        assert "Contact models compared" in text and "200 N radial" not in text
+        drawn = {p.stem for p in (tmp_path / "results" / "contact_models" / "figures").glob("*.svg")}
+        assert drawn >= FIGURES | {"models-patches", "models-map"}
 
 
 def test_the_shipped_study_holds_friction_drive_and_spin_and_its_words_are_written(own, tmp_path):

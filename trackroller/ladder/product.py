@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import logging
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
     from trackroller.plots.style import FigureInfo
 
+log = logging.getLogger(__name__)
 MODELS = ("sliding", "fastsim", "kalker")
 # friction and share of what friction can carry that the drive takes, of the pictures of the patch
 PATCHES = ((0.05, 0.0), (0.15, 0.0), (0.15, 0.5), (0.5, 0.0), (0.5, 0.5))
@@ -65,7 +67,13 @@ def draw_patches(case: Any, out: Path) -> list[FigureInfo]:
              "Friction, stick and dissipation across contact 1 by contact model, free and driven."),
             (ladder_map.choice_map, "models-map", "Cheapest contact model within a tolerance."),
         ):  # fmt: skip
-            style.save(draw(), out, name)
+            try:
+                style.save(draw(), out, name)
+            except OSError:  # a full disk is not the figure's fault
+                raise
+            except Exception as problem:  # a picture never fails a run, whatever the base case is
+                log.warning("figure %s was not drawn: %s", name, problem, exc_info=True)
+                continue
             infos.append(style.FigureInfo(name, caption, ""))
     style.write_index(infos, out, "index-models.json")
     return infos

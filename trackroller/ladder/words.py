@@ -230,7 +230,9 @@ def _by_spin(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
             e = part[q.name].values
             up_to = levels_kept(groups(part, FRICTION), e, tolerance) if FRICTION in factors(one) else ""
             share, worst = percent(_share(e, tolerance)), percent(_spread(_rolling(part[q.name]))[2])
-            clauses.append(f"{q.words.split(' (')[0]} in {share}{f', {up_to}' if up_to else ''} (off by {worst} at most)")
+            clauses.append(
+                f"{q.words.split(' (')[0]} in {share}{f', {up_to}' if up_to else ''} (off by {worst} at most)"
+            )
         if clauses:
             said.append(f"{text}: {'; '.join(clauses)}")
     return [f"{NAMES[model]} by spin φρ (spin creepage by radius of curvature), within {percent(tolerance)}: "
