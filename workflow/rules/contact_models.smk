@@ -2,6 +2,12 @@
 COMPARED = f"{config.get('results', 'results')}/contact_models"
 
 
+# the same study as the configured one, `--config study=config/studies/contact_models.yaml`, has these files by the rules
+# of any study
+ruleorder: figures > contact_models
+ruleorder: report > contact_models
+
+
 rule contact_models:
     input:
         study="config/studies/contact_models.yaml",
