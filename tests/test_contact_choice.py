@@ -7,12 +7,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import pytest
-import xarray as xr
 
 import trackroller as tr
 from trackroller import contact_choice as choice
-from trackroller import ladder
 from trackroller.case import to_table
 from trackroller.options import Options
 
@@ -97,43 +94,6 @@ def test_auto_says_which_model_it_took():
     assert [names[int(i)] for i in ds.contact_model_used] == list(_chosen(cases, 0.03))
     exact = tr.solve(cases, outputs="forces", contact_model="kalker")
     np.testing.assert_allclose(ds.normal_force, exact.normal_force, rtol=0.03)
-
-
-@pytest.fixture(scope="module")
-def small() -> xr.Dataset:
-    """Two frictions, free and driven, all models, at preview."""
-    mus, drives = (0.04, 0.3), (0.0, -10.0)
-    parts = []
-    for model in ("sliding", "fastsim", "kalker"):
-        ds = tr.solve([tr.Case(friction_coefficient=mu, motor_force=f) for mu in mus for f in drives],
-                      outputs=("forces", "contact", "friction_work", "peak_stress", "life"), contact_model=model,
-                      accuracy="preview")  # fmt: skip
-        index = {"friction_coefficient": ("case", np.repeat(mus, 2)), "motor_force": ("case", np.tile(drives, 2))}
-        ds = ds.assign_coords(index).set_index(case=list(index)).unstack("case")
-        parts.append(ds.assign_coords(contact_model=model))
-    return xr.concat(parts, "contact_model", combine_attrs="drop_conflicts")
-
-
-def test_the_comparison_says_in_words_where_sliding_does(small):
-    found = ladder.errors(small)
-    free = found.sel(contact_model="sliding", motor_force=0.0)
-    assert float(free.normal_force[0]) < 0.05 < float(free.normal_force[1])
-    words = ladder.sentences(small)
-    told = next(w for w in words if w.startswith("The sliding model, free rolling"))
-    assert "normal forces up to a friction of 0.04" in told
-    assert "not good enough for friction forces" in told
-    # driven by 10 N at mu = 0.04 slips altogether and is not compared
-    assert np.isnan(found.normal_force.sel(motor_force=-10.0, friction_coefficient=0.04)).all()
-
-
-def test_the_comparison_is_drawn(small):
-    fields = ladder.patch_fields(tr.Case(), (0.1, 0.5))
-    figures = {name: draw() for draw, name, _, _ in ladder._figures(small, fields)}
-    assert set(figures) >= {"error", "forces", "energy", "patches", "stick", "peak_and_life", "map"}
-    assert all(axes.get_xlabel() for name in ("stick", "energy") for axes in figures[name].axes)
-    # the exact theory has the more stick the more friction
-    share = fields.stick_area_fraction.sel(contact_model="kalker").max("contact")
-    assert float(share[1]) > float(share[0])
 
 
 def test_auto_does_not_keep_what_says_itself_that_it_is_in_doubt():

@@ -100,3 +100,9 @@ def test_killed_workflow_goes_on_without_unlocking_and_solves_no_finished_chunk_
     assert all((kept / name).stat().st_ino == inode for name, inode in before.items())
     with xr.open_dataset(place / target) as ds:
         assert ds.sizes["axial_force"] == 200 and int(ds["regime"].max()) < 3
+
+
+@pytest.mark.parametrize("target", [(), ("contact_models",)])
+def test_the_comparison_of_contact_models_is_a_study_like_any_other(place, target):
+    told = snakemake(place, "-n", *target, "--config", "study=config/studies/contact_models.yaml")
+    assert started(told) == ["contact_models"] if target else {"figures", "report"} <= set(started(told))

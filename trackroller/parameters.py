@@ -95,6 +95,7 @@ _ALL = (
 PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL}
 
 CONTACT_MODELS = ("sliding", "fastsim", "kalker", "auto")
+EXACTNESS = ("kalker", "auto", "fastsim", "sliding")  # contact models, the most exact first
 NORMAL = ("hertz", "halfspace")
 SPIN_MODELS = ("concentric", "edge", "skewed")
 ACCURACIES = ("preview", "standard", "reference")

@@ -1,221 +1,221 @@
-"""The three contact models side by side, over friction and drive, and across the patch."""
+"""The contact models side by side, for any study with them as a factor: errors, forces, work, stick, stress, life."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.ladder.errors import GOOD, errors, measured
+from trackroller.ladder.groups import spin_is_its_own
+from trackroller.ladder.words import gap, percent, short, telling_factors
 from trackroller.plots import style
+from trackroller.plots.ladder_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# told apart by dash and mark as much as by colour
-LOOKS: dict[str, dict[str, Any]] = {
-    "sliding": {"color": "#000000", "linestyle": "-", "marker": "o"},
-    "fastsim": {"color": "#d55e00", "linestyle": ":", "marker": "s"},
-    "kalker": {"color": "#0072b2", "linestyle": "--", "marker": "^"},
-}
-FRICTION = "friction_coefficient"
-SIZE = 2.8
-STILL = 1e-8  # slip over the largest that counts as none
+Drawn = tuple["Figure", style.FigureInfo] | None
+Values = Callable[["xr.Dataset"], "xr.DataArray"]
+LEAST = 6e-4  # error at the foot of the axes
+COLUMNS = 3  # factors that the errors are drawn over
 
 
-def models(ds: xr.Dataset) -> list[str]:
-    """Contact models of the data set, cheapest first."""
-    return [m for m in LOOKS if m in [str(v) for v in ds["contact_model"].values]]
+def drawers(ds: xr.Dataset) -> list[partial[Drawn]]:
+    """What draws each figure of the comparison; none for a study with one contact model or without pairs of cases.
+
+    Parameters
+    ----------
+    ds : gathered study
+    """
+    from trackroller.ladder.pairs import pairs
+
+    paired = pairs(ds)
+    if paired is None or not paired.sizes["design"] or not measured(found := errors(paired)):
+        return []
+    draws = (error, error_by_factor, forces, energy, stick, peak_and_life)
+    return [partial(draw, paired, found) for draw in draws]
 
 
-def rolls_in_all(ds: xr.Dataset) -> xr.DataArray:
-    """Cases that roll by every model; others are not comparable."""
-    return (ds["regime"] == 0).all("contact_model")
+def _lines(shown: Frame, axes: Any, values: Values, hollow: bool = False) -> dict[str, Any]:
+    """One line a model in every column of a row of panels; of many designs the medians, with the reference's band."""
+    handles, rolls = {}, rolling(shown.ds)
+    for model in map(str, shown.ds["contact_model"].values):
+        own = np.where(rolls, values(shown.ds.sel(contact_model=model)).values, np.nan)
+        for column, panel in enumerate(axes):
+            band = shown.bands(own, column)
+            shade = shown.many and model == shown.ds.attrs["reference"]
+            handles[model] = line(panel, shown.x, band, model, hollow, shade)
+    return handles
 
 
-def _panels(ds: xr.Dataset, rows: int, height: float) -> tuple[Figure, Any]:
-    figure = style.new_figure(height)
-    drives = ds["motor_force"].values
-    axes = figure.subplots(rows, len(drives), sharex=True, sharey="row", squeeze=False)
-    for column, drive in enumerate(drives):
-        axes[0, column].set_title(style.capital(style.level_text("motor_force", drive)), loc="left", pad=3)
-        axes[-1, column].set_xlabel(r"Friction coefficient $\mu$ [–]")
-        for row in range(rows):
-            axes[row, column].set_xscale("log")
-            style.log_ticks(axes[row, column].xaxis, *np.sort(ds[FRICTION].values)[[0, -1]])
-    return figure, axes
+def _told(shown: Frame, words: str) -> str:
+    many = f" Medians of the designs; band: 5 to 95 % with {shown.ds.attrs['reference']}." if shown.many else ""
+    return f"{words}{many} {shown.held}".strip()
 
 
-def _curves(ds: xr.Dataset) -> Iterator[tuple[int, str, xr.Dataset]]:
-    """Column of the drive, contact model and the cases of each line over friction."""
-    for column, drive in enumerate(ds["motor_force"].values):
-        for model in models(ds):
-            yield column, model, ds.sel(motor_force=drive, contact_model=model)
+def error(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Error of the cheaper models against the reference over friction and drive, all other factors as they vary."""
+    shown = frame(paired)
+    wanted = [q for q in measured(found) if q.name not in ("friction_energy_balance", "stick")]
+    if shown is None or not wanted:
+        return None
+    figure, axes = panels(shown, [f"{q.label}\nerror [%]" for q in wanted], 27.0)
+    handles: dict[str, Any] = {}
+    for row, q in zip(axes, wanted, strict=True):
+        handles |= _error_row(shown, row, found, q.name)
+    dotted = f"Dotted: {percent(GOOD)}; at the foot: {percent(LEAST)} or less."
+    many = " Lines: medians of the designs; bands: 5 to 95 %." if shown.many else ""
+    words = f"{dotted} The worse contact; rolling only.{many}"
+    close(figure, handles, "What the cheaper contact models miss", words, 2)
+    caption = f"Error of the cheaper contact models against {paired.attrs['reference']}."
+    return figure, style.FigureInfo("models-error", caption, short(paired)[0])
 
 
-def _line(axes: Axes, ds: xr.Dataset, name: str, model: str, hollow: bool = False, **more: Any) -> Any:
-    look = LOOKS[model]
-    face = "white" if hollow else look["color"]
-    return axes.plot(ds[FRICTION], ds[name], markersize=SIZE, markerfacecolor=face, markeredgewidth=0.7,
-                     **(look | more))[0]  # fmt: skip
+def _error_row(shown: Frame, row: Any, found: xr.Dataset, name: str) -> dict[str, Any]:
+    """Errors of all cheaper models in a row of panels."""
+    handles, top = {}, 1.0
+    for model in map(str, found["contact_model"].values):
+        e = np.clip(found[name].sel(contact_model=model).values, LEAST, 1e3)
+        for column, panel in enumerate(row):
+            band = 100 * shown.bands(e, column)
+            handles[f"{model} against {found.attrs['reference']}"] = line(panel, shown.x, band, model, shade=shown.many)
+            top = float(np.nanmax([top, np.nanmax(band, initial=0.0)]))
+    for panel in row:
+        panel.axhline(100 * GOOD, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
+        panel.set_yscale("log")
+        panel.set_ylim(0.05, max(100.0, 1.5 * top))
+    return handles
 
 
-def _finish(figure: Figure, handles: dict[str, Any], title: str, words: str, columns: int = 3) -> Figure:
-    """The figure with its legend (label -> line) and its heading."""
-    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns, handlelength=2.6,
-                  columnspacing=1.2)  # fmt: skip
-    style.head(figure, title, words)
-    style.finish(figure)
-    return figure
+def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Error of normal force, friction and peak stress over spin and over the factors that matter most besides."""
+    names = ["spin"] if spin_is_its_own(paired) and np.isfinite(paired["spin"]).all() else []
+    cheapest = found.isel(contact_model=0)
+    names = [*names, *telling_factors(cheapest)][:COLUMNS]
+    wanted = [q for q in measured(found) if q.name in ("normal_force", "friction_force", "peak_stress")]
+    if not names or not wanted:
+        return None
+    frames = [shown for name in names if (shown := frame(paired, name, split=False)) is not None]
+    height = 30.0 + 30.0 * len(wanted) + max(label_mm(shown.x) for shown in frames)
+    figure = style.new_figure(height, style.COLUMN_MM * (1 if len(names) < 2 else 2))
+    axes = figure.subplots(len(wanted), len(names), sharex="col", sharey="row", squeeze=False)
+    handles: dict[str, Any] = {}
+    for column, shown in enumerate(frames):
+        for row, q in enumerate(wanted):
+            axes[row, 0].set_ylabel(f"{q.label}\nerror [%]")
+            handles |= _error_row(shown, axes[row, column : column + 1], found, q.name)
+        set_axis(axes[-1, column], shown.x)
+    words = f"Lines: medians of all designs that roll; bands: 5 to 95 %; dotted: {percent(GOOD)}."
+    close(figure, handles, "Where the cheaper contact models miss most", words, 2)
+    caption = ("Error of the cheaper contact models over spin (spin creepage by radius of curvature) and over the "
+               "factors that matter most, all else as it varies.")  # fmt: skip
+    return figure, style.FigureInfo("models-error-factors", caption, "")
 
 
-def forces(ds: xr.Dataset) -> Figure:
-    """Normal and lateral force and spin moment of both contacts over friction."""
+def forces(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Normal and lateral force and spin moment of both contacts by model."""
     from matplotlib.lines import Line2D
 
-    wanted = (("normal_force", "Normal force\n" + r"$F_\mathrm{N}$ [N]"),
-              ("lateral_force", "Lateral force\n" + r"$F_\mathrm{T}$ [N]"),
-              ("spin_moment", "Spin moment\n" + r"$M_\mathrm{R}$ [N·mm]"))  # fmt: skip
-    figure, axes = _panels(ds, len(wanted), 122.0)
+    wanted = [(n, label) for n, label in (
+        ("normal_force", "Normal force\n" + r"$F_\mathrm{N}$ [N]"),
+        ("lateral_force", "Lateral force\n" + r"$F_\mathrm{T}$ [N]"),
+        ("spin_moment", "Spin moment\n" + r"$M_\mathrm{R}$ [N·mm]")) if n in paired]  # fmt: skip
+    shown = frame(paired, hold=True)
+    if shown is None or not wanted:
+        return None
+    figure, axes = panels(shown, [label for _, label in wanted], 31.0)
     handles: dict[str, Any] = {}
-    for row, (name, label) in enumerate(wanted):
-        axes[row, 0].set_ylabel(label)
-        for column, model, part in _curves(ds):
-            for contact in (1, 2):
-                handles[model] = _line(axes[row, column], part.sel(contact=contact), name, model, contact == 2)
+    for row, (name, _) in zip(axes, wanted, strict=True):
+        for contact in (1, 2):
+            own = _lines(shown, row, partial(_of_contact, name=name, contact=contact), contact == 2)
+            handles = own | handles  # the legend shows the filled marks
     for contact, face in ((1, "0.3"), (2, "white")):
         mark = Line2D([], [], color="0.3", marker="o", linestyle="", markersize=3.5, markerfacecolor=face)
         handles[f"contact {contact}"] = mark
-    return _finish(figure, handles, "Forces by contact model",
-                   "Paper's roller, 200 N radial, 30 N axial, outer curve 220 mm.")  # fmt: skip
+    close(figure, handles, "Forces by contact model", _told(shown, "Rolling only."))
+    return figure, style.FigureInfo("models-forces", "Normal and lateral force and spin moment by contact model.",
+                                    gap(found, "normal_force"))  # fmt: skip
 
 
-def energy(ds: xr.Dataset) -> Figure:
+def _of_contact(one: xr.Dataset, name: str, contact: int) -> xr.DataArray:
+    return one[name].sel(contact=contact)
+
+
+def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     """Friction energy of both contacts per distance: summed over the patches, and what the resultants put in."""
-    figure, axes = _panels(ds, 1, 66.0)
-    axes[0, 0].set_ylabel("Friction energy of both\ncontacts per distance [J/m]")
+    name, balance = "friction_energy_per_distance", "friction_energy_balance"
+    shown = frame(paired, hold=True)
+    if shown is None or name not in paired:
+        return None
+    figure, axes = panels(shown, ["Friction energy of both\ncontacts per distance [J/m]"], 40.0)
+    handles = _lines(shown, axes[0], lambda one: one[name].sum("contact", skipna=False))
+    if "sliding" in handles and balance in paired:
+        handles = {f"{m}, local product" if m == "sliding" else m: h for m, h in handles.items()}
+        implied = shown.ds[balance].sel(contact_model="sliding").sum("contact", skipna=False)
+        own = np.where(rolling(shown.ds), implied.values, np.nan)
+        for column, panel in enumerate(axes[0]):
+            band = shown.bands(own, column)
+            handles["sliding, from the resultants"] = line(panel, shown.x, band, "sliding", True, linestyle="-.")
+    lines = [np.asarray(drawn.get_ydata(), float) for panel in axes[0] for drawn in panel.lines]
+    values = np.concatenate(lines) if lines else np.empty(0)
+    if (values > 0).any():
+        axes[0, 0].set_yscale("log")
+        top = float(np.nanmax(values))
+        style.log_ticks(axes[0, 0].yaxis, max(float(values[values > 0].min()), top / 39), top)
+    close(figure, handles, "Friction energy by contact model", _told(shown, "Rolling only."), 2)
+    caption = ("Friction energy of both contacts per distance. The local product is the published one; from the "
+               "resultants is the work that drive and tilting forces put in.")  # fmt: skip
+    return figure, style.FigureInfo("models-energy", caption, gap(found, "friction_energy"))
+
+
+def stick(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Share of the patch that sticks."""
+    shown = frame(paired, hold=True)
+    if shown is None or "stick_area_fraction" not in paired:
+        return None
+    figure, axes = panels(shown, ["Share of the patch\nthat sticks [%]"], 36.0)
+    handles = _lines(shown, axes[0], lambda one: 100.0 * one["stick_area_fraction"].max("contact"))
+    words = _told(shown, "The larger share of the two contacts; the rest of the patch slips.")
+    close(figure, handles, "Stick and slip by contact model", words)
+    return figure, style.FigureInfo("models-stick", "Share of the patch that sticks, by contact model.",
+                                    gap(found, "stick"))  # fmt: skip
+
+
+def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Peak von Mises stress of the roller (else of what was asked for) and life."""
+    from trackroller.plots.study_life import capped, mark_unlimited
+
+    rows: list[tuple[str, Values]] = []
+    shown = frame(paired, hold=True)
+    if shown is None:
+        return None
+    if "peak_stress" in paired:
+        bodies = list(map(str, paired["body"].values))
+        body = "roller" if "roller" in bodies else bodies[0]
+        rows.append((f"Peak stress of\nthe {body} [MPa]", lambda one: one["peak_stress"].sel(body=body).max("contact")))
+    height = None
+    if "life" in paired:
+        capped_life, height = capped(shown.ds["life"].values)
+        lives = shown.ds["life"].copy(data=capped_life)
+        label = style.with_unit(style.capital(paired.attrs["life"]), paired["life"].attrs["units"])
+        rows.append((label.replace(" of ", " of\n"), lambda one: lives.sel(contact_model=one["contact_model"].item())))
+    if not rows:
+        return None
+    figure, axes = panels(shown, [label for label, _ in rows], 33.0)
     handles: dict[str, Any] = {}
-    for column, model, cases in _curves(ds):
-        part = cases.sum("contact", skipna=False).assign_coords({FRICTION: ds[FRICTION]})
-        label = f"{model}, local product" if model == "sliding" else model
-        handles[label] = _line(axes[0, column], part, "friction_energy_per_distance", model)
-        if model == "sliding":
-            own = _line(axes[0, column], part, "friction_energy_balance", model, True, linestyle="-.")
-            handles["sliding, from the resultants"] = own
-    for panel in axes[0]:
-        panel.set_yscale("log")
-    shown = ds["friction_energy_per_distance"].sum("contact", skipna=False).values
-    style.log_ticks(axes[0, 0].yaxis, 0.8 * float(np.nanmin(shown)), float(np.nanmax(shown)))
-    return _finish(figure, handles, "Friction energy by contact model",
-                   "Rolling only; missing points slip altogether.", 2)  # fmt: skip
-
-
-def peak_and_life(ds: xr.Dataset) -> Figure:
-    """Peak von Mises stress and life of the roller over friction."""
-    from trackroller.plots.study_life import capped
-
-    figure, axes = _panels(ds, 2, 96.0)
-    axes[0, 0].set_ylabel("Peak stress of\nthe roller [MPa]")
-    axes[1, 0].set_ylabel("Life of the\nroller [h]")
-    worst = ds.assign(worst=ds["peak_stress"].sel(body="roller").max("contact"))
-    handles: dict[str, Any] = {}
-    for column, model, part in _curves(worst):
-        handles[model] = _line(axes[0, column], part, "worst", model)
-        life = part.assign(shown=(FRICTION, capped(part["roller_life_hours"].values)[0]))
-        _line(axes[1, column], life, "shown", model)
-    for panel in axes[1]:
-        panel.set_yscale("log")
-    return _finish(figure, handles, "Peak stress and life by contact model", "The more loaded of the two contacts.")
-
-
-def error(found: xr.Dataset, tolerance: float) -> Figure:
-    """Error of the cheaper models against the exact theory over friction; `found` of `study.ladder.errors`."""
-    wanted = (("normal_force", "Normal force"), ("friction_force", r"Friction over $\mu F_\mathrm{N}$"),
-              ("friction_energy", "Friction energy"), ("peak_stress", "Peak stress"))  # fmt: skip
-    figure, axes = _panels(found, len(wanted), 132.0)
-    handles: dict[str, Any] = {}
-    for row, (name, label) in enumerate(wanted):
-        axes[row, 0].set_ylabel(f"{label}\nerror [%]")
-        axes[row, 0].set_yscale("log")
-        axes[row, 0].set_ylim(0.05, 100)
-        for panel in axes[row]:
-            panel.axhline(100 * tolerance, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
-        for column, model, part in _curves(found[[name]]):
-            line = _line(axes[row, column], 100 * part.clip(6e-4), name, model)
-            handles[f"{model} against kalker"] = line
-    words = f"Dotted: {style.number(100 * tolerance)} %; at the foot: 0.06 % or less. The worse contact; rolling only."
-    return _finish(figure, handles, "What the cheaper models miss", words, 2)
-
-
-def stick(ds: xr.Dataset) -> Figure:
-    """Share of the patch that sticks over friction."""
-    figure, axes = _panels(ds, 1, 58.0)
-    axes[0, 0].set_ylabel("Share of the patch\nthat sticks [%]")
-    handles: dict[str, Any] = {}
-    for column, model, part in _curves(100.0 * ds[["stick_area_fraction"]].max("contact")):
-        handles[model] = _line(axes[0, column], part, "stick_area_fraction", model)
-    return _finish(figure, handles, "Stick by contact model", "The larger share of the two contacts.")
-
-
-def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
-    """Tractions (arrows) and stick (hatched) over the patch, one row a friction coefficient, one column a model."""
-    from matplotlib.ticker import MaxNLocator
-
-    names, mus = models(fields), fields[FRICTION].values
-    figure = style.new_figure(26.0 + 33.0 * len(mus), 2 * style.COLUMN_MM)
-    axes = figure.subplots(len(mus), len(names), squeeze=False, sharex="row", sharey="row")
-    image: Any = None
-    inside = fields["friction_energy_density"] / (fields[FRICTION] * fields["max_pressure"])
-    top = float(np.nanmax(inside.sel(contact=contact).quantile(0.995, ("x", "y")).values))
-    top = float(f"{1.05 * top:.1g}") if top > 0 else 1.0
-    for row, mu in enumerate(mus):
-        for column, name in enumerate(names):
-            one = fields.sel({FRICTION: mu, "contact_model": name, "contact": contact})
-            image = _patch(axes[row, column], one, float(mu), top)
-            if row == 0:
-                axes[row, column].set_title(name, pad=3)
-        axes[row, 0].set_ylabel(f"$\\mu$ = {style.number(float(mu))}\n" + r"$y_\mathrm{C}$ (rolling) [mm]")
-    for last in axes[-1]:
-        last.set_xlabel(r"$x_\mathrm{C}$ (lateral) [mm]")
-    bar = figure.colorbar(image, ax=axes, location="right", aspect=40, pad=0.01, ticks=MaxNLocator(5))
-    bar.set_label(r"Friction energy density over $\mu p_\mathrm{max}$ [–]")
-    style.head(figure, "Friction across the patch, free rolling",
-               f"Contact {contact}. Arrows: friction on the roller; hatched: stick; shade: dissipation per area and "
-               r"distance over $\mu p_\mathrm{max}$.")  # fmt: skip
-    style.finish(figure)
-    return figure
-
-
-def _patch(axes: Axes, one: xr.Dataset, mu: float, top: float) -> Any:
-    from matplotlib.patches import Ellipse
-
-    x, y = one["patch_x"].values, one["patch_y"].values
-    pressure = np.nan_to_num(one["pressure"].values)
-    scale = mu * float(one["max_pressure"])
-    dense = np.nan_to_num(one["friction_energy_density"].values) / scale
-    levels = np.linspace(0, top, 13)
-    image = axes.contourf(x, y, np.clip(dense, 0, top), levels=levels, cmap="Greys", extend="max", alpha=0.55)
-    edge = Ellipse((0, 0), 2 * float(one["semi_axis_lateral"]), 2 * float(one["semi_axis_rolling"]),
-                   facecolor="none", edgecolor="black", linewidth=0.9)  # fmt: skip
-    axes.add_patch(edge)
-    image.set_clip_path(edge)
-    slip = np.hypot(one["slip_lateral"].values, one["slip_rolling"].values)
-    stuck = (pressure > 0) & (slip <= STILL * np.nanmax(slip))  # the exact theory leaves rounding
-    if stuck.any():
-        hatch = axes.contourf(x, y, stuck.astype(float), levels=[0.5, 1.5], colors=[(1, 1, 1, 0)], hatches=["//////"])
-        hatch.set_edgecolor("0.15")
-        hatch.set_linewidth(0.0)
-        hatch.set_clip_path(edge)
-        axes.contour(x, y, stuck.astype(float), levels=[0.5], colors="#0072b2", linewidths=0.9)
-    inside = pressure > 0.05 * pressure.max()
-    pick_x = np.unique(np.linspace(0, x.size - 1, 15).round().astype(int))
-    pick_y = np.unique(np.linspace(0, y.size - 1, 9).round().astype(int))
-    where = np.ix_(pick_y, pick_x)
-    tx, ty = (np.where(inside, one[n].values, np.nan)[where] / scale for n in ("shear_lateral", "shear_rolling"))
-    axes.quiver(x[pick_x], y[pick_y], tx, ty, angles="uv", scale=14, width=0.005, headwidth=4, color="black")
-    axes.set_xlim(1.06 * x[0], 1.06 * x[-1])
-    axes.set_ylim(1.1 * y[0], 1.1 * y[-1])
-    axes.grid(False)
-    return image
+    for row, (_, values) in zip(axes, rows, strict=True):
+        handles |= _lines(shown, row, values)
+    if "life" in paired:
+        lived = lives.values[np.isfinite(lives.values)]
+        for panel in axes[-1]:
+            panel.set_yscale("log")
+            mark_unlimited(panel, height)
+        style.log_ticks(axes[-1, 0].yaxis, float(lived.min()), float(lived.max()))
+    words = _told(shown, "The more loaded of the two contacts.")
+    close(figure, handles, "Peak stress and life by contact model", words)
+    return figure, style.FigureInfo("models-peak-life", "Peak von Mises stress and life by contact model.",
+                                    gap(found, "peak_stress"))  # fmt: skip

@@ -5,10 +5,11 @@ from __future__ import annotations
 import logging
 import warnings
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from trackroller.plots import style
+from trackroller.plots import ladder, style
 from trackroller.plots.study_effects import main_effects
 from trackroller.plots.study_life import life_against_friction
 from trackroller.plots.study_loads import forces_against_axial, stress_against_fit
@@ -46,12 +47,13 @@ def draw_all(study_nc: Path, out_dir: Path) -> list[style.FigureInfo]:
 
     with xr.open_dataset(study_nc) as ds:
         view = StudyView.of(ds)
+        draws = [*_comparison(ds), *(partial(draw, view) for draw in FIGURES)]
     infos = []
     with style.look(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
-        for draw in FIGURES:
+        for draw in draws:
             try:
-                drawn = draw(view)
+                drawn = draw()
                 if drawn is None:
                     continue
                 figure, info = drawn
@@ -59,8 +61,17 @@ def draw_all(study_nc: Path, out_dir: Path) -> list[style.FigureInfo]:
             except OSError:  # a full disk is not the figure's fault
                 raise
             except Exception as problem:
-                log.warning("figure %s was not drawn: %s", draw.__name__, problem, exc_info=True)
+                log.warning("figure %s was not drawn: %s", draw.func.__name__, problem, exc_info=True)
                 continue
             infos.append(info)
     style.write_index(infos, Path(out_dir))
     return infos
+
+
+def _comparison(ds: Any) -> list[partial[Any]]:
+    """What draws the contact models side by side, where the study has several."""
+    try:
+        return ladder.drawers(ds)
+    except Exception as problem:  # a picture never fails a run
+        log.warning("the contact models were not compared: %s", problem, exc_info=True)
+        return []

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.plots.style import level_text, long_name, number
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ CONTACT_RESULTS = (
 )
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles")
 PLAIN_RESULTS = ("regime", "validity", "converged", "roller_life_hours", "guide_life_hours", "slip", "stopped")
-EXACTNESS = ("kalker", "auto", "fastsim", "sliding")  # contact models, the most exact first
 SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lying on the surface
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.fatigue import DECADES
+from trackroller.ladder import report_section
 from trackroller.plots import style
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ MEASURES = (
 
 
 def decisions(ds: xr.Dataset, analysis: Path | None) -> dict[str, Any]:
-    """Contents of the report's sections `sensitivity`, `robust` and `pareto`; {} for what a study does not support.
+    """Contents of the report's sections `models`, `sensitivity`, `robust`, `pareto`; {} for what a study does not have.
 
     Parameters
     ----------
@@ -45,6 +46,7 @@ def decisions(ds: xr.Dataset, analysis: Path | None) -> dict[str, Any]:
         name = "robust" if sens.attrs.get("method") == "nested" else "sensitivity"
         found[name] = _guarded(robust_points if name == "robust" else sensitivity, sens)
     found["pareto"] = _guarded(pareto_designs, ds)
+    found["models"] = _guarded(report_section, ds)
     return found
 
 

@@ -16,7 +16,7 @@ from trackroller.plots.study_view import StudyView, study_settings
 from trackroller.report.decisions import decisions
 from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
 from trackroller.report.papers import conventions, papers
-from trackroller.report.tables import causes, design_rows, ranked, reasons, regime_table, validity_table
+from trackroller.report.tables import causes, design_rows, only_model, ranked, reasons, regime_table, validity_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,9 +71,7 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     with xr.open_dataset(study_nc) as ds:
         content = contents(ds) | decisions(ds, sensitivity_nc)
     content["figures"] = figures(Path(figures_dir))
-    words = Path(figures_dir) / "words.txt"  # what a comparison has to say stands before what any study says
-    if words.is_file():
-        content["summary"] = words.read_text(encoding="utf-8").splitlines() + content["summary"]
+    content["summary"] += content["models"].get("short", [])
     text = environment.get_template("report.html.j2").render(content)
     out_html = Path(out_html)
     out_html.parent.mkdir(parents=True, exist_ok=True)
@@ -107,6 +105,7 @@ def contents(ds: xr.Dataset) -> dict[str, Any]:
         "reasons": reasons(ds),
         "solution": solution_facts(ds, view),
         "ranked_by": order[0] if order else "",
+        "ranked_model": only_model(view) or "",
         "best": design_rows(view, order[1]) if order and len(order[1]) else [],
         "worst": design_rows(view, order[2]) if order else [],
         "summary": summary(view),

@@ -118,8 +118,12 @@ def reasons(ds: xr.Dataset) -> Table:
 
 
 def ranked(view: StudyView) -> tuple[str, pd.DataFrame, pd.DataFrame] | None:
-    """What designs are ranked by, the best (rolling ones only) and the worst; None when nothing ranks them."""
-    table = view.table
+    """What designs are ranked by, the best (rolling ones only) and the worst; None when nothing ranks them.
+
+    Of a study with several contact models only the most exact one ranks: the models are no designs.
+    """
+    model = only_model(view)
+    table = view.table if model is None else view.table[view.table["contact_model"] == model]
     if view.life is not None:
         column, words, unit = view.life
         label, better = f"{words[0].lower()}{words[1:]} ({unit})", False
@@ -140,10 +144,15 @@ def ranked(view: StudyView) -> tuple[str, pd.DataFrame, pd.DataFrame] | None:
     return label, rolling.head(BEST), known.iloc[::-1].head(BEST)
 
 
+def only_model(view: StudyView) -> str | None:
+    """The contact model by which designs are ranked, where a study has several."""
+    return str(view.held_level("contact_model")) if "contact_model" in view.factors else None
+
+
 def design_rows(view: StudyView, designs: pd.DataFrame) -> list[tuple[str, list[str]]]:
     """Designs as columns: one row a factor or result, so that any number of factors fits a page."""
     rows = []
-    for name in view.factors:
+    for name in (n for n in view.factors if n != "contact_model"):
         parameter = PARAMETERS.get(name)
         words = style.capital(style.long_name(name))
         special = name in ("motor_force", "guide_curve_radius")

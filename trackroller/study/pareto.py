@@ -10,7 +10,7 @@ import xarray as xr
 
 from trackroller.errors import InputError, nearest
 from trackroller.expressions import condition
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters import EXACTNESS, MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.study.factors import label
 from trackroller.study.goals import aliased, names_in
 from trackroller.study.outputs import case_dims, flat, outputs, read_study, regimes
@@ -73,7 +73,8 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     Returns
     -------
     Dataset over `row` (all rows that are allowed, by regime and constraints): the factors, the objectives, the
-    constrained outputs, and `optimal` (1 in the set). Attributes count what each constraint excluded.
+    constrained outputs, and `optimal` (1 in the set). Attributes count what each constraint excluded. Of several
+    contact models only the rows of the most exact one are designs (attribute `model`).
 
     Raises
     ------
@@ -90,7 +91,9 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     regime = regimes(ds, dims)
     columns = {name: _column(ds, design, name, dims) for name in dict.fromkeys([*objectives, *sorted(wanted)])}
     allowed = np.isin(regime, [REGIMES.index(name) for name in keep])
-    excluded = {"regime": int((~allowed).sum())}
+    own, model = _own_rows(design)
+    excluded = {"regime": int((own & ~allowed).sum())}
+    allowed &= own
     table = np.stack([np.asarray(columns[n][0], dtype=float) for n in objectives], axis=1)
     for text in constraints:  # first what the user asked for, then what has no number
         good = np.broadcast_to(_meets(text, columns), allowed.shape)
@@ -103,18 +106,27 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     data: dict[str, Any] = {name: ("row", values[0][allowed], {"units": values[1], "long_name": values[2]})
                             for name, values in columns.items()}  # fmt: skip
     for name, value in design.columns.items():
-        if name not in data:
+        if name not in data and not (model and name == "contact_model"):
             shown = np.array([label(v) for v in value], dtype=object) if value.dtype == object else value
             data[name] = ("row", shown[allowed])
     data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
     out = xr.Dataset(data, coords={"row": np.flatnonzero(allowed)})
+    factors = [n for n in design.factors if not (model and n == "contact_model")]
     out.attrs = {
         "objectives": ", ".join(f"{n} {d}" for n, d in objectives.items()),
-        "constraints": "; ".join(constraints), "factors": ", ".join(design.factors), "rows": design.size,
+        "constraints": "; ".join(constraints), "factors": ", ".join(factors), "rows": int(own.sum()), "model": model,
         "excluded": "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing",
-        "not_rolling": int((regime != 0).sum()), "study": ds.attrs.get("study", ""),
+        "not_rolling": int((own & (regime != 0)).sum()), "study": ds.attrs.get("study", ""),
     }  # fmt: skip
     return out
+
+
+def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:
+    """Rows of the most exact contact model, and its name where there are several; all rows else."""
+    column = design.columns.get("contact_model")
+    named = np.full(design.size, "") if column is None else column.astype(str)
+    found = [m for m in EXACTNESS if (named == m).any()]
+    return (named == found[0], found[0]) if len(found) > 1 else (np.ones(design.size, bool), "")
 
 
 def study_pareto(ds: xr.Dataset) -> xr.Dataset | None:

@@ -230,8 +230,9 @@ def pareto(front: xr.Dataset) -> str:
     """Size and ends of a Pareto set."""
     best = front["optimal"].values == 1
     count, allowed = int(best.sum()), front.sizes["row"]
+    model = f" Designs as the contact model {front.attrs['model']} has them." if front.attrs.get("model") else ""
     if not count:
-        return f"No design is left: {front.attrs['excluded']}."
+        return f"No design is left: {front.attrs['excluded']}.{model}"
     if count == 1:
         row = int(np.flatnonzero(best)[0])
         goals = [item.split(" ")[0] for item in front.attrs["objectives"].split(", ")]
@@ -240,7 +241,7 @@ def pareto(front: xr.Dataset) -> str:
             attrs, value = front[name].attrs, float(front[name].values[row])
             reached.append(f"{attrs.get('long_name', name)} {with_unit(value, attrs.get('units', ''))}")
         return (f"One of {allowed} allowed designs is best in everything: {listing(reached)}. "
-                f"Left out: {front.attrs['excluded']}.")  # fmt: skip
+                f"Left out: {front.attrs['excluded']}.{model}")  # fmt: skip
     said = []
     for item in front.attrs["objectives"].split(", "):
         name, direction = item.split(" ")
@@ -251,7 +252,7 @@ def pareto(front: xr.Dataset) -> str:
         goes = "down" if direction == "max" else "up"
         said.append(f"{words} from {number(ends[0])} {goes} to {with_unit(ends[1], unit)}")
     return (f"{count} of {allowed} allowed designs are beaten by no other; among them one can trade "
-            f"{listing(said)}. Left out: {front.attrs['excluded']}.")  # fmt: skip
+            f"{listing(said)}. Left out: {front.attrs['excluded']}.{model}")  # fmt: skip
 
 
 def robustness(table: xr.Dataset, output: str) -> str:

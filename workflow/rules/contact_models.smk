@@ -2,12 +2,20 @@
 COMPARED = f"{config.get('results', 'results')}/contact_models"
 
 
+# the same study as the configured one, `--config study=config/studies/contact_models.yaml`, has these files by the rules
+# of any study
+ruleorder: figures > contact_models
+ruleorder: report > contact_models
+
+
 rule contact_models:
     input:
         study="config/studies/contact_models.yaml",
         code=sources(
-            "ladder.py",
-            "plots/ladder.py",
+            "ladder",
+            "plots",
+            "report",
+            "templates",
             "contact",
             "contact_choice.py",
             "contact_choice_probe.py",

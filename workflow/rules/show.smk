@@ -44,7 +44,7 @@ rule figures:
     input:
         study=f"{RESULTS}/study.nc",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=sources("plots", *ANALYSIS),
+        code=sources("plots", "ladder", *ANALYSIS),
     output:
         directory(f"{RESULTS}/figures"),
     log:
@@ -63,6 +63,7 @@ rule report:
         code=sources(
             "report",
             "templates",
+            "ladder",
             "plots/style.py",
             "plots/study_view.py",
             *ANALYSIS,

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from trackroller.ladder import compare
+from trackroller.ladder.product import compare
 from trackroller.workflow import log_to
 
 log_to(snakemake.log[0])
