@@ -150,3 +150,15 @@ def test_two_bumps_give_two_patches():
     lowest = np.linspace(-1.4, 1.4, 2001)[np.argmin(lateral)]
     assert node.box.low - 0.05 <= lowest <= node.box.high + 0.05
     assert node.residual <= TOLERANCE
+
+
+def test_the_rim_of_one_end_does_not_come_out_at_the_other():
+    """A patch that ends at an edge on one side, at the largest pressure, and runs out at the end of its box."""
+    from trackroller.contact.grid_patch import rim_means
+
+    along, across = np.linspace(-1.0, 1.0, 24)[:, None], np.linspace(0.03, 0.95, 20)
+    pressure = np.sqrt(np.maximum(across - along**2, 0.0))
+    for field in (pressure, pressure[:, ::-1], pressure.T, pressure.T[::-1]):
+        means = rim_means(np.ascontiguousarray(field))
+        assert means.sum() == pytest.approx(field.sum())
+        np.testing.assert_allclose(means, field, atol=0.12)

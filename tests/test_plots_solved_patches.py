@@ -86,7 +86,7 @@ def test_two_strips_are_drawn_apart(edged):
 def test_the_spin_pole_is_shown_for_the_model_that_has_one(edged):
     assert Patch(edged, 1).spin_pole is not None
     assert "spin pole" in shear_arrows(edged)[1].caption
-    rolling = edged.assign_attrs(contact_model="kalker")
+    rolling = edged.assign_attrs(contact_model="kalker").assign(contact_model_used=((), np.int8(2)))
     assert Patch(rolling, 1).spin_pole is None
     assert "spin pole" not in shear_arrows(rolling)[1].caption
     chosen = edged.assign_attrs(contact_model="auto").assign(contact_model_used=((), np.int8(0)))

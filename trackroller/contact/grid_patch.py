@@ -94,6 +94,7 @@ def _centres(elements: int) -> np.ndarray:
 
 
 PARTS = 4  # of an element's side, over which the pressure near the rim is averaged
+RINGS = 3  # of elements beyond the grid
 CUT_OFF, KEPT = 0.85, 0.93  # shares of the largest pressure that means keep: none of them counts, all of them do
 
 
@@ -118,10 +119,11 @@ def rim_means(pressure: np.ndarray) -> np.ndarray:
     would cut the summit off, the pressure stays as it was solved.
     """
     ny, nx = pressure.shape
-    known = np.pad(pressure > 0, 1)
-    square = _spread(np.pad(pressure**2, 1), known, onward=True)
+    # wide enough that nothing is carried from one end of a patch that fills its box to the other
+    known = np.pad(pressure > 0, RINGS)
+    square = _spread(np.pad(pressure**2, RINGS), known, onward=True)
     ring = _spread(known.astype(float), known, onward=False) > 0
-    square = _spread(square, ring, onward=False)
+    square = _spread(square, ring, onward=False)[RINGS - 1 : 1 - RINGS, RINGS - 1 : 1 - RINGS]
     t = (np.arange(PARTS) + 0.5) / PARTS - 0.5
     for axis in (0, 1):
         v = np.moveaxis(square, axis, 0)
