@@ -23,6 +23,7 @@ BOOKKEEPING = {
     "life_error_estimate",
     "reason",
     "stopped",
+    "contact_model_used",
     "material_pair",
 }
 FIELDS = {"x", "y", "z", "grid"}
