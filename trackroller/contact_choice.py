@@ -14,7 +14,7 @@ the stated share of random designs that it was not fitted to lies below it (benc
 Small friction forces may be off by much more than the tolerance of themselves, and life, which goes with the k-th power
 of stress, by about k times. All this holds for a constant friction law, Hertzian patches and the skewed spin pole;
 outside the range of the designs, and where the models differ in their regime, the exact theory is taken. So it is
-where the solution of a cheaper model says itself that it may be off by more (`in_doubt`).
+where the solution of full sliding says itself that it may be off by more (`in_doubt`).
 """
 
 from __future__ import annotations
@@ -190,18 +190,18 @@ def choose(table: CaseTable, options: Options) -> np.ndarray:
 
 
 def in_doubt(table: CaseTable, block: Block, tolerance: float) -> np.ndarray:
-    """Rows of solved cases whose cheaper model has an infinite or badly known peak stress, to be solved exactly.
+    """Rows of solved cases where full sliding has an infinite or badly known peak stress, to be solved exactly.
 
     That is where the slip of the sliding model vanishes apart from its spin pole, and where the estimate of the peak's
-    error exceeds the tolerance. Where all models are one, in full slip and without a contact, none is better.
+    error exceeds the tolerance. (That of FASTSIM tells of its elements, which the exact theory has as well.)
     """
     v = block.values
-    doubt = split_pole(table, v) & (block.model == CONTACT_MODELS.index("sliding"))
+    doubt = split_pole(table, v)
     if "error_estimate" in v:
         with np.errstate(invalid="ignore"):
             doubt |= np.any(v["error_estimate"] > tolerance, axis=(1, 2))
-    cheap = (block.model != CONTACT_MODELS.index("kalker")) & (table.friction_coefficient > 0)
-    return np.flatnonzero(doubt & cheap & (block.regime == ROLLING))
+    sliding = (block.model == CONTACT_MODELS.index("sliding")) & (table.friction_coefficient > 0)
+    return np.flatnonzero(doubt & sliding & (block.regime == ROLLING))
 
 
 def cheapest(error: np.ndarray, tolerance: float) -> np.ndarray:
