@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 import trackroller as tr
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import VALIDITY_BITS, validity_bit
 
 TOLERANCE = 2e-3
-CONFORMAL = 1 << list(VALIDITY_BITS).index("conformal")
+CONFORMAL = validity_bit("conformal")
 DATABASE = ("1.7225-normalised", "1.7225-quenched-tempered", "EN AW-7075", "PA6", "POM")
 LEVELS = (50, 90, 95, 99, 99.9, 100)
 

@@ -18,9 +18,9 @@ import numpy as np
 from peak_coverage import sample
 
 import trackroller as tr
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import validity_bit
 
-CONFORMAL = 1 << list(VALIDITY_BITS).index("conformal")
+CONFORMAL = validity_bit("conformal")
 BINS = (0.0, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 10.0, np.inf)
 OUTPUTS = ("forces", "contact", "peak_stress", "friction_work")
 

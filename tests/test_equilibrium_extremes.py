@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import validity_bit
 from trackroller.study.extremes.random_cases import random_extremes
 from trackroller.study.extremes.scenes import scaled
 
@@ -81,7 +81,7 @@ def test_friction_at_the_end_of_the_range_of_numbers_is_none():
 
 def test_self_locking_is_flagged_with_and_without_axial_force():
     """Without axial force the even balance is an unstable one; the slightest axial force sheds a contact: same flag."""
-    bit = 1 << list(VALIDITY_BITS).index("jamming")
+    bit = validity_bit("jamming")
     case = dict(contact_angle=11, radial_force=-200, motor_force=0)
     ds = solved(*(tr.Case(friction_coefficient=mu, axial_force=a, **case) for mu in (0.2, 0.6) for a in (0, 1e-9, 1)))
     assert ds.regime.values.tolist() == [ROLLING] * 4 + [LIFT_OFF] * 2

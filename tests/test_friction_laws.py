@@ -15,7 +15,7 @@ from trackroller.contact.friction_laws import constant, exponential_falling, law
 from trackroller.contact.hertz import HertzShape
 from trackroller.contact.models import contact_model
 from trackroller.contact.sliding_law import integrals
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import validity_bit
 from trackroller.equilibrium import Loads, solve_equilibrium
 from trackroller.errors import InputError
 from trackroller.study.config import parse_study
@@ -343,7 +343,7 @@ class ContactJump:
 def test_friction_too_steep_for_elastic_surfaces_is_told():
     """mu p_max v max(-df/dv)/G above 1: the bit warns for the elastic models, not for gentle laws or full sliding."""
     steep, gentle = ({"kind": "linear", "speed": v, "lowest": 0.3} for v in (0.02, 200.0))
-    bit = 1 << list(VALIDITY_BITS).index("steep_friction")
+    bit = validity_bit("steep_friction")
 
     def marked(law, model):
         found = tr.solve(tr.Case(friction_law=law), contact_model=model, accuracy="preview", outputs="forces")
@@ -367,7 +367,7 @@ def test_a_roller_without_balance_for_steep_friction_says_so():
     )  # fmt: skip
     found = tr.solve(lost, contact_model="kalker", outputs="forces")
     assert int(found.regime) == 3 and np.isnan(found.normal_force).all()
-    assert int(found.validity) & 1 << list(VALIDITY_BITS).index("steep_friction")
+    assert int(found.validity) & validity_bit("steep_friction")
 
 
 MEASURED = {"kind": "table", "speed": [0, 20, 100], "friction": [0.15, 0.12, 0.1]}

@@ -10,28 +10,13 @@ import numpy as np
 
 from trackroller.case import FIELDS, Case
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import REGIMES
+from trackroller.parameters import REGIMES, SOLVE_OPTIONS
 from trackroller.point_files import files_beside
 from trackroller.study.files import WorkError, write_whole
 from trackroller.study.yamlfile import parse_mapping, read_mapping
 
 if TYPE_CHECKING:
     import xarray as xr
-
-OPTIONS = (
-    "outputs",
-    "contact_model",
-    "spin_model",
-    "accuracy",
-    "hertz",
-    "stress_bodies",
-    "life_rule",
-    "normal",
-    "contact_tolerance",
-    "stop_if",
-    "shortcuts",
-    "slip_terms",
-)
 
 
 def settings_of(words: list[str]) -> dict[str, Any]:
@@ -49,9 +34,9 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
     """Case and options from a case file and --set words."""
     values = (read_mapping(path, "case file") if path is not None else {}) | settings_of(words)
     for key in values:
-        if key not in (*FIELDS, *OPTIONS):
-            raise unknown_name("case field", key, (*FIELDS, *OPTIONS))
-    options = {key: values.pop(key) for key in OPTIONS if key in values}
+        if key not in (*FIELDS, *SOLVE_OPTIONS):
+            raise unknown_name("case field", key, (*FIELDS, *SOLVE_OPTIONS))
+    options = {key: values.pop(key) for key in SOLVE_OPTIONS if key in values}
     for key in ("outputs", "slip_terms"):
         if isinstance(options.get(key), str):
             options[key] = [part.strip() for part in options[key].split(",")]

@@ -105,6 +105,11 @@ VALIDITY_BITS = {
 }
 
 
+def validity_bit(name: str) -> int:
+    """The bit of `validity` that a name of `VALIDITY_BITS` stands for."""
+    return 1 << list(VALIDITY_BITS).index(name)
+
+
 FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
     "regime": ("regime of the case", REGIMES),
     "converged": ("equilibrium found to the residual its contact model can reach", ("no", "yes")),

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import validity_bit
+from trackroller.equilibrium import FAILED, ROLLING
 from trackroller.geometry import curvatures, rolling_radius
-from trackroller.parameters import REGIMES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from trackroller.case import CaseTable
     from trackroller.options import Options
 
-FAILED, ROLLING = REGIMES.index("failed"), REGIMES.index("rolling")
-STEEP = 1 << list(VALIDITY_BITS).index("steep_friction")
+STEEP = validity_bit("steep_friction")
 
 
 def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Dataset:

@@ -108,6 +108,9 @@ SLIP_TERMS = {  # what the rigid slip of the rolling contact models may count, s
 LIFE_RULES = ("elementary", "haibach", "unlimited")
 OUTPUT_GROUPS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 DEFAULT_OUTPUTS = ("forces", "contact", "peak_stress", "life")
+# what `solve` and `Options` take beside cases and materials; a test holds these to the same names
+SOLVE_OPTIONS = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
+                 "contact_tolerance", "stop_if", "shortcuts", "slip_terms")  # fmt: skip
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
 MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none

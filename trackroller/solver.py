@@ -116,7 +116,8 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
     """Cases that share a contact model, a friction law and profiles are solved together."""
     groups = list(_groups(table, options))
     parts = [_solve_group(table.take(rows), replace(options, contact_model=model)) for model, rows in groups]
-    found = join(parts).take(np.argsort(np.concatenate([rows for _, rows in groups])))
+    order = np.argsort(np.concatenate([rows for _, rows in groups]))
+    found = parts[0] if len(parts) == 1 else join(parts).take(order)  # one group has them in order
     return _without_doubt(table, found, options) if options.contact_model == "auto" else found
 
 

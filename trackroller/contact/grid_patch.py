@@ -94,8 +94,14 @@ def _centres(elements: int) -> np.ndarray:
 
 
 PARTS = 4  # of an element's side, over which the pressure near the rim is averaged
-RINGS = 3  # of elements beyond the grid
 CUT_OFF, KEPT = 0.85, 0.93  # shares of the largest pressure that means keep: none of them counts, all of them do
+
+
+def _moved(values: np.ndarray, step: int, axis: int) -> np.ndarray:
+    """Values moved along an axis; nothing comes in from the other end."""
+    moved = np.roll(values, step, axis)
+    np.moveaxis(moved, axis, 0)[slice(None, step) if step > 0 else slice(step, None)] = 0
+    return moved
 
 
 def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
@@ -103,8 +109,8 @@ def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
     total, count = np.zeros_like(values), np.zeros_like(values)
     for axis in (0, 1):
         for step in (1, -1):
-            near, next_one = np.roll(values, step, axis), np.roll(values, 2 * step, axis)
-            ring = ~known & np.roll(known, step, axis)
+            near, next_one = _moved(values, step, axis), _moved(values, 2 * step, axis)
+            ring = ~known & _moved(known, step, axis)
             total[ring] += (2.0 * near - next_one if onward else near)[ring]
             count[ring] += 1.0
     return np.where(count > 0, total / np.maximum(count, 1.0), values)
@@ -119,11 +125,10 @@ def rim_means(pressure: np.ndarray) -> np.ndarray:
     would cut the summit off, the pressure stays as it was solved.
     """
     ny, nx = pressure.shape
-    # wide enough that nothing is carried from one end of a patch that fills its box to the other
-    known = np.pad(pressure > 0, RINGS)
-    square = _spread(np.pad(pressure**2, RINGS), known, onward=True)
+    known = np.pad(pressure > 0, 1)
+    square = _spread(np.pad(pressure**2, 1), known, onward=True)
     ring = _spread(known.astype(float), known, onward=False) > 0
-    square = _spread(square, ring, onward=False)[RINGS - 1 : 1 - RINGS, RINGS - 1 : 1 - RINGS]
+    square = _spread(square, ring, onward=False)
     t = (np.arange(PARTS) + 0.5) / PARTS - 0.5
     for axis in (0, 1):
         v = np.moveaxis(square, axis, 0)

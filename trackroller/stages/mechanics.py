@@ -18,7 +18,7 @@ from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.models import ContactModel, contact_model
 from trackroller.contact.slip import turning_of
 from trackroller.contact.table.model import TableModel
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import validity_bit
 from trackroller.geometry import curvatures, lever_arms, rolling_radius
 from trackroller.options import Options
 from trackroller.requirements import Mirror, is_frictionless, is_mirror_symmetric
@@ -86,7 +86,7 @@ def contact(results: Results, options: Options) -> None:
     v["max_pressure"] = results.by_contact(e.max_pressure)
     v["max_shear"] = results.by_contact(results.friction * e.max_pressure)  # where all slides under a constant law
     if isinstance(e, GridPatch):
-        stages_grid.contact(results, e, 1 << list(VALIDITY_BITS).index("conformal"))
+        stages_grid.contact(results, e, validity_bit("conformal"))
     else:
         v["patch_area"] = np.pi * v["semi_axis_lateral"] * v["semi_axis_rolling"]
         v["pressure_centre"] = 0.0 * v["semi_axis_lateral"]
@@ -126,7 +126,7 @@ def steep_friction(results: Results, options: Options) -> None:
                         np.max(results.values["max_pressure"], axis=1))  # fmt: skip
     with np.errstate(invalid="ignore"):
         steep = loads.friction * pressure * fall / shear > 1.0
-    results.bits |= np.where(steep, 1 << list(VALIDITY_BITS).index("steep_friction"), 0).astype(np.int32)
+    results.bits |= np.where(steep, validity_bit("steep_friction"), 0).astype(np.int32)
 
 
 def _stick_share(results: Results) -> np.ndarray:

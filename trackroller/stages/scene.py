@@ -14,10 +14,10 @@ from trackroller.case import CaseTable
 from trackroller.contact.common import DetailedSlip, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.models import ContactModel
 from trackroller.contact.normal.models import GridModel
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import validity_bit
 from trackroller.requirements import Mirror
 
-JAMMING = 1 << list(VALIDITY_BITS).index("jamming")
+JAMMING = validity_bit("jamming")
 
 
 @dataclass(frozen=True)

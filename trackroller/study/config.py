@@ -21,6 +21,7 @@ from trackroller.parameters import (
     MATERIAL_FIELDS,
     OUTPUT_GROUPS,
     SLIP_TERMS,
+    SOLVE_OPTIONS,
     STRESS_BODIES,
 )
 from trackroller.point_files import files_beside
@@ -219,21 +220,8 @@ class Study:
     @property
     def options(self) -> dict[str, Any]:
         """Keyword arguments of `solve`; those that are factors are missing."""
-        names = (
-            "outputs",
-            "contact_model",
-            "spin_model",
-            "accuracy",
-            "hertz",
-            "stress_bodies",
-            "life_rule",
-            "normal",
-            "contact_tolerance",
-            "stop_if",
-            "slip_terms",
-        )
-        values = {name: getattr(self.config, name) for name in names if name not in self.factors}
-        return values
+        names = (name for name in SOLVE_OPTIONS if name != "shortcuts" and name not in self.factors)
+        return {name: getattr(self.config, name) for name in names}
 
     def merged(self, whole_paths: bool = False) -> str:
         """The study as YAML with every default written out (and the table's path from the root on)."""

@@ -26,23 +26,14 @@ import numpy as np
 from trackroller.case import FIELDS, Case
 from trackroller.errors import InputError, unknown_name
 from trackroller.fatigue import PROBABILITIES
+from trackroller.parameters import SOLVE_OPTIONS
 from trackroller.point_files import files_beside
 from trackroller.study.yamlfile import parse_mapping, read_text
 
 LOAD_FIELDS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity",
                "guide_curve_radius", "guide_overrollings_per_hour")  # fmt: skip
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
-OPTIONS = (
-    "contact_model",
-    "spin_model",
-    "accuracy",
-    "hertz",
-    "stress_bodies",
-    "life_rule",
-    "normal",
-    "contact_tolerance",
-    "slip_terms",
-)
+OPTIONS = tuple(name for name in SOLVE_OPTIONS if name not in ("outputs", "stop_if", "shortcuts"))
 FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", *OPTIONS)
 
 

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 
 from trackroller.case import Case
-from trackroller.dataset import VALIDITY_BITS
+from trackroller.dataset import validity_bit
 from trackroller.errors import InputError
 from trackroller.solver import solve
 
 SEED = 20260
 MATERIALS = ("1.7225-normalised", "1.7225-quenched-tempered", "EN AW-7075", "PA6", "POM")
 DIMENSIONS = 15
-SINGULAR = sum(1 << list(VALIDITY_BITS).index(name) for name in ("conformal", "split_pole"))
+SINGULAR = sum(validity_bit(name) for name in ("conformal", "split_pole"))
 
 
 def _material(which: float, stiffness: float, ratio: float) -> Any:
