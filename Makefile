@@ -26,15 +26,15 @@ test: $(STAMP)
 lint: $(STAMP)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
-	$(BIN)/snakefmt --check Snakefile workflow/rules
+	$(BIN)/snakefmt --check Snakefile workflow/rules validation/Snakefile validation/rules
 	$(BIN)/snakemake --lint
 
 # needs Debian's slurmctld slurmd slurm-client munge on this machine; starts and stops its own
 test-slurm: $(STAMP)
-	$(BIN)/python -m pytest -q -m slurm tests/test_workflow_slurm.py
+	$(BIN)/python -m pytest -q -m slurm tests/workflow/test_workflow_slurm.py
 
 test-long: $(STAMP)
-	$(BIN)/python benchmarks/survive.py
+	$(BIN)/python -m validation.benchmarks.survive
 
 clean-results:
 	find results -mindepth 1 -maxdepth 1 -type d -exec rm -r {} +

@@ -5,7 +5,7 @@ from snakemake.exceptions import WorkflowError
 
 from trackroller.errors import InputError
 from trackroller.study.files import WorkError
-from trackroller.workflow import sources, study_inputs, workflow_plan
+from trackroller.cli.workflow import sources, study_inputs, workflow_plan
 
 
 configfile: "config/config.yaml"
@@ -39,7 +39,3 @@ rule all:
 
 include: "workflow/rules/solve.smk"
 include: "workflow/rules/show.smk"
-include: "workflow/rules/tradeoff.smk"
-include: "workflow/rules/contact_models.smk"
-include: "workflow/rules/paper.smk"
-include: "workflow/rules/extremes.smk"

@@ -17,15 +17,15 @@ cases or patches.
 """
 PARTS: tuple[tuple[str, tuple[tuple[str, tuple[str, ...]], ...]], ...] = (
     ("Cases and solutions", (("trackroller", ("Case", "solve", "InputError")),
-                             ("trackroller.stop", ("parse_condition",)), ("trackroller.explain", ("explain",)))),
+                             ("trackroller.roller.stop", ("parse_condition",)), ("trackroller.study.explain", ("explain",)))),
     ("Studies", (("trackroller", ("load_study",)), ("trackroller.study.config", ("Study.design", "Study.options")),
                  ("trackroller.study.run", ("run_study",)), ("trackroller.study.gather", ("gather",)),
                  ("trackroller.study.repeat", ("repeat_case",)))),
-    ("Analyses", (("trackroller.study.sensitivity", ("analyse", "analyse_dataset")),
-                  ("trackroller.study.robustness", ("robustness",)), ("trackroller.study.pareto", ("pareto",)),
-                  ("trackroller.study.spectrum", ("load_spectrum", "solve_spectrum")))),
+    ("Analyses", (("trackroller.analysis.sensitivity", ("analyse", "analyse_dataset")),
+                  ("trackroller.analysis.robustness", ("robustness",)), ("trackroller.analysis.pareto", ("pareto",)),
+                  ("trackroller.study.spectrum.solve", ("load_spectrum", "solve_spectrum")))),
     ("Materials", (("trackroller", ("load_database",)), ("trackroller.materials", ("add_material",)))),
-    ("Fatigue", (("trackroller.fatigue", ("life_cycles", "allowable_stress", "woehler_exponent", "line_at_probability",
+    ("Fatigue", (("trackroller.damage.fatigue", ("life_cycles", "allowable_stress", "woehler_exponent", "line_at_probability",
                                           "roller_hours", "guide_hours", "damage_sum")),)),
     ("Stresses below any tractions", (("trackroller", ("stress_from_tractions", "stress_on_grid", "von_mises",
                                                        "principal_stresses", "max_shear")),)),
@@ -33,8 +33,8 @@ PARTS: tuple[tuple[str, tuple[tuple[str, tuple[str, ...]], ...]], ...] = (
                  ("trackroller.contact.normal", ("solve_normal",)),
                  ("trackroller.contact.kalker", ("solve_patch",)), ("trackroller.contact.fastsim", ("solve_patch",)),
                  ("trackroller.contact.linear", ("creepage_coefficients",)),
-                 ("trackroller.contact.friction_laws", ("law_of",)), ("trackroller.profiles", ("canonical",)))),
-    ("Figures and report", (("trackroller.plots.contact", ("plot_case",)), ("trackroller.plots.study", ("draw_all",)),
+                 ("trackroller.contact.friction_laws", ("law_of",)), ("trackroller.contact.profiles", ("canonical",)))),
+    ("Figures and report", (("trackroller.report.figures.contact", ("plot_case",)), ("trackroller.report.figures.study", ("draw_all",)),
                             ("trackroller.report", ("write_report",)))),
 )  # fmt: skip
 

@@ -11,10 +11,10 @@ import sys
 from pathlib import Path
 
 from trackroller import parameters as p
-from trackroller.accuracy import PRESETS
-from trackroller.dataset import VALIDITY_BITS, VARIABLES
-from trackroller.pages import markdown
-from trackroller.study.tradeoff import page as tradeoff_page
+from trackroller.report.pages import markdown
+from trackroller.roller.accuracy import PRESETS
+from trackroller.roller.dataset import VALIDITY_BITS, VARIABLES
+from validation.tradeoff import page as tradeoff_page
 
 FOLDER = Path(__file__).parent
 START, END = "<!-- presets: made by docs/generate.py -->\n", "<!-- end of presets -->"
@@ -124,7 +124,7 @@ def pages() -> dict[Path, str]:
 
 
 def tradeoff() -> str:
-    """The measured trade-off, from the data that docs/adopt_tradeoff.py took over."""
+    """The measured trade-off, from the data that validation/adopt/tradeoff.py took over."""
     summary, figures = (json.loads((FOLDER / "data" / name).read_text(encoding="utf-8"))
                         for name in ("tradeoff.json", "tradeoff_figures.json"))  # fmt: skip
     made_by = "made by docs/generate.py from docs/data/tradeoff.json"

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _WHERE = {
-    "Case": "trackroller.case",
+    "Case": "trackroller.roller.case",
     "InputError": "trackroller.errors",
-    "solve": "trackroller.solver",
+    "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.config",
     "load_database": "trackroller.materials",
     "stress_from_tractions": "trackroller.halfspace.stress",
@@ -38,7 +38,6 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from trackroller.case import Case
     from trackroller.errors import InputError
     from trackroller.halfspace.stress import (
         max_shear,
@@ -48,7 +47,8 @@ if TYPE_CHECKING:
         von_mises,
     )
     from trackroller.materials import load_database
-    from trackroller.solver import solve
+    from trackroller.roller.case import Case
+    from trackroller.roller.solver import solve
     from trackroller.study.config import load_study
 
 

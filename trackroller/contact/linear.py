@@ -54,7 +54,7 @@ def write_table(path) -> None:
 @lru_cache(maxsize=1)
 def _chebyshev() -> np.ndarray:
     """Coefficients (nodes of ratio, nodes of nu, 4) of the logarithms of the table."""
-    text = resources.files("trackroller").joinpath("data", TABLE).read_text(encoding="utf-8")
+    text = resources.files("trackroller.contact").joinpath(TABLE).read_text(encoding="utf-8")
     values = np.loadtxt(text.splitlines(), delimiter=",")[:, 2:].reshape(*NODES, 4)
     u, v = (np.linalg.inv(chebvander(chebpts1(n), n - 1)) for n in NODES)
     return np.einsum("ij,kl,jlc->ikc", u, v, np.log(values))

@@ -17,7 +17,7 @@ from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.errors import InputError
 
 if TYPE_CHECKING:
-    from trackroller.accuracy import Accuracy
+    from trackroller.contact.settings import Accuracy
 
 
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models

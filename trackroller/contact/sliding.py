@@ -18,9 +18,9 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Surfa
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.errors import unknown_name
 from trackroller.halfspace.vectors import exp, inner
+from trackroller.numerics.quadrature import clustered_rule
+from trackroller.numerics.threads import share_rows
 from trackroller.parameters import SPIN_MODELS
-from trackroller.quadrature import clustered_rule
-from trackroller.threads import share_rows
 
 _TINY = 1e-13  # keeps logarithms finite on the column through the pole; its weight there is of order eps^2
 

@@ -14,7 +14,6 @@ from numba import njit
 
 from trackroller.contact.common import Ellipse, Resultants, Slip
 from trackroller.contact.friction_laws import FrictionLaw
-from trackroller.contact.knots import interval
 from trackroller.contact.sliding import (
     _TINY,
     _breakpoints,
@@ -22,8 +21,9 @@ from trackroller.contact.sliding import (
     rolling_slip,
     spin_model_index,
 )
-from trackroller.quadrature import clustered_rule
-from trackroller.threads import share_rows
+from trackroller.numerics.knots import interval
+from trackroller.numerics.quadrature import clustered_rule
+from trackroller.numerics.threads import share_rows
 
 FEW_KNOTS = 8  # laws with more are smooth enough for one rule
 

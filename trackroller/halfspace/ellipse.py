@@ -44,8 +44,8 @@ from trackroller.halfspace.ellipse_kernels import (
 )
 from trackroller.halfspace.kernels import point_kernel
 from trackroller.halfspace.vectors import FAST, inner
-from trackroller.quadrature import clustered_rule
-from trackroller.threads import share_rows
+from trackroller.numerics.quadrature import clustered_rule
+from trackroller.numerics.threads import share_rows
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "zx")
 

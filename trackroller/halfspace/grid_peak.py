@@ -18,7 +18,7 @@ from numba import njit
 from trackroller.halfspace.influence import CornerLoads, corner_loads, corner_table
 from trackroller.halfspace.kernels import bilinear_corner
 from trackroller.halfspace.peak import Peak
-from trackroller.threads import share_rows
+from trackroller.numerics.threads import share_rows
 
 DEPTHS = (0.0, 0.06, 0.15, 0.3, 0.48, 0.7, 1.0)  # of the scanned planes, over the smaller half side of the patch
 EDGE_ROWS, EDGE_DEPTHS = 9, (0.0, 0.25, 0.5, 1.0)  # looked at below an edge; depths over the width of an element

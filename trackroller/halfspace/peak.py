@@ -14,7 +14,7 @@ import numpy as np
 from trackroller.halfspace.ellipse import near_parts, refinement, unit_rule
 from trackroller.halfspace.ellipse_kernels import FRICTION, A, B
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
-from trackroller.threads import share_rows
+from trackroller.numerics.threads import share_rows
 
 
 @dataclass(frozen=True)

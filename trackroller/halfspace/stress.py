@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from trackroller.errors import InputError
 from trackroller.halfspace import influence
-from trackroller.threads import share_rows
+from trackroller.numerics.threads import share_rows
 
 Array = NDArray[np.float64]
 COMPONENTS = ("sigma_x", "sigma_y", "sigma_z", "tau_xy", "tau_yz", "tau_xz")

@@ -14,7 +14,7 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
 
-BUILTIN_FILE = Path(__file__).parents[1] / "data" / "materials.yaml"
+BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
 ENVIRONMENT = "TRACKROLLER_MATERIALS"
 BUILTIN = "built-in"

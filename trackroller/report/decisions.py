@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.fatigue import DECADES
-from trackroller.ladder import report_section
-from trackroller.plots import style
+from trackroller.damage.fatigue import DECADES
+from trackroller.report.comparison import report_section
+from trackroller.report.figures import style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ def decisions(ds: xr.Dataset, analysis: Path | None) -> dict[str, Any]:
     Parameters
     ----------
     ds : gathered study
-    analysis : file of `trackroller.study.sensitivity.analyse`, if there is one
+    analysis : file of `trackroller.analysis.sensitivity.analyse`, if there is one
     """
     import xarray as xr
 
@@ -60,8 +60,8 @@ def _guarded(make: Any, ds: xr.Dataset) -> dict[str, Any]:
 
 def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
     """Ranking of the factors for each analysed output, with intervals, in words and as tables."""
-    from trackroller.plots.sensitivity import effect_unit, main_outputs
-    from trackroller.study import words
+    from trackroller.report import sentences as words
+    from trackroller.report.figures.sensitivity import effect_unit, main_outputs
 
     rows = []
     for output in map(str, sens["output"].values):
@@ -85,7 +85,7 @@ def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
 
 def measures(sens: xr.Dataset, output: str) -> dict[str, Any]:
     """Every index of every factor on one output, with 95 % intervals; those within chance are put in brackets."""
-    from trackroller.study import words
+    from trackroller.report import sentences as words
 
     part = sens.sel(output=output)
     shown = [(key, text) for key, text in MEASURES if key in part and np.isfinite(part[key]).any()]
@@ -117,7 +117,7 @@ def _value(value: float, low: float = np.nan, high: float = np.nan) -> str:
 
 def robust_points(table: xr.Dataset) -> dict[str, Any]:
     """Design points with their life and how often they slip or lift off, the best first."""
-    from trackroller.study import words
+    from trackroller.report import sentences as words
 
     lives = [str(n) for n in table["output"].values if "life" in str(n)]
     lives = [n for n in lives if np.isfinite(table["percentile_value"].sel(output=n)).any()] or lives
@@ -135,7 +135,7 @@ def robust_points(table: xr.Dataset) -> dict[str, Any]:
 
 
 def _points(table: xr.Dataset, output: str) -> dict[str, Any]:
-    from trackroller.study import words
+    from trackroller.report import sentences as words
 
     part = table.sel(output=output)
     key = np.lexsort((-np.nan_to_num(part["b10"].values), -np.nan_to_num(part["b10_safe"].values)))
@@ -167,8 +167,8 @@ def _chance(table: xr.Dataset, regime: str, point: int) -> str:
 
 def pareto_designs(ds: xr.Dataset) -> dict[str, Any]:
     """The designs that no other beats, along the first goal."""
-    from trackroller.study import words
-    from trackroller.study.pareto import study_pareto
+    from trackroller.analysis.pareto import study_pareto
+    from trackroller.report import sentences as words
 
     front = study_pareto(ds)
     if front is None:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
-from trackroller.plots import style
-from trackroller.plots.study_view import StudyView, study_settings
+from trackroller.report.figures import style
+from trackroller.report.figures.study_view import StudyView, study_settings
 
 if TYPE_CHECKING:
     import xarray as xr

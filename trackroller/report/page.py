@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.plots import style
-from trackroller.plots.study_loads import surface_share
-from trackroller.plots.study_view import StudyView, study_settings
 from trackroller.report.decisions import decisions
+from trackroller.report.figures import style
+from trackroller.report.figures.study_loads import surface_share
+from trackroller.report.figures.study_view import StudyView, study_settings
 from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
 from trackroller.report.papers import conventions, papers
 from trackroller.report.tables import causes, design_rows, only_model, ranked, reasons, regime_table, validity_table
@@ -58,10 +58,10 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     import markupsafe
     import xarray as xr
 
-    from trackroller.pages import inline
+    from trackroller.report.pages import inline
 
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("trackroller", "templates"),
+        loader=jinja2.PackageLoader("trackroller.report", "templates"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -111,7 +111,6 @@ def contents(ds: xr.Dataset) -> dict[str, Any]:
         "summary": summary(view),
         "conventions": conventions(merged, results),
         "papers": papers(merged, results),
-        "published": published_numbers(),
         "record": record_table(attrs, _TOLD),
         "study_text": str(attrs.get("study", "")),
     }
@@ -168,14 +167,6 @@ def models_used(ds: xr.Dataset) -> list[tuple[str, str]]:
     counts = [(name, int((used == i).sum())) for i, name in enumerate(names)]
     said = ", ".join(f"{name} in {count}" for name, count in counts if count)
     return [("Contact model chosen", f"{said} of {used.size} cases")] if said and len(set(used.ravel())) > 1 else []
-
-
-def published_numbers() -> list[tuple[str, Any]]:
-    """Where the numbers of the published example hold: tables (heads, rows) and paragraphs."""
-    from trackroller.paper import stored
-    from trackroller.paper_page import verdict
-
-    return [(kind, value) for kind, value in verdict(stored()) if kind in ("table", "p")]
 
 
 def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:

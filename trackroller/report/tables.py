@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.parameters import PARAMETERS
-from trackroller.plots import style
-from trackroller.plots.study_view import StudyView
+from trackroller.report.figures import style
+from trackroller.report.figures.study_view import StudyView
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +28,7 @@ def causes(view: StudyView, hit: np.ndarray) -> list[str]:
     ----------
     hit : does the event happen in this case? shape (n,)
     """
-    from trackroller.plots.study_effects import groups
+    from trackroller.report.figures.study_effects import groups
 
     total = float(hit.mean())
     if not 0 < total < 1:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.study.design import case_columns
+from trackroller.study.design.build import case_columns
 from trackroller.study.files import StudyFolder, write_whole
 from trackroller.study.identity import chunk_name
 from trackroller.study.mend import Tell

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from trackroller.contact.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
+from trackroller.materials.yaml_file import parse_mapping, read_text
 from trackroller.parameters import (
     ACCURACIES,
     DEFAULT_OUTPUTS,
@@ -24,13 +26,11 @@ from trackroller.parameters import (
     SOLVE_OPTIONS,
     STRESS_BODIES,
 )
-from trackroller.point_files import files_beside
-from trackroller.stop import parse_condition
-from trackroller.study.entries import OPTION_FACTORS, base_value, choice, factor
-from trackroller.study.factors import LISTS
+from trackroller.roller.stop import parse_condition
+from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
+from trackroller.study.design.factors import LISTS
+from trackroller.study.design.sampling import METHODS
 from trackroller.study.goals import Analysis, check, comparisons, directions
-from trackroller.study.sampling import METHODS
-from trackroller.study.yamlfile import parse_mapping, read_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -227,14 +227,14 @@ class Study:
         """The study as YAML with every default written out (and the table's path from the root on)."""
         data = self.config.model_dump(mode="json", exclude_none=True)
         if whole_paths and self.config.table is not None:
-            from trackroller.study.design import table_path
+            from trackroller.study.design.build import table_path
 
             data["table"] = str(Path(table_path(self)).resolve())
         return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
 
     def design(self) -> xr.Dataset:
         """The cases: dimension `case`, one variable a parameter, materials by name."""
-        from trackroller.study.design import build
+        from trackroller.study.design.build import build
 
         return build(self)
 
@@ -267,7 +267,7 @@ def load_study(path: str | Path, database: Any = None) -> Study:
 
 
 def _check_options(study: Study) -> None:
-    from trackroller.options import check_hertz, check_slip_terms
+    from trackroller.roller.options import check_hertz, check_slip_terms
 
     def levels(name: str) -> list[str]:
         return study.factors.get(name, {}).get("values", [getattr(study.config, name)])
@@ -299,7 +299,7 @@ def _cross_check(study: Study) -> None:
                                  "Or choose a sampled design: lhs, sobol, saltelli, morris.")  # fmt: skip
     check(config, study.factors)
     _check_options(study)
-    from trackroller.study.design import check_geometry, check_materials
+    from trackroller.study.design.build import check_geometry, check_materials
 
     check_materials(study)
     check_geometry(study)

@@ -45,7 +45,7 @@ def rate(options: Mapping[str, Any]) -> float:
 
 def study_rate(study: Study) -> float:
     """As `rate` for the cases of a study, in which contact model and normal problem may be factors."""
-    from trackroller.study.entries import OPTION_FACTORS
+    from trackroller.study.design.entries import OPTION_FACTORS
 
     varied = {name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS}
     several = [rate(study.options | dict(zip(varied, values, strict=True))) for values in product(*varied.values())]

@@ -13,8 +13,8 @@ import numpy as np
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import provenance, store
 from trackroller.study.caselists import load_list
-from trackroller.study.design import build, case_columns, draw
-from trackroller.study.factors import Factor, label
+from trackroller.study.design.build import build, case_columns, draw
+from trackroller.study.design.factors import Factor, label
 from trackroller.study.files import WorkError, write_whole
 from trackroller.study.mend import Tell
 from trackroller.study.plan import Plan, identify

@@ -21,11 +21,11 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from trackroller import expressions
-from trackroller.dataset import VARIABLES
 from trackroller.errors import InputError, unknown_name
+from trackroller.numerics import expressions
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
-from trackroller.study.entries import choice
+from trackroller.roller.dataset import VARIABLES
+from trackroller.study.design.entries import choice
 from trackroller.study.outputs import DEFAULTS, FIELDS
 
 MEASURES = ("first", "delta", "pawn", "prcc")

@@ -46,7 +46,7 @@ def fingerprints(table: Any, options: list[dict[str, Any]] | dict[str, Any]) -> 
 
     Parameters
     ----------
-    table : `trackroller.case.CaseTable` of n cases
+    table : `trackroller.roller.case.CaseTable` of n cases
     options : keyword arguments of `solve`, one mapping for all cases or one a case
 
     Returns

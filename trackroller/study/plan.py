@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.case import to_table
+from trackroller.roller.case import to_table
 from trackroller.study import store
 from trackroller.study.caselists import load_list, save_list, sound_cases, write_list
-from trackroller.study.design import build, table_path
-from trackroller.study.entries import OPTION_FACTORS
+from trackroller.study.design.build import build, table_path
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.growth import with_history
 from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
-from trackroller.study.growth import with_history
 from trackroller.study.identity import RESULTS_VERSION, chunk_name, fingerprints
 from trackroller.study.mend import Tell, drop_corrupt, tell_changed_code
 

@@ -12,9 +12,9 @@ import numpy as np
 from trackroller.errors import InputError
 from trackroller.parameters import PARAMETERS
 from trackroller.study import store
-from trackroller.study.design import build, case_columns
+from trackroller.study.design.build import build, case_columns
+from trackroller.study.design.growth import with_history
 from trackroller.study.files import WorkError
-from trackroller.study.growth import with_history
 from trackroller.study.plan import case_options, identify, study_folder
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
 
     Raises `InputError` for a number outside the study, `WorkError` for a case that is not solved yet.
     """
-    from trackroller.solver import solve
+    from trackroller.roller.solver import solve
 
     folder = study_folder(study.name, results)
     study = with_history(study, folder)

@@ -18,9 +18,9 @@ from trackroller.parameters import (
     STRESS_BODIES,
 )
 from trackroller.study.config import NAME, StudyFile
-from trackroller.study.entries import OPTION_FACTORS
-from trackroller.study.factors import DISTRIBUTIONS
-from trackroller.study.sampling import METHODS
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factors import DISTRIBUTIONS
+from trackroller.study.design.sampling import METHODS
 
 FILE = Path(__file__).resolve().parents[2] / "workflow" / "schemas" / "study.schema.json"
 

@@ -32,7 +32,7 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
     is a case's own.
     """
     if solver is None:
-        from trackroller.solver import solve
+        from trackroller.roller.solver import solve
 
         solver = solve
     started = time.perf_counter()
@@ -76,7 +76,7 @@ def _explain_shapes(block: store.Block, cases: CaseList, rows: np.ndarray, solve
 
 def check_identity(cases: CaseList, database: Any) -> None:
     """The materials must still be those of the plan."""
-    from trackroller.case import to_table
+    from trackroller.roller.case import to_table
 
     if (fingerprints(to_table(cases.design(), database), cases.options) != cases.cases).any():
         raise WorkError(f"chunk {cases.name}: the materials or the solver changed after the study was planned. "

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.errors import InputError, nearest
+from trackroller.materials.yaml_file import read_mapping
 from trackroller.parameters import REGIMES
 from trackroller.study import store
 from trackroller.study.config import load_study, parse_study
 from trackroller.study.cost import measured_rate, rate
-from trackroller.study.design import build, draw
-from trackroller.study.growth import with_history
-from trackroller.study.levels import in_words
+from trackroller.study.design.build import build, draw
+from trackroller.study.design.growth import with_history
+from trackroller.study.design.levels import in_words
 from trackroller.study.plan import identify, study_folder
-from trackroller.study.yamlfile import read_mapping
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study

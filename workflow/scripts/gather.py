@@ -2,8 +2,8 @@
 
 import logging
 
+from trackroller.cli.workflow import log_to, workflow_plan
 from trackroller.study.gather import gather
-from trackroller.workflow import log_to, workflow_plan
 
 log_to(snakemake.log[0])
 gather(workflow_plan(snakemake.config, check=False), tell=logging.getLogger("trackroller").info)

@@ -1,6 +1,6 @@
 """Write the report."""
 
-from trackroller.workflow import log_to, report_study
+from trackroller.cli.workflow import log_to, report_study
 
 log_to(snakemake.log[0])
 report_study(snakemake.input.study, snakemake.input.figures, snakemake.input.sensitivity, snakemake.output[0])

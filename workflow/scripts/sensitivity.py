@@ -1,6 +1,6 @@
 """Analyse what decides the results."""
 
-from trackroller.workflow import analyse_study, log_to
+from trackroller.cli.workflow import analyse_study, log_to
 
 log_to(snakemake.log[0])
 analyse_study(snakemake.input.study, snakemake.output[0])

@@ -23,7 +23,7 @@ from trackroller.contact.fastsim.strips import strip_chords, strip_fields, strip
 from trackroller.contact.friction_laws import constant
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.linear import LARGEST_RATIO
-from trackroller.threads import share_rows
+from trackroller.numerics.threads import share_rows
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Surfa
 from trackroller.contact.fastsim.point import enter, step
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
-from trackroller.threads import share_rows
+from trackroller.numerics.threads import share_rows
 
 # Between linear theory and full sliding the flexibilities change with the creepages; fitted to the exact theory.
 SLIDING_FORCE = 2.5  # forces of the linear theory over mu F_N at which half of the change is done

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from numba import njit
 
-from trackroller.contact.knots import interval
+from trackroller.numerics.knots import interval
 
 NEWTON = 30  # most steps of the root of one point; three or four are usual
 

@@ -15,7 +15,7 @@ from trackroller.contact.influence import coupling_slip, influence
 from trackroller.contact.kalker.columns import column_ranges
 from trackroller.contact.kalker.loops import reals, row_means
 from trackroller.contact.kalker.newton import Problem, newton
-from trackroller.threads import share_rows
+from trackroller.numerics.threads import share_rows
 
 # columns of the numbers reported for each patch
 (F_T, F_A, M_R, STICK, POWER, WORK, PRESSURE_WORK, RESIDUAL, STEPS, PRODUCTS) = range(10)

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.influence import FAST
-from trackroller.contact.knots import interval
+from trackroller.numerics.knots import interval
 
 
 @njit(cache=True, nogil=True)

@@ -17,7 +17,7 @@ from trackroller.contact import kalker
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.contact.table import spline as table
-from trackroller.quadrature import clustered_rule
+from trackroller.numerics.quadrature import clustered_rule
 
 RHO = 15  # intervals of rho
 THETA = 13  # nodes of theta between 0 and 90 deg, at the middles of as many equal parts
@@ -237,7 +237,7 @@ def write(path: Path, tables: table.Tables) -> None:
 
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path(table.__file__).parents[2] / "data" / table.TABLE)
+    parser.add_argument("--output", type=Path, default=Path(table.__file__).with_name(table.TABLE))
     parser.add_argument("--check", type=int, metavar="N", help="make nothing: measure the stored table on N patches")
     options = parser.parse_args(arguments)
     if options.check:

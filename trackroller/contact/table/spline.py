@@ -23,9 +23,9 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants
-from trackroller.contact.knots import interval
 from trackroller.contact.linear import creepage_coefficients
-from trackroller.threads import share_rows
+from trackroller.numerics.knots import interval
+from trackroller.numerics.threads import share_rows
 
 TABLE = "kalker_table.npz"
 HALF_WAY = 4.0  # r at rho = 1/2
@@ -122,7 +122,7 @@ def _read_spline(stored_arrays, name: str) -> Spline:
 @lru_cache(maxsize=1)
 def stored() -> Tables:
     """The tables that come with the package."""
-    place = files.files("trackroller").joinpath("data", TABLE)
+    place = files.files("trackroller.contact.table").joinpath(TABLE)
     with files.as_file(place) as path, np.load(path, allow_pickle=False) as f:
         like, unlike = (_read_spline(f, name) for name in ("like", "unlike"))
         names, values = f["error_names"], f["error_values"]

@@ -1,0 +1,98 @@
+"""Measures from given data against values known in closed form or by brute force."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from trackroller.analysis.delta import delta
+from trackroller.analysis.pairs import pairs
+from trackroller.report.figures import style
+from trackroller.study.design.levels import short
+
+
+def ishigami(u: np.ndarray) -> np.ndarray:
+    x = (2 * u - 1) * np.pi
+    return np.sin(x[:, 0]) + 7 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
+
+
+def exact_delta(correlation: float) -> float:
+    """Delta of a normal pair: mean total variation of N(r x, 1 - r^2) from N(0, 1)."""
+    x = norm.ppf((np.arange(1000) + 0.5) / 1000)[:, None]
+    y = np.linspace(-8, 8, 2001)
+    apart = np.abs(norm.pdf(y, correlation * x, np.sqrt(1 - correlation**2)) - norm.pdf(y))
+    return float(apart.sum(axis=1).mean() * (y[1] - y[0]) / 2)
+
+
+@pytest.mark.parametrize("correlation", [0.1, 0.3, 0.7, 0.95, 0.99])
+def test_delta_of_a_normal_pair_is_within_three_hundredths_of_its_closed_form(correlation):
+    rng = np.random.default_rng(4)
+    x, noise = rng.standard_normal((2, 4096))
+    y = np.exp(correlation * x + np.sqrt(1 - correlation**2) * noise)  # a monotonic function changes nothing
+    value, low, high, _ = delta(y, x)
+    assert value == pytest.approx(exact_delta(correlation), abs=0.03)
+    assert low <= exact_delta(correlation) <= high
+
+
+def test_delta_of_the_ishigami_function_is_within_three_hundredths():
+    """Truth by histograms of 4 million rows."""
+    u = np.random.default_rng(1).random((4096, 3))
+    found = [delta(ishigami(u), u[:, j])[0] for j in range(3)]
+    np.testing.assert_allclose(found, [0.262, 0.425, 0.210], atol=0.03)
+
+
+def test_delta_of_inert_factors_stays_within_chance():
+    below = 0
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        value, low, _, noise = delta(rng.random(400), rng.integers(0, 4, 400), ordered=False)
+        below += value <= noise
+        assert low == 0.0 or value > noise
+    assert below >= 27
+
+
+def test_interactions_of_the_ishigami_function_from_a_plain_sample():
+    u = np.random.default_rng(2).random((1024, 3))
+    found = pairs(ishigami(u), u, np.array([True] * 3))
+    assert found["fit_share"] > 0.95
+    share = found["interaction_share"]
+    assert share[0, 2] == pytest.approx(0.244, abs=0.03)
+    np.testing.assert_allclose(found["fit_alone"], [0.314, 0.442, 0.0], atol=0.04)
+    assert abs(share[0, 1]) < 0.02 and abs(share[1, 2]) < 0.02 and np.isnan(share[2, 0])
+    assert found["interaction_share_low"][0, 2] < 0.244 < found["interaction_share_high"][0, 2]
+
+
+def test_interaction_of_a_number_with_a_category():
+    rng = np.random.default_rng(3)
+    x, kind = rng.random((400, 2)), rng.integers(0, 3, 400)
+    y = x[:, 0] + np.array([0, 0.5, -0.3])[kind] + 2 * (x[:, 1] - 0.5) * np.array([1, -1, 0])[kind]
+    joint = 4 / 12 * 2 / 3
+    truth = joint / (1 / 12 + np.var([0, 0.5, -0.3]) + joint)
+    found = pairs(y, np.column_stack([x, kind]), np.array([True, True, False]))
+    assert found["interaction_share"][1, 2] == pytest.approx(truth, abs=0.06)
+
+
+def test_no_interaction_is_told_where_no_polynomial_predicts():
+    rng = np.random.default_rng(5)
+    u = rng.random((300, 2))
+    found = pairs(np.sin(90 * u[:, 0]) * np.sin(70 * u[:, 1]), u, np.array([True, True]))
+    assert np.isnan(found["interaction_share"]).all() and found["fit_share"] < 0.5
+
+
+def test_friction_laws_and_profiles_are_told_in_a_few_words():
+    law = json.dumps({"kind": "linear", "speed": 50, "lowest": 0.3})
+    assert short("friction_law", law) == "linear to 0.3 at 50 mm/s"
+    assert short("friction_law", "") == "constant"
+    assert short("roller_profile", '{"arc":-7.0,"width":9}') == "arc −7 mm, 9 mm wide"
+    drawn = [json.dumps({"points": [[0, 0], [1, z]], "frame": "section"}) for z in (1, 2)]
+    assert len({short("guide_profile", text) for text in drawn}) == 2
+    assert style.level_text("friction_law", law) == "linear to 0.3 at 50 mm/s"
+    assert len(short("friction_law", "{" + "x" * 200)) <= 40
+
+
+def test_ends_of_a_range_are_rounded_to_the_range():
+    assert style.near(0.24983, 0.25) == "0.25" and style.near(1.6e-5, 0.25) == "0"
+    assert style.near(39.994, 12.0) == "40" and style.near(-250.3, 100.0) == "−250"

@@ -1,0 +1,109 @@
+"""Pareto sets: right against a brute-force check, with directions and constraints."""
+
+import numpy as np
+import pytest
+
+from trackroller.analysis.pareto import pareto, pareto_mask
+from trackroller.errors import InputError
+from trackroller.report import sentences as words
+from trackroller.study.config import parse_study
+
+LHS = {
+    "name": "p", "design": "lhs", "samples": 400,
+    "factors": {"velocity": {"uniform": [1.0, 2.0]}, "axial_force": {"uniform": [0.0, 1.0]}},
+}  # fmt: skip
+
+
+def brute(costs):
+    """Not beaten by any other row, by comparing each with each."""
+    worse = (costs[None] <= costs[:, None]).all(axis=2) & (costs[None] < costs[:, None]).any(axis=2)
+    return ~worse.any(axis=1)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_set_equals_the_brute_force_set(count):
+    """Random points, with ties, in two to four objectives."""
+    rng = np.random.default_rng(count)
+    points = rng.integers(0, 12, (300, count)).astype(float)
+    directions = ["min", "max", "min", "max"][:count]
+    costs = points * np.array([1.0, -1.0, 1.0, -1.0])[:count]
+    np.testing.assert_array_equal(pareto_mask(points, directions), brute(costs))
+
+
+def test_rows_without_a_value_or_not_allowed_are_no_candidates():
+    """NaN and constraints keep rows out; infinite lives win."""
+    points = np.array([[1.0, 1.0], [0.5, np.nan], [2.0, 0.0], [3.0, np.inf], [0.1, 9.0]])
+    mask = pareto_mask(points, ["min", "max"], np.array([True, True, True, True, False]))
+    np.testing.assert_array_equal(mask, [True, False, False, True, False])
+
+
+def trade(x, y, slip=None):
+    study = parse_study(LHS)
+    ds = study.design()
+    a, b = ds["velocity"].values, ds["axial_force"].values
+    ds["roller_life_hours"] = ("case", x(a, b), {"units": "h"})
+    ds["friction_power"] = ("case", y(a, b), {"units": "W"})
+    ds["regime"] = ("case", np.zeros(a.size, dtype=np.int8) if slip is None else slip(a, b).astype(np.int8))
+    ds.attrs = {"study": study.merged()}
+    return ds
+
+
+def test_study_set_respects_regimes_and_constraints():
+    """Life grows with velocity, so does power: without limits all on the line; slip and the limit cut it."""
+    ds = trade(lambda a, b: 100 * a, lambda a, b: 10 * a, lambda a, b: a > 1.9)
+    goals = {"roller_life_hours": "max", "friction_power": "min"}
+    free = pareto(ds, goals)
+    assert free.sizes["row"] == int((ds["velocity"] <= 1.9).sum()) and bool((free["optimal"] == 1).all())
+    tight = pareto(ds, goals, ["friction_power < 15", "velocity >= 1.2"])
+    assert float(tight["friction_power"].max()) < 15 and float(tight["velocity"].min()) >= 1.2
+    assert "friction_power < 15" in tight.attrs["excluded"] and "regime" in tight.attrs["excluded"]
+    np.testing.assert_allclose(tight["roller_life_hours"], 100 * ds["velocity"].values[tight["row"].values])
+
+
+def test_sentence_tells_the_size_and_the_ends():
+    """Counts and ends come from the data."""
+    front = pareto(trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b),
+                   {"roller_life_hours": "max", "friction_power": "min"})  # fmt: skip
+    text = words.pareto(front)
+    assert text.startswith(f"{int(front['optimal'].sum())} of 400 allowed designs are beaten by no other")
+    assert "life of the roller from" in text and "friction power of both contacts from" in text
+
+
+def test_a_single_best_design_is_called_so():
+    """Where one design wins in everything there is nothing to trade."""
+    front = pareto(trade(lambda a, b: 100 - a, lambda a, b: a), {"roller_life_hours": "max", "friction_power": "min"})
+    assert words.pareto(front).startswith("One of 400 allowed designs is best in everything: life of the roller 99")
+
+
+@pytest.mark.parametrize(
+    ("objectives", "constraints", "says"),
+    [
+        ({"friction_power": "min"}, [], "at least two"),
+        ({"friction_power": "min", "roller_life_hours": "up"}, [], "min or max"),
+        ({"friction_powr": "min", "roller_life_hours": "max"}, [], "Did you mean 'friction_power'"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power 15"], "syntax error"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power < 1e"], "syntax error"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power + 15"], "comparison is wanted"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != 2"], "with a number"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != full_slp"], "full_slip"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power.real < 1"], "not allowed"),
+    ],
+)
+def test_wrong_goals_are_refused(objectives, constraints, says):
+    """Names, directions and limits are checked, with what is allowed."""
+    with pytest.raises(InputError, match=says):
+        pareto(trade(lambda a, b: a, lambda a, b: b + 1), objectives, constraints)
+
+
+def test_figures_of_the_set_are_drawn_in_words():
+    """Front and parallel coordinates; the shared range of the best designs is named."""
+    from trackroller.report.figures import style
+    from trackroller.report.figures.pareto import parallel, pareto_front
+
+    ds = trade(lambda a, b: 100 * a * (1.01 - b), lambda a, b: 10 * a * (1 + b))
+    front = pareto(ds, {"roller_life_hours": "max", "friction_power": "min"})
+    with style.look():
+        _, first = pareto_front(front)
+        _, second = parallel(front)
+    assert "Treated as free to choose" in first.caption
+    assert "axial force" in second.sentence

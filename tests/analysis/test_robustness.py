@@ -1,0 +1,133 @@
+"""Nested studies: distribution of life and probability of each regime at every design point."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy import stats
+
+from trackroller.analysis.restore import design_of
+from trackroller.analysis.robustness import b10, robustness, wilson
+from trackroller.analysis.sensitivity import analyse
+from trackroller.errors import InputError
+from trackroller.report import sentences as words
+from trackroller.study.config import parse_study
+
+NESTED = {
+    "name": "nested", "design": "nested", "samples": 2000,
+    "factors": {"velocity": {"values": [30.0, 60.0]}, "friction_coefficient": {"uniform": [0.1, 0.3]},
+                "axial_force": {"normal": [0.0, 1.0]}},
+}  # fmt: skip
+
+
+def solved(fake, path=None, data=NESTED):
+    study = parse_study(data)
+    ds = study.design()
+    for name, values in fake(ds).items():
+        ds[name] = ("case", values, {"units": "h"} if "life" in name else {})
+    ds.attrs = {"study": study.merged()}
+    if path is not None:
+        ds.to_netcdf(path)
+    return ds
+
+
+def lognormal(ds):
+    """Life = 10**(3 + 0.2 z) at 30 m/min, ten times that at 60, full slip above a friction of 0.28 (10 %)."""
+    slip = ds["friction_coefficient"].values > 0.28
+    life = 10 ** (3 + 0.2 * ds["axial_force"].values) * np.where(ds["velocity"].values > 45, 10.0, 1.0)
+    return {"roller_life_hours": np.where(slip, 1e-3, life), "regime": slip.astype(np.int8)}
+
+
+def test_percentiles_b10_and_probabilities_match_the_closed_forms(tmp_path):
+    """Lognormal life through files: B10 = 10**(3 - 1.2816 * 0.2), median, and a slip probability of 10 %."""
+    solved(lognormal, tmp_path / "study.nc")
+    analyse(tmp_path / "study.nc", tmp_path / "out.nc")
+    out = xr.load_dataset(tmp_path / "out.nc")
+    np.testing.assert_array_equal(out["velocity"], [30, 60])
+    life = out.sel(output="roller_life_hours")
+    exact = 10 ** (3 - stats.norm.ppf(0.9) * 0.2) * np.array([1, 10])
+    np.testing.assert_allclose(life["b10"], exact, rtol=0.02)
+    assert (life["b10_low"] <= exact).all() and (exact <= life["b10_high"]).all()
+    np.testing.assert_allclose(life["percentile_value"].sel(percentile=50), [1e3, 1e4], rtol=0.03)
+    slip = out["probability"].sel(regime="full_slip")
+    np.testing.assert_allclose(slip, 0.1, atol=1e-3)
+    assert (out["probability_low"] <= out["probability"]).all()
+    # 10 % slip count as life 0 in the safe figure, so that it falls to the shortest lives
+    assert (life["b10_safe"] < 0.4 * life["b10"]).all()
+
+
+def test_sentence_names_the_best_design_point():
+    """The point with ten times the life is named with its B10 and its slip."""
+    ds = solved(lognormal)
+    text = words.robustness(robustness(ds, design_of(ds)), "roller_life_hours")
+    assert text.startswith("At velocity 60 m/min nine of ten of the rolling cases reach")
+    assert "full slip there in 10 %" in text
+
+
+def test_unlimited_lives_are_ranked_and_not_dropped():
+    """Half of the lives unlimited: the median is the longest finite or unlimited, B10 stays finite."""
+    def fake(ds):
+        life = 10 ** (3 + 0.2 * ds["axial_force"].values)
+        return {"roller_life_hours": np.where(ds["axial_force"].values > 0, np.inf, life)}
+
+    ds = solved(fake)
+    life = robustness(ds, design_of(ds)).sel(output="roller_life_hours")
+    np.testing.assert_allclose(life["b10"], 10 ** (3 - stats.norm.ppf(0.9) * 0.2), rtol=0.02)
+    assert np.isposinf(life["percentile_value"].sel(percentile=90)).all()
+    np.testing.assert_allclose(life["used_share"], 1.0)
+
+
+def test_failed_rows_never_lengthen_the_safe_life():
+    """Rows without a result and rows not rolling count as life 0 in b10_safe."""
+    def fake(ds):
+        regime = np.where(ds["friction_coefficient"].values > 0.25, 3, 0).astype(np.int8)  # a quarter failed
+        life = 10 ** (3 + 0.2 * ds["axial_force"].values)
+        return {"roller_life_hours": np.where(regime == 3, np.nan, life), "regime": regime}
+
+    ds = solved(fake)
+    out = robustness(ds, design_of(ds))
+    life = out.sel(output="roller_life_hours")
+    assert (life["b10_safe"] == 0).all() and (life["b10"] > 400).all()
+    np.testing.assert_allclose(out["probability"].sel(regime="failed"), 0.25, atol=1e-3)
+    np.testing.assert_allclose(life["used_share"], 0.75, atol=1e-3)
+
+
+def test_material_scatter_widens_the_distribution_as_two_lognormals_do():
+    """Scatter of the study 0.2 and of the material 0.15: B10 at 10**(3 - 1.2816 sqrt(0.2^2 + 0.15^2))."""
+    z = stats.norm.ppf((np.arange(4000) + 0.5) / 4000)
+    value, low, high = b10(10 ** (3 + 0.2 * z), 0.15)
+    assert value == pytest.approx(10 ** (3 - stats.norm.ppf(0.9) * 0.25), rel=2e-3)
+    assert low < value < high
+
+
+def test_b10_interval_covers_the_truth():
+    """Distribution-free interval: covers in at least 94 % of 2000 samples of 100."""
+    rng = np.random.default_rng(0)
+    exact = 10 ** (-stats.norm.ppf(0.9) * 0.3)
+    found = [b10(10 ** (0.3 * rng.normal(size=100))) for _ in range(2000)]
+    assert np.mean([low <= exact <= high for _, low, high in found]) > 0.94
+
+
+def test_wilson_interval_is_sound_at_the_ends():
+    """None of 100: upper bound 3.7 %; the interval never leaves 0..1."""
+    low, high = wilson(np.array([0.0, 1.0, 0.5]), 100)
+    assert low[0] == 0 and high[0] == pytest.approx(0.037, abs=1e-3) and high[1] == 1
+    assert low[2] == pytest.approx(0.404, abs=1e-3)
+
+
+def test_robustness_wants_a_nested_study():
+    """Another design is refused by name."""
+    data = {"name": "flat", "design": "lhs", "samples": 50, "factors": NESTED["factors"]}
+    ds = solved(lognormal, data=data)
+    with pytest.raises(InputError, match="nested"):
+        robustness(ds, design_of(ds))
+
+
+def test_figure_of_design_points_is_drawn():
+    """Spread, B10 and shares of regimes in one figure."""
+    from trackroller.report.figures import style
+    from trackroller.report.figures.pareto import robust_points
+
+    ds = solved(lognormal)
+    with style.look():
+        figure, info = robust_points(robustness(ds, design_of(ds)), "roller_life_hours")
+    assert len(figure.axes) == 2 and "B10" in info.caption

@@ -1,0 +1,146 @@
+"""The command line: answers, exit codes, and no traceback on bad input."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+STUDY = """
+name: tiny
+factors:
+  axial_force: {values: [0, 20, 40]}
+  friction_coefficient: {values: [0.1, 0.2]}
+outputs: [forces]
+"""
+
+
+def trackroller(*words, cwd, code=0):
+    done = subprocess.run([sys.executable, "-c", "from trackroller.cli.main import main; main()", *map(str, words)],
+                          cwd=cwd, capture_output=True, text=True, timeout=120)  # fmt: skip
+    assert done.returncode == code, done.stderr
+    assert "Traceback" not in done.stderr
+    return done
+
+
+def test_solve_prints_json_and_writes_netcdf(tmp_path):
+    (tmp_path / "case.yaml").write_text("motor_force: 0\noutputs: [forces]\n")
+    words = ("solve", "case.yaml", "--set", "friction_coefficient=0.1", "--json")
+    told = json.loads(trackroller(*words, cwd=tmp_path).stdout)
+    assert told["normal_force"]["units"] == "N" and len(told["normal_force"]["value"]) == 2
+    assert told["regime"]["meaning"] == "rolling"
+    trackroller("solve", "case.yaml", "-o", "out.nc", cwd=tmp_path)
+    with xr.open_dataset(tmp_path / "out.nc") as ds:
+        assert ds["normal_force"].attrs["units"] == "N"
+
+
+def test_study_from_plan_to_repeat(tmp_path):
+    (tmp_path / "tiny.yaml").write_text(STUDY)
+    assert "cases     6, 0 of them" in trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout
+    assert not (tmp_path / "results").exists(), "planning writes nothing"
+    trackroller("run", "tiny.yaml", cwd=tmp_path)
+    with xr.open_dataset(tmp_path / "results" / "tiny" / "study.nc") as ds:
+        assert ds["normal_force"].dims == ("axial_force", "friction_coefficient", "contact")
+        assert ds["normal_force"].shape == (3, 2, 2)
+    assert "6 done, 0 missing, 0 failed" in trackroller("status", "tiny", cwd=tmp_path).stdout
+    again = trackroller("repeat", "tiny", 4, cwd=tmp_path).stdout
+    assert "equal to the stored result" in again
+    command = again.splitlines()[0].split()
+    told = json.loads(trackroller(*command[1:], "--json", cwd=tmp_path).stdout)
+    with xr.open_dataset(tmp_path / "results" / "tiny" / "study.nc") as ds:
+        stored = ds["normal_force"].sel(axial_force=40, friction_coefficient=0.1).values.tolist()
+    assert told["normal_force"]["value"] == stored
+
+
+@pytest.mark.parametrize(("words", "named"), [
+    (["solve", "nowhere.yaml"], "nowhere.yaml"),
+    (["solve", "--set", "frction=0.1"], "friction_coefficient"),
+    (["solve", "--set", "friction_coefficient=-1"], "friction_coefficient"),
+    (["solve", "--set", "roller_profile_radius=-5"], "conform"),
+    (["solve", "--set", "roller_material=PA7"], "PA6"),
+    (["solve", "--set", "accuracy=fine"], "accuracy"),
+    (["solve", "--set", "nothing"], "key=value"),
+    (["solve", "-o", "no/where.nc"], "--out"),
+    (["plan", "bad.yaml"], "not YAML"),
+    (["run", "bad.yaml"], "not YAML"),
+    (["run", "blocked.yaml"], "cannot be a folder"),
+    (["run", "good.yaml", "--scheduler", "nonsense"], "--scheduler"),
+    (["status", "../etc"], "../etc"),
+    (["repeat", "good.yaml", "99"], "99"),
+    (["materials", "show", "PA7"], "PA6"),
+    (["plot", "nowhere.yaml"], "nowhere.yaml"),
+    (["solv"], "solv"),
+])  # fmt: skip
+def test_bad_input_ends_with_exit_2_and_names_it(tmp_path, words, named):
+    (tmp_path / "bad.yaml").write_text("name: x\nfactors: [\n")
+    (tmp_path / "good.yaml").write_text(STUDY)
+    (tmp_path / "blocked.yaml").write_text(STUDY.replace("tiny", "blocked"))
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results" / "blocked").write_text("a file")
+    done = trackroller(*words, cwd=tmp_path, code=2)
+    assert named in done.stderr
+    assert not list(tmp_path.rglob("study.nc"))
+
+
+def test_materials_are_listed_shown_and_added(tmp_path):
+    assert "PA6" in trackroller("materials", "list", cwd=tmp_path).stdout
+    assert "placeholder" in trackroller("materials", "show", "PA6", cwd=tmp_path).stdout.lower()
+    trackroller("materials", "add", "mine", "--set", "like=PA6", "--set", "tensile_strength=75",
+                "--file", "config/materials.yaml", cwd=tmp_path)  # fmt: skip
+    assert "mine" in trackroller("materials", "list", cwd=tmp_path).stdout
+
+
+def test_dask_workers_give_the_same_numbers(tmp_path):
+    (tmp_path / "tiny.yaml").write_text(STUDY)
+    trackroller("run", "tiny.yaml", "-q", cwd=tmp_path)
+    trackroller("run", "tiny.yaml", "-q", "--results", "dask", "--scheduler", "local", cwd=tmp_path)
+    sets = [xr.load_dataset(tmp_path / name / "tiny" / "study.nc") for name in ("results", "dask")]
+    xr.testing.assert_identical(*(ds.drop_attrs() for ds in sets))
+
+
+def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
+    """Scheduler and workers are processes of their own; one worker dies in mid-run, every case is there."""
+    study = STUDY.replace("[0, 20, 40]", "[" + ", ".join(f"{v / 10}" for v in range(600)) + "]")
+    (tmp_path / "tiny.yaml").write_text(study.replace("outputs: [forces]", "outputs: [forces, peak_stress]"))
+    dask = [sys.executable, "-m", "dask"]
+    quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    helpers = [subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+                                 "--scheduler-file", "s.json"], **quiet)]  # fmt: skip
+    try:
+        for _ in range(2):
+            helpers.append(subprocess.Popen([*dask, "worker", "--scheduler-file", "s.json", "--nworkers", "1",
+                                             "--nthreads", "1", "--no-dashboard", "--no-nanny"], **quiet))  # fmt: skip
+        wait_until(lambda: (tmp_path / "s.json").is_file())
+        address = json.loads((tmp_path / "s.json").read_text())["address"]
+        run = subprocess.Popen([sys.executable, "-c", "from trackroller.cli.main import main; main()", "run", "tiny.yaml",
+                                "-q", "--scheduler", address], **quiet)  # fmt: skip
+        store = tmp_path / "results" / "tiny" / "store"
+        wait_until(lambda: any(store.glob("*.parts/*.nc")) or any(store.glob("*.nc")))
+        helpers[1].kill()
+        assert run.wait(timeout=120) == 0
+    finally:
+        for helper in reversed(helpers):
+            helper.kill()
+            helper.wait()
+    trackroller("run", "tiny.yaml", "-q", "--results", "alone", cwd=tmp_path)
+    sets = [xr.load_dataset(tmp_path / name / "tiny" / "study.nc") for name in ("results", "alone")]
+    xr.testing.assert_identical(*(ds.drop_attrs() for ds in sets))
+
+
+def wait_until(there, seconds=60):
+    for _ in range(seconds * 10):
+        if there():
+            return
+        time.sleep(0.1)
+    raise AssertionError("waited in vain")
+
+
+def test_version_and_help_are_quick_to_import():
+    code = "import sys, trackroller.cli.main; print({'numpy', 'xarray', 'numba', 'matplotlib'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parent)
+    assert done.stdout.strip() == "set()"

@@ -1,0 +1,522 @@
+"""The material database: published values, the user's file over it, bad input, and safe editing."""
+
+import dataclasses
+import os
+import pickle
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trackroller.errors import InputError
+from trackroller.materials import (
+    Material,
+    add_material,
+    builtin_database,
+    load_database,
+)
+from trackroller.materials.file import BUILTIN_FILE, ENVIRONMENT, build_database
+from trackroller.materials.tables import friction_rows, material_details, material_rows
+from trackroller.roller.case import Case, to_table
+
+ROOT = Path(__file__).parents[2]
+PUBLISHED = {  # E, nu, R_m, sigma_D/R_m, N_Rm, N_k
+    "1.7225-normalised": (210000, 0.33, 720, 0.5, 1e4, 5e6),
+    "1.7225-quenched-tempered": (210000, 0.33, 1200, 0.5, 1e4, 5e6),
+    "EN AW-7075": (70000, 0.33, 540, 0.5, 1e4, 5e6),
+    "PA6": (5000, 0.30, 60, 0.3, 1e4, 5e6),
+    "POM": (3000, 0.30, 80, 0.4, 1e4, 5e6),
+}
+FRICTION = {  # typical, upper, lower and which of them have no source
+    ("metal", "metal"): (0.19, 0.30, 0.16, ()),
+    ("metal", "PA6"): (0.22, 0.30, 0.10, ()),
+    ("metal", "POM"): (0.14, 0.30, 0.06, ("upper",)),
+    ("PA6", "PA6"): (0.20, 0.30, 0.10, ("typical", "upper", "lower")),
+    ("PA6", "POM"): (0.20, 0.30, 0.10, ("typical", "upper", "lower")),
+    ("POM", "POM"): (0.20, 0.30, 0.06, ("typical", "upper", "lower")),
+}
+STEEL = {"family": "metal", "youngs_modulus": 206e3, "poisson_ratio": 0.3, "tensile_strength": 900,
+         "fatigue_strength_ratio": 0.45, "cycles_at_tensile_strength": 1e3,
+         "cycles_at_fatigue_limit": 2e6}  # fmt: skip
+
+
+@pytest.fixture
+def db():
+    return builtin_database()
+
+
+@pytest.fixture
+def user(tmp_path, monkeypatch):
+    """Writes a user's file and returns its path; nothing of the surroundings is read."""
+    monkeypatch.delenv(ENVIRONMENT, raising=False)
+    monkeypatch.chdir(tmp_path)
+
+    def write(text):
+        path = tmp_path / "own.yaml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+# ---------------------------------------------------------------- built-in values
+
+
+def test_published_materials_are_all_there_with_their_values(db):
+    assert db.names() == tuple(PUBLISHED)
+    for name, values in PUBLISHED.items():
+        m = db.material(name)
+        assert (m.youngs_modulus, m.poisson_ratio, m.tensile_strength, m.fatigue_strength_ratio,
+                m.cycles_at_tensile_strength, m.cycles_at_fatigue_limit) == values  # fmt: skip
+    assert db.material("POM").fatigue_limit == pytest.approx(32.0)
+
+
+@pytest.mark.parametrize("pair", FRICTION)
+def test_published_friction_in_either_order_with_its_placeholders(db, pair):
+    *values, guesses = FRICTION[pair]
+    for level, value in zip(("typical", "upper", "lower"), values, strict=True):
+        there, back = db.friction(*pair, level=level), db.friction(*reversed(pair), level=level)
+        assert there == back and there.value == value
+        assert there.placeholder == (level in guesses)
+
+
+def test_sources_are_those_published(db):
+    assert "Popov" in db.friction("metal", "metal").source
+    assert "schweizer-fn" in db.friction("metal", "metal", "upper").source
+    assert "Triboplast" in db.friction("metal", "POM", "lower").source
+
+
+def test_every_builtin_value_has_unit_source_and_mark():
+    """Nothing in the built-in file stands without unit, source and an explicit placeholder mark."""
+    data = yaml.safe_load(BUILTIN_FILE.read_text(encoding="utf-8"))
+    values = [v for m in data["materials"].values() for v in m.values() if isinstance(v, dict)]
+    values += [v for entry in data["friction"] for key, v in entry.items() if key != "pair"]
+    assert len(values) == 5 * 6 + 6 * 3
+    for value in values:
+        assert {"value", "unit", "source", "placeholder"} <= set(value)
+        assert value["placeholder"] in (True, False)
+        assert value["placeholder"] == (value["source"] == "no source named")
+
+
+def test_friction_by_material_material_object_and_family(db):
+    steel, pa6 = db.material("EN AW-7075"), db.material("PA6")
+    assert db.friction(steel, pa6) == db.friction("1.7225-normalised", "PA6") == db.friction("Metal", "pa6")
+
+
+def test_case_without_friction_takes_it_from_the_pair(db):
+    cases = [{"friction_coefficient": level, "guide_material": "POM"} for level in (None, "upper", "lower", 0.07)]
+    assert to_table(cases, db).friction_coefficient.tolist() == [0.14, 0.30, 0.06, 0.07]
+
+
+def test_materials_survive_the_way_to_another_process(db):
+    again = pickle.loads(pickle.dumps(db))
+    assert again == db and again.material("PA6").records == db.material("PA6").records
+
+
+# ---------------------------------------------------------------- the user's file
+
+
+def test_user_file_changes_single_values_and_adds_materials(user, db):
+    own = load_database(user("""
+        materials:
+          PA6:
+            youngs_modulus: {value: 2.8, unit: GPa, source: data sheet 12, placeholder: true}
+          "1.4301":
+            family: metal
+            youngs_modulus: 200000
+            poisson_ratio: 0.3
+            tensile_strength: 5.4e2
+            fatigue_strength_ratio: 0.45
+            cycles_at_tensile_strength: 1e4
+            cycles_at_fatigue_limit: 5e6
+            scatter_in_cycles: 4
+        """))  # fmt: skip
+    pa6 = own.material("PA6")
+    assert pa6.youngs_modulus == pytest.approx(2800) and pa6.tensile_strength == 60 and pa6.family == "PA6"
+    assert pa6.placeholders == ("youngs_modulus",)
+    assert pa6.records["youngs_modulus"].source == "data sheet 12"
+    assert pa6.records["youngs_modulus"].origin == "own.yaml"
+    assert pa6.records["tensile_strength"].origin == "built-in"
+    assert own.names() == (*db.names(), "1.4301")
+    assert own.material("1.4301").cycles_at_fatigue_limit == 5e6
+    assert own.material("1.4301").scatter_in_cycles == 4
+    assert own.friction("1.4301", "PA6").value == 0.22
+    assert builtin_database().material("PA6").youngs_modulus == 5000, "the built-in one must stay"
+
+
+def test_like_takes_the_rest_from_another_material(user):
+    own = load_database(user("materials: {rail: {like: 1.7225-quenched-tempered, tensile_strength: 1400}}"))
+    rail = own.material("rail")
+    assert (rail.tensile_strength, rail.youngs_modulus, rail.family) == (1400, 210000, "metal")
+    assert rail.fatigue_limit == 700
+
+
+def test_user_friction_single_level_new_pair_and_pair_of_materials(user):
+    """A changed level leaves the other levels; a pair that names a material stands over its family's."""
+    own = load_database(user("""
+        friction:
+          - {pair: [PA6, metal], typical: {value: 0.18, source: own tests}}
+          - {pair: [metal, PEEK], typical: 0.2}
+          - {pair: [EN AW-7075, PA6], typical: 0.25}
+        """))  # fmt: skip
+    assert own.friction("metal", "PA6").value == 0.18 and own.friction("metal", "PA6").source == "own tests"
+    assert own.friction("metal", "PA6", "upper").value == 0.30
+    assert own.friction("PEEK", "metal").value == 0.2
+    assert own.friction("PA6", "EN AW-7075").value == 0.25
+    assert own.friction("PA6", "EN AW-7075", "lower").value == 0.10
+
+
+def test_user_file_is_found_by_argument_variable_and_folder(user, tmp_path, monkeypatch):
+    """The argument goes before the environment variable, that before config/materials.yaml."""
+
+    def strength():
+        return load_database().material("POM").tensile_strength
+
+    def file(name, value):
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(f"materials: {{POM: {{tensile_strength: {value}}}}}")
+        return path
+
+    user("")
+    assert strength() == 80
+    file("config/materials.yaml", 81)
+    assert strength() == 81
+    monkeypatch.setenv(ENVIRONMENT, str(file("variable.yaml", 82)))
+    assert strength() == 82
+    assert load_database(file("argument.yaml", 83)).material("POM").tensile_strength == 83
+
+
+def test_a_changed_file_is_read_again(user):
+    path = user("materials: {POM: {tensile_strength: 81}}")
+    assert load_database(path).material("POM").tensile_strength == 81
+    user("materials: {POM: {tensile_strength: 82.5}}")
+    assert load_database(path).material("POM").tensile_strength == 82.5
+
+
+@pytest.mark.parametrize("text", ["", "# nothing but a remark\n", "materials:\nfriction:\nsources:\n"])
+def test_an_empty_user_file_changes_nothing(user, db, text):
+    own = load_database(user(text))
+    assert own.materials == db.materials and own.friction_table == db.friction_table
+
+
+def test_example_file_changes_nothing_and_its_example_works(db):
+    """The file delivered in config/ overrides nothing; what it shows in comments is valid as it stands."""
+    text = (ROOT / "config" / "materials.yaml").read_text(encoding="utf-8")
+    assert yaml.safe_load(text) is None
+    example = text[text.index("# materials:\n") :].splitlines()
+    own = build_database("\n".join(line[2:] for line in example), "example", over=db)
+    assert own.material("1.4301").youngs_modulus == 200000
+    assert own.material("hardened rail").tensile_strength == 1400
+    assert own.friction("metal", "PEEK", "lower").value == 0.12
+
+
+# ---------------------------------------------------------------- inline materials
+
+
+def test_inline_material_of_a_case(db):
+    material = db.material({"name": "tested steel", **STEEL})
+    assert material.name == "tested steel" and material.fatigue_limit == pytest.approx(405)
+    table = to_table([Case(roller_material=STEEL), Case(roller_material={"like": "PA6", "poisson_ratio": 0.4})], db)
+    assert table.roller.youngs_modulus.tolist() == [206e3, 5000]
+    assert table.roller.poisson_ratio.tolist() == [0.3, 0.4]
+
+
+def test_inline_material_takes_nothing_unasked_from_a_namesake(db):
+    with pytest.raises(InputError, match="lacks poisson_ratio"):
+        db.material({"name": "PA6", "youngs_modulus": 3000})
+    assert db.material({"name": "PA6", "like": "PA6", "youngs_modulus": 3000}).tensile_strength == 60
+
+
+def test_material_as_dict_makes_the_same_material_inline(db):
+    pa6 = db.material("PA6")
+    assert db.material(pa6.as_dict()) == pa6
+
+
+def test_unknown_family_says_how_to_give_the_friction(db):
+    peek = db.material({**STEEL, "family": "PEEK"})
+    with pytest.raises(InputError) as caught:
+        db.friction(peek, "PA6")
+    text = str(caught.value)
+    assert "PEEK" in text and "friction_coefficient" in text and "friction:" in text
+    table = to_table([Case(roller_material={**STEEL, "family": "PEEK"}, friction_coefficient=0.2)], db)
+    assert table.friction_coefficient[0] == 0.2
+
+
+# ---------------------------------------------------------------- bad input
+
+BAD_VALUES = [
+    ("youngs_modulus", -1), ("youngs_modulus", 0), ("youngs_modulus", 210e9), ("youngs_modulus", "stiff"),
+    ("youngs_modulus", True), ("youngs_modulus", float("nan")), ("youngs_modulus", None),
+    ("poisson_ratio", 0.51), ("poisson_ratio", -0.1), ("tensile_strength", 0),
+    ("tensile_strength", float("inf")),
+    ("fatigue_strength_ratio", 0), ("fatigue_strength_ratio", 1), ("fatigue_strength_ratio", 360),
+    ("cycles_at_tensile_strength", 0), ("cycles_at_tensile_strength", 2e6), ("cycles_at_fatigue_limit", 999),
+    ("scatter_in_cycles", 0.25), ("scatter_in_stress", 0.9),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("field", "value"), BAD_VALUES)
+def test_impossible_values_are_refused_by_name_wherever_they_stand(user, db, field, value):
+    """In a file the message names file, material, field and value; directly and inline all but the file."""
+    values = STEEL | {field: value}
+    path = user(yaml.safe_dump({"materials": {"odd": values}}))
+    with pytest.raises(InputError) as caught:
+        load_database(path)
+    text = str(caught.value)
+    named = "cycles_at" if field.startswith("cycles_at") else field
+    assert "own.yaml" in text and "odd" in text and named in text
+    if value is not None and field != "cycles_at_fatigue_limit":
+        assert repr(value) in text or repr(float(value)) in text
+    with pytest.raises(InputError, match=named):
+        Material(name="odd", **values)
+    if value is not None:
+        with pytest.raises(InputError, match=named):
+            db.material(values)
+
+
+@pytest.mark.parametrize(
+    ("text", "parts"),
+    [
+        ("materials: [PA6]", ("own.yaml", "materials", "mapping")),
+        ("materials: {PA6: 3}", ("PA6", "3", "mapping")),
+        ("materials: {PA6: {youngsmodulus: 3}}", ("PA6", "youngsmodulus", "youngs_modulus")),
+        ("materials: {PA6: {youngs_modulus: {value: 3, unti: MPa}}}", ("unti", "'unit'")),
+        ("materials: {PA6: {youngs_modulus: {value: 3, source: a, b}}}", ("'b'", "comma")),
+        ("materials: {PA6: {youngs_modulus: {unit: MPa}}}", ("PA6", "youngs_modulus", "value")),
+        ("materials: {PA6: {youngs_modulus: {value: 3, unit: psi}}}", ("psi", "MPa", "GPa")),
+        (
+            "materials: {PA6: {youngs_modulus: {value: 3, placeholder: maybe}}}",
+            ("placeholder", "maybe", "true or false"),
+        ),
+        ("materials: {PA6: {family: 6}}", ("family", "6", "quotes")),
+        ("materials: {1.4301: {like: PA6}}", ("1.4301", "quotes")),
+        ("materials: {rail: {like: PA7}}", ("like", "PA7", "'PA6'")),
+        ("materials: {rail: {youngs_modulus: 3}}", ("rail", "lacks", "poisson_ratio", "like")),
+        ("material: {}", ("section", "material", "'materials'")),
+        ("materials: {PA6: {poisson_ratio: 0.3}, PA6: {poisson_ratio: 0.4}}", ("PA6", "twice", "line 1")),
+        ("friction: {metal: 0.2}", ("friction", "list")),
+        ("friction: [{pair: [metal], typical: 0.2}]", ("pair", "two")),
+        ("friction: [{pair: [metal, PEEK]}]", ("metal-PEEK", "typical")),
+        ("friction: [{pair: [metal, PEEK], mean: 0.2}]", ("metal-PEEK", "mean", "typical")),
+        ("friction: [{pair: [metal, PEEK], typical: -0.2}]", ("metal-PEEK", "typical", "-0.2")),
+        ("- a\n- b", ("own.yaml", "mapping")),
+        ("materials: {PA6: [", ("own.yaml", "YAML", "line")),
+        ("materials: !!python/object/apply:os.getcwd []", ("own.yaml", "YAML")),
+        ("materials: {PA6: {description: 2024-13-45}}", ("own.yaml", "YAML")),
+        ("materials: &a {PA6: *a}", ("own.yaml", "itself")),
+        ("materials: " + "[" * 5000, ("own.yaml", "YAML")),
+    ],
+)
+def test_a_bad_file_is_refused_with_file_field_and_remedy(user, text, parts):
+    path = user(text)
+    with pytest.raises(InputError) as caught:
+        load_database(path)
+    message = str(caught.value)
+    assert all(part in message for part in parts), message
+
+
+def test_a_missing_file_is_named(user, monkeypatch):
+    with pytest.raises(InputError, match=r"nowhere\.yaml"):
+        load_database("nowhere.yaml")
+    monkeypatch.setenv(ENVIRONMENT, "gone.yaml")
+    with pytest.raises(InputError, match=f"{ENVIRONMENT}.*gone.yaml"):
+        load_database()
+
+
+@pytest.mark.parametrize(
+    ("call", "parts"),
+    [
+        (lambda db: db.material("PA 6"), ("'PA 6'", "Did you mean 'PA6'")),
+        (lambda db: db.material(6), ("material", "quotes")),
+        (lambda db: db.friction("PA6", "metall"), ("metall", "'metal'")),
+        (lambda db: db.friction("PA6", "POM", "mean"), ("mean", "typical")),
+    ],
+)
+def test_unknown_names_are_refused_with_the_nearest_right_one(db, call, parts):
+    with pytest.raises(InputError) as caught:
+        call(db)
+    assert all(part in str(caught.value) for part in parts)
+
+
+# ---------------------------------------------------------------- editing the user's file
+
+COMMENTED = """\
+# top remark
+
+materials:
+  # about the next
+  PA6:
+    youngs_modulus: 2800   # dry
+    # between
+    poisson_ratio: 0.39
+  "1.4301":
+    like: '1.7225-normalised'
+
+# before friction
+friction:
+  - pair: [metal, PEEK]   # tested
+    typical: 0.2
+# end
+"""
+
+
+def comments(text):
+    return [line.partition("#")[2].strip() for line in text.splitlines() if "#" in line]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        COMMENTED, "", "# only a remark\n", "# no newline at the end", "materials: {}   # empty\n# end\n",
+        "# a\nmaterials:\n# b\n",
+        "# a\nmaterials:   # c\n  # b\n\nfriction:\n  - {pair: [metal, PEEK], typical: 0.2}\n",
+        "friction: # x\n  - pair: [metal, PEEK]\n    typical: 0.2  # y\n",
+    ],
+)  # fmt: skip
+def test_adding_keeps_comments_and_everything_else(user, text):
+    path = user(text)
+    before = yaml.safe_load(text) or {}
+    material = add_material(path, "new steel", description="for the test", source="test 7", **STEEL)
+    after_text = path.read_text(encoding="utf-8")
+    after = yaml.safe_load(after_text)
+    assert sorted(comments(text)) == sorted(comments(after_text))
+    entry = after["materials"].pop("new steel")
+    assert after["materials"] == (before.get("materials") or {})
+    assert after.get("friction") == before.get("friction")
+    assert entry["youngs_modulus"] == {
+        "value": 206000,
+        "unit": "MPa",
+        "source": "test 7",
+        "placeholder": False,
+    }
+    assert load_database(path).material("new steel") == material
+    assert material.tensile_strength == 900 and material.family == "metal"
+
+
+def test_adding_leaves_the_other_lines_as_they_are(user):
+    """Quotes, order and layout of the user's own lines stay to the letter."""
+    path = user(COMMENTED)
+    add_material(path, "new", like="PA6", tensile_strength=70)
+    lines = path.read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines if line in COMMENTED.splitlines()]
+    assert kept == COMMENTED.splitlines()
+
+
+def test_adding_to_the_delivered_file_keeps_all_its_remarks(user):
+    text = (ROOT / "config" / "materials.yaml").read_text(encoding="utf-8")
+    path = user(text)
+    add_material(path, "new", like="PA6", tensile_strength=70)
+    add_material(path, "newer", like="new", poisson_ratio=0.4)
+    assert path.read_text(encoding="utf-8").startswith(text)
+    assert load_database(path).material("newer").tensile_strength == 70
+
+
+def test_a_missing_file_and_folder_are_made(user, tmp_path):
+    path = tmp_path / "deep" / "materials.yaml"
+    add_material(path, "rail", like="1.7225-normalised", tensile_strength=800)
+    assert load_database(path).material("rail").tensile_strength == 800
+
+
+@pytest.mark.parametrize("name", ["1.4301", "yes", "null", "12:30", "a: b", "#1", "Stahl für Räder", "x" * 200, "~"])
+def test_awkward_names_come_back_as_texts(user, name):
+    path = user("")
+    add_material(path, name, like="PA6", description=name, source=name, tensile_strength=70)
+    material = load_database(path).material(name)
+    assert material.description == name and material.records["tensile_strength"].source == name
+
+
+def test_an_existing_material_is_replaced_on_demand_only(user):
+    path = user(COMMENTED)
+    with pytest.raises(InputError, match="already"):
+        add_material(path, "PA6", youngs_modulus=3100)
+    assert path.read_text(encoding="utf-8") == COMMENTED
+    add_material(path, "PA6", replace=True, youngs_modulus={"value": 3.1, "unit": "GPa"})
+    pa6 = load_database(path).material("PA6")
+    assert (pa6.youngs_modulus, pa6.poisson_ratio) == (pytest.approx(3100), 0.39)
+    assert "# between" in path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{"youngs_modulus": -5, "like": "PA6"}, {"youngsmodulus": 5}, {"youngs_modulus": 5}, {},
+     {"like": "PA6", "tensile_strength": "strong"}, {"like": "PA6", "poisson_ratio": {"valu": 0.3}},
+     {"like": "PA6", "placeholder": "perhaps", "poisson_ratio": 0.3}],
+)  # fmt: skip
+def test_a_refused_material_leaves_the_file_alone(user, tmp_path, values):
+    path = user(COMMENTED)
+    with pytest.raises(InputError):
+        add_material(path, "odd", **values)
+    assert path.read_text(encoding="utf-8") == COMMENTED
+    assert os.listdir(tmp_path) == ["own.yaml"]
+
+
+def test_a_broken_file_is_not_touched(user):
+    path = user("materials: {PA6: [")
+    with pytest.raises(InputError, match="YAML"):
+        add_material(path, "rail", like="PA6", tensile_strength=70)
+    assert path.read_text() == "materials: {PA6: ["
+
+
+def test_a_write_that_fails_leaves_the_old_file_and_no_rest(user, tmp_path, monkeypatch):
+    path = user(COMMENTED)
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(InputError, match="No space left"):
+        add_material(path, "rail", like="PA6", tensile_strength=70)
+    assert path.read_text(encoding="utf-8") == COMMENTED and os.listdir(tmp_path) == ["own.yaml"]
+
+
+def test_a_link_stays_a_link_and_the_mode_stays(user, tmp_path):
+    path = user(COMMENTED)
+    path.chmod(0o640)
+    link = tmp_path / "link.yaml"
+    link.symlink_to(path)
+    add_material(link, "rail", like="PA6", tensile_strength=70)
+    assert link.is_symlink() and "rail" in path.read_text(encoding="utf-8")
+    assert path.stat().st_mode & 0o777 == 0o640
+
+
+@given(
+    st.floats(1e-2, 1.9e6),
+    st.floats(0, 0.5),
+    st.floats(1e-3, 0.999),
+    st.floats(1e-3, 1e6),
+    st.floats(1.01, 1e9),
+)
+def test_any_number_comes_back_as_it_was_given(tmp_path_factory, modulus, ratio, fatigue, first, factor):
+    """Writing and reading a value changes no bit of it, whatever way YAML writes the number."""
+    path = tmp_path_factory.mktemp("numbers") / "own.yaml"
+    values = dict(STEEL, youngs_modulus=modulus, poisson_ratio=ratio, fatigue_strength_ratio=fatigue,
+                  cycles_at_tensile_strength=first, cycles_at_fatigue_limit=first * factor)  # fmt: skip
+    written = add_material(path, "any", **values)
+    read = load_database(path).material("any")
+    assert written == read and {key: getattr(read, key) for key in values} == values
+
+
+# ---------------------------------------------------------------- lists
+
+
+def test_rows_show_values_marks_and_origin(user):
+    own = load_database(user("materials: {PA6: {youngs_modulus: {value: 2800, placeholder: true}}}"))
+    rows = {row["name"]: row for row in material_rows(own)}
+    assert rows["PA6"]["E [MPa]"] == "2800" and rows["PA6"]["placeholders"] == "1"
+    assert set(rows["PA6"]["origin"].split(", ")) == {"own.yaml", "built-in"}
+    details = {row["field"]: row for row in material_details(own, "PA6")}
+    assert details["youngs_modulus"]["placeholder"] == "placeholder"
+    assert details["fatigue_limit"]["value"] == "18"
+    assert "Wenzel" in details["tensile_strength"]["source"]
+    marked = [row for row in friction_rows(own) if row["placeholder"]]
+    assert len(friction_rows(own)) == 18 and len(marked) == 10
+    with pytest.raises(InputError, match="PA6"):
+        material_details(own, "PA 6")
+
+
+def test_material_is_frozen(db):
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        db.material("PA6").youngs_modulus = 1.0

@@ -1,0 +1,223 @@
+"""The comparison of contact models that any study with them as a factor gets: pairs, errors, words, figures, report."""
+
+from __future__ import annotations
+
+import json
+import re
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from synthetic_results import grid_study
+
+import trackroller as tr
+from trackroller.analysis.pareto import study_pareto
+from trackroller.report import comparison as ladder
+from trackroller.report import write_report
+from trackroller.report.comparison.groups import drives, groups
+from trackroller.report.comparison.words import levels_kept
+from trackroller.report.figures.comparison import drawers
+from trackroller.report.figures.study import draw_all
+from trackroller.report.page import contents
+from trackroller.study.config import load_study
+from trackroller.study.run import run_study
+from validation.contact_models.product import PATCHES, compare, patch_fields, write_words
+
+MODELS = ["sliding", "fastsim", "kalker"]
+FIGURES = {"models-error", "models-forces", "models-energy", "models-stick", "models-peak-life"}
+OUTPUTS = ["forces", "contact", "friction_work", "peak_stress", "life"]
+
+
+def study(place, factors, base=None, models=MODELS, outputs=OUTPUTS, **more):
+    """A study solved at preview; path of the gathered file."""
+    name = f"s{len(list(place.glob('*.yaml')))}"
+    path = place / f"{name}.yaml"
+    path.write_text(yaml.safe_dump({"name": name, "base": base or {}, "factors": factors, "contact_model": models,
+                                    "outputs": outputs, "accuracy": "preview", **more}))  # fmt: skip
+    return run_study(load_study(path), place / "results").folder.gathered
+
+
+def shown(gathered, place):
+    """Figures by name with their captions, and the text of the report without pictures."""
+    infos = draw_all(gathered, place / "figures")
+    text = write_report(gathered, place / "figures", place / "report.html").read_text(encoding="utf-8")
+    return {i.name: i for i in infos}, re.sub(r'src="data[^"]*"', "", text)
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory):
+    """A user's study: two frictions and two drives, nothing special about it."""
+    place = tmp_path_factory.mktemp("own")
+    factors = {"friction_coefficient": {"values": [0.04, 0.3]}, "motor_force": {"values": [0, -10]}}
+    return study(place, factors), place
+
+
+def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(own):
+    drawn, text = shown(*own)
+    assert set(drawn) >= FIGURES
+    assert "normal forces up to a friction of 0.04" in text and "Contact models compared" in text
+    assert "The sliding model is within 5 % of kalker" in drawn["models-error"].sentence
+    with xr.open_dataset(own[0]) as ds:
+        paired = ladder.pairs(ds)
+    assert paired.sizes["design"] == 4 and paired.attrs["reference"] == "kalker"
+    found = ladder.errors(paired)
+    driven = found.isel(design=np.flatnonzero(paired["motor_force"] == -10))
+    # driven by 10 N at mu = 0.04 slips altogether and is not compared
+    assert np.isnan(driven.normal_force.sel(contact_model="sliding")[0])
+    exact, sliding = (tr.solve(tr.Case(friction_coefficient=0.3, motor_force=0), contact_model=m, accuracy="preview",
+                               outputs="forces") for m in ("kalker", "sliding"))  # fmt: skip
+    expected = np.abs(sliding.normal_force / exact.normal_force - 1).max()
+    free = found.normal_force.sel(contact_model="sliding").values[
+        (paired["motor_force"].values == 0) & (paired["friction_coefficient"].values == 0.3)
+    ]
+    assert free[0] == pytest.approx(float(expected), rel=1e-3)
+
+
+def test_best_designs_and_pareto_set_are_those_of_one_model(own):
+    with xr.open_dataset(own[0]) as ds:
+        told, front = contents(ds), study_pareto(ds)
+        exact = ds["roller_life_hours"].where(ds["regime"] == 0).sel(contact_model="kalker")
+        best = dict(told["best"])
+    assert told["ranked_model"] == "kalker" and len(best["Regime"]) == 3
+    assert float(best["Life of the roller [h]"][0]) == pytest.approx(float(exact.max()), rel=1e-3)
+    assert front.attrs["model"] == "kalker" and front.sizes["row"] == 3 and "contact_model" not in front
+    assert sorted(front["roller_life_hours"].values) == pytest.approx(sorted(exact.values[np.isfinite(exact.values)]))
+
+
+def test_three_drives_get_room_and_many_are_told_by_their_sign(tmp_path):
+    factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "motor_force": {"values": [0, -10, 10]}}
+    with xr.open_dataset(study(tmp_path, factors, outputs=["forces", "contact"])) as ds:
+        figure = next(f()[0] for f in drawers(ds) if f.func.__name__ == "forces")
+    figure.draw_without_rendering()
+    bottom = [axes for axes in figure.axes if axes.get_xlabel()]
+    boxes = [axes.xaxis.label.get_window_extent() for axes in bottom]
+    assert len(boxes) == 3 and boxes[-1].x1 <= figure.bbox.x1
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
+    more = xr.Dataset({"motor_force": ("design", [-20.0, -5.0, 0.0, 5.0, 9.0])}, attrs={"factors": "[]"})
+    assert drives(more).texts == ("driven, 5 to 20 N", "free rolling", "braked, 5 to 9 N")
+
+
+def test_motor_force_in_the_base_and_another_factor(tmp_path):
+    factors = {"friction_coefficient": {"values": [0.05, 0.3]}, "contact_angle": {"values": [20, 30, 60]}}
+    gathered = study(tmp_path, factors, {"motor_force": -5, "radial_force": -400, "axial_force": 0})
+    drawn, text = shown(gathered, tmp_path)
+    assert set(drawn) >= FIGURES | {"models-error-factors"}
+    assert "by spin φρ" in text and "Paper" not in (tmp_path / "figures" / "index.json").read_text()
+    with xr.open_dataset(gathered) as ds:
+        paired = ladder.pairs(ds)
+        titles = [drawn[0]._suptitle.get_text() for f in drawers(ds) if (drawn := f())]
+    assert any("Held: contact angle 30°" in t for t in titles) and not any("200 N" in t for t in titles)
+    alpha = np.deg2rad(30)  # spin of the paper's roller: sin(alpha)/r_A times 4 over the sum of curvatures
+    r_a = 21.75 - 6 * np.cos(alpha)
+    k = 1 / 6 - 1 / 7 + np.cos(alpha) * (1 / r_a + 1 / 220)
+    at = float(paired["spin"][np.flatnonzero(paired["contact_angle"] == 30)[0]])
+    curve = float(paired["guide_curve_radius"][0])
+    k += 0.0 if curve == 220 else np.cos(alpha) * (1 / curve - 1 / 220)
+    assert at == pytest.approx(np.sin(alpha) / r_a * 4 / k, rel=1e-6)
+
+
+def test_a_nested_sample_has_pairs_and_a_sample_that_draws_the_model_says_why_not(tmp_path):
+    factors = {"friction_coefficient": {"uniform": [0.05, 0.4]}, "axial_force": {"uniform": [0, 30]},
+               "motor_force": {"values": [0, -10]}}  # fmt: skip
+    gathered = study(tmp_path, factors, design="nested", samples=24, models=["sliding", "kalker"])
+    drawn, text = shown(gathered, tmp_path)
+    assert set(drawn) >= FIGURES and "48 designs that differ in nothing but the model" in text
+    gathered = study(tmp_path, factors, design="lhs", samples=24, models=["sliding", "kalker"])
+    drawn, text = shown(gathered, tmp_path)
+    assert not set(drawn) & FIGURES and "The contact models cannot be compared: no design was solved" in text
+
+
+def test_without_kalker_fastsim_is_the_reference(tmp_path):
+    factors = {"axial_force": {"values": [0, 20]}}
+    with xr.open_dataset(study(tmp_path, factors, models=["sliding", "fastsim"], outputs=["forces"])) as ds:
+        paired = ladder.pairs(ds)
+        names = {drawn[1].name for f in drawers(ds) if (drawn := f())}
+    assert paired.attrs["reference"] == "fastsim" and list(paired.contact_model.values) == ["sliding", "fastsim"]
+    assert {"models-error", "models-forces"} <= names
+    assert "too little to compare" in " ".join(ladder.sentences(paired))
+
+
+def test_one_model_or_none_is_not_compared():
+    ds = grid_study()
+    assert ladder.pairs(ds) is None and ladder.report_section(ds) == {} and drawers(ds) == []
+
+
+def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_cases():
+    rng = np.random.default_rng(5)
+    n = 3000
+    mu, model = rng.uniform(0.02, 0.5, n), np.repeat(MODELS, n)
+    order = rng.permutation(3 * n)
+    force = np.stack([np.tile(100 * mu, 3) * np.repeat([1.1, 1.02, 1.0], n)] * 2, -1)
+    ds = xr.Dataset({"regime": ("case", np.zeros(3 * n, "i1")), "normal_force": (("case", "contact"), force)},
+                    coords={"contact_model": ("case", model), "friction_coefficient": ("case", np.tile(mu, 3)),
+                            "contact": [1, 2]}).isel(case=order)  # fmt: skip
+    paired = ladder.pairs(ds.isel(case=slice(1, None)))
+    lost = str(ds["contact_model"][0].item())
+    assert paired.sizes["design"] == (n if lost != "kalker" else n - 1)
+    found = ladder.errors(paired).normal_force
+    np.testing.assert_allclose(found.sel(contact_model="sliding").dropna("design"), 0.1, rtol=1e-9)
+    np.testing.assert_allclose(found.sel(contact_model="fastsim").dropna("design"), 0.02, rtol=1e-9)
+    words = ladder.sentences(paired)
+    assert "normal forces in 0 %" in words[1] and "normal forces in 100 %" in words[2]
+
+
+def test_the_levels_that_keep_the_tolerance_are_named():
+    mu = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5]
+    along = groups(xr.Dataset({"friction_coefficient": ("design", mu)}), "friction_coefficient")
+    told = {
+        (0, 0, 1, 1, 1, 1): "up to a friction of 0.05", (1, 1, 0, 0, 1, 0): "at a friction of 0.1 to 0.2 and "
+        "from a friction of 0.5 on", (1,) * 6: "", (0,) * 6: "at every friction",
+        (1, 1, 1, 1, 0, np.nan): "from a friction of 0.3 on",
+    }  # fmt: skip
+    for wrong, words in told.items():
+        assert levels_kept(along, np.array(wrong, float)) == words
+
+
+def test_unlimited_lives_are_no_error_where_both_are():
+    life = np.array([[np.inf, np.inf, 3.0, 2.0], [np.inf, 5.0, np.inf, 1.0]])
+    dims = ("contact_model", "design")
+    ds = xr.Dataset({"life": (dims, life), "regime": (dims, np.zeros((2, 4)))},
+                    coords={"contact_model": ["sliding", "kalker"]}, attrs={"reference": "kalker"})  # fmt: skip
+    assert ladder.errors(ds).life.values[0].tolist() == [0.0, np.inf, 1.0, 1.0]
+
+
+def test_the_patches_are_drawn_free_and_driven():
+    from validation.contact_models.patches import patches
+
+    fields = patch_fields(tr.Case(), PATCHES[1:])
+    assert fields["motor_force"].values.tolist() == [0.0, -20.0, 0.0, -60.0]
+    share = fields.stick_area_fraction.sel(contact_model="kalker").max("contact")
+    assert float(share[2]) > float(share[0])  # the exact theory has the more stick the more friction
+    labels = [axes.get_ylabel() for axes in patches(fields).axes]
+    assert sum("driven −20 N" in text for text in labels) == 1 and sum("free rolling" in text for text in labels) == 2
+
+
+def test_the_shipped_study_may_be_edited(tmp_path):
+    """Another roller, three drives in one file; a fixed drive and the contact angle as a factor in the other."""
+    for factors, base in (
+        ({"friction_coefficient": {"values": [0.05, 0.3]}, "motor_force": {"values": [0, -5, 5]}},
+         {"roller_profile_radius": -8, "radial_force": -90, "axial_force": 0}),
+        ({"contact_angle": {"values": [20, 50]}}, {"motor_force": -5, "friction_coefficient": 0.2}),
+    ):  # fmt: skip
+        path = tmp_path / "contact_models.yaml"
+        path.write_text(yaml.safe_dump({"name": "contact_models", "base": base, "factors": factors, "outputs": OUTPUTS,
+                                        "contact_model": MODELS, "accuracy": "preview"}))  # fmt: skip
+        compare(path, tmp_path / "results" / "contact_models")
+        text = (tmp_path / "results" / "contact_models" / "report.html").read_text(encoding="utf-8")
+        assert "Contact models compared" in text and "200 N radial" not in text
+        drawn = {p.stem for p in (tmp_path / "results" / "contact_models" / "figures").glob("*.svg")}
+        assert drawn >= FIGURES | {"models-patches", "models-map"}
+
+
+def test_the_shipped_study_holds_friction_drive_and_spin_and_its_words_are_written(own, tmp_path):
+    shipped = yaml.safe_load((Path(__file__).parents[2] / "validation" / "config" / "contact_models.yaml").read_text())
+    assert {"friction_coefficient", "motor_force", "contact_angle", "axis_distance"} <= set(shipped["factors"])
+    assert shipped["contact_model"] == MODELS
+    write_words(str(own[0]), tmp_path / "words.txt")
+    words = (tmp_path / "words.txt").read_text().splitlines()
+    assert any(w.startswith("The sliding model, free rolling: good enough") for w in words)
+    assert any("random designs, auto takes" in w for w in words)
+    assert json.loads(json.dumps(words)) == words

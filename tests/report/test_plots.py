@@ -1,0 +1,208 @@
+"""Figures of studies and cases: drawn when the data allow, complete, and never a reason for a run to fail."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+import xarray as xr
+from synthetic_results import PAIRS, grid_study, sampled_study
+
+import trackroller as tr
+from trackroller.errors import InputError
+from trackroller.report.figures import style
+from trackroller.report.figures.contact import plot_case
+from trackroller.report.figures.study import draw_all
+from trackroller.report.figures.study_effects import effects
+from trackroller.report.figures.study_life import capped
+from trackroller.report.figures.study_view import StudyView
+
+ALL = {"life_against_friction", "stress_against_fit", "life_map", "forces_against_axial_force", "main_effects",
+       "regime_map"}  # fmt: skip
+SMALL = {"friction_coefficient": [0.05, 0.3], "roller_profile_radius": [-8.0, -7.0, -6.4], "motor_force": [-30.0, 0.0],
+         "material_pair": list(PAIRS[:2]), "axial_force": [0.0, 30.0, 130.0]}  # fmt: skip
+
+
+def drawn(ds: xr.Dataset, folder) -> set[str]:
+    ds.to_netcdf(folder / "study.nc")
+    return {info.name for info in draw_all(folder / "study.nc", folder / "figures")}
+
+
+@pytest.fixture(scope="module")
+def grid(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("grid")
+    return folder, drawn(grid_study(SMALL), folder)
+
+
+def test_a_full_grid_gets_every_figure_as_svg_and_png_with_captions(grid):
+    folder, names = grid
+    assert names == ALL
+    index = json.loads((folder / "figures" / "index.json").read_text())
+    assert {i["name"] for i in index} == ALL
+    for item in index:
+        assert item["caption"] and item["sentence"].endswith(".")
+        assert (folder / "figures" / f"{item['name']}.png").read_bytes()[:4] == b"\x89PNG"
+        ET.parse(folder / "figures" / f"{item['name']}.svg")
+
+
+def test_figures_are_a_column_wide_and_nothing_is_cut_off(grid):
+    """85 mm wide, and no ink in the outermost pixels."""
+    from matplotlib.image import imread
+
+    folder, names = grid
+    for name in names:
+        image = imread(folder / "figures" / f"{name}.png")[..., :3]
+        assert image.shape[1] == pytest.approx(85 / 25.4 * 300, abs=2)
+        border = np.concatenate([image[:3].ravel(), image[-3:].ravel(), image[:, :3].ravel(), image[:, -3:].ravel()])
+        assert border.min() > 0.97, name
+
+
+def test_the_same_study_gives_the_same_svg(grid, tmp_path):
+    folder, _ = grid
+    draw_all(folder / "study.nc", tmp_path)
+    for name in ("regime_map", "forces_against_axial_force"):
+        assert (tmp_path / f"{name}.svg").read_bytes() == (folder / "figures" / f"{name}.svg").read_bytes()
+
+
+def test_a_sample_along_case_gets_every_figure(tmp_path):
+    assert drawn(sampled_study(200), tmp_path) == ALL
+
+
+def test_unlimited_lives_are_drawn_above_the_finite_ones(tmp_path):
+    values, top = capped(np.array([10.0, np.inf, np.nan, 0.0]))
+    assert top == 100.0 and values[1] == 100.0 and np.isnan(values[2:]).all()
+    assert "life_against_friction" in drawn(grid_study(SMALL, unlimited=True), tmp_path)
+
+
+def test_a_loads_only_study_gets_forces_and_regimes_only(tmp_path):
+    ds = grid_study({"axial_force": [0.0, 60.0, 130.0], "radial_force": [-200.0, -100.0]},
+                    only=("normal_force", "lateral_force", "driving_force"))  # fmt: skip
+    assert drawn(ds, tmp_path) == {"forces_against_axial_force", "regime_map"}
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_nothing_but_nan_or_inf_never_fails_a_run(tmp_path, value):
+    ds = grid_study(SMALL)
+    for name, variable in ds.data_vars.items():
+        if variable.dtype.kind == "f":
+            ds[name] = variable * np.nan + value if np.isnan(value) else xr.full_like(variable, value)
+    drawn(ds, tmp_path)
+    assert (tmp_path / "figures" / "index.json").is_file()
+
+
+def test_every_case_failed_still_leaves_an_index(tmp_path):
+    ds = grid_study(SMALL)
+    ds["regime"][:] = 3
+    for name, variable in ds.data_vars.items():
+        if variable.dtype.kind == "f":
+            ds[name] = variable * np.nan
+    assert drawn(ds, tmp_path) == set()
+
+
+def test_one_case_alone_draws_nothing_and_raises_nothing(tmp_path):
+    assert drawn(sampled_study(1), tmp_path) == set()
+
+
+def test_held_factors_take_the_base_level_else_the_middle():
+    view = StudyView.of(grid_study(SMALL))
+    assert view.grid and set(view.factors) == set(SMALL)
+    assert view.held_level("roller_profile_radius") == -7.0
+    assert view.held_level("axial_force") == 30.0
+    rows, said = view.hold(("friction_coefficient",))
+    assert len(rows) == 2 and "roller profile radius −7 mm" in said and "driven −30 N" in said
+
+
+def test_main_effects_rank_by_the_swing_of_the_mean_log_life():
+    view = StudyView.of(grid_study(SMALL))
+    found = effects(view)
+    swings = [np.ptp(means) for _, _, means in found]
+    assert swings == sorted(swings, reverse=True) and found[0][0] == "material_pair"
+    life = view.table["roller_life_hours"]
+    expected = np.log10(life[view.table["material_pair"] == PAIRS[0]]).mean()
+    assert found[0][2][0] == pytest.approx(expected)
+
+
+def test_parameters_computed_from_factors_are_no_factors_but_can_be_drawn():
+    ds = sampled_study(100)
+    study = "factors: {ratio: {uniform: [1, 2]}, roller_profile_radius: {expression: -6 * ratio}}"
+    ds = ds.assign_coords(ratio=("case", -ds["roller_profile_radius"].values / 6))
+    ds.attrs["study"] = study
+    view = StudyView.of(ds)
+    assert view.factors == ("ratio",) and view.behind("roller_profile_radius") == ("case",)
+
+
+@pytest.mark.parametrize(("value", "text"), [
+    (0.0, "0"), (1234.5, "1234"), (12345.0, "12 300"), (2.5e9, "2.5·10⁹"), (-7.0, "−7"), (np.inf, "∞"), (np.nan, "–"),
+])  # fmt: skip
+def test_numbers_read_as_an_engineer_writes_them(value, text):
+    assert style.number(value).replace("\u00a0", " ") == text
+
+
+def test_subtitles_are_wrapped_within_the_figure():
+    """No wrapped line is wider than asked for, long words apart."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextToPath
+
+    lines = style.wrapped("Held: " + "roller profile radius −7 mm; " * 8, 80, 7.0)
+    widths = [TextToPath().get_text_width_height_descent(t, FontProperties(size=7.0), False)[0] for t in lines]
+    assert len(lines) > 2 and max(widths) <= 80 / 25.4 * 72
+
+
+OUTPUTS = ("forces", "contact", "peak_stress", "tractions", "subsurface")
+
+
+@pytest.fixture(scope="module")
+def solved():
+    return tr.solve(tr.Case(), outputs=OUTPUTS)
+
+
+def test_a_case_gets_shear_energy_and_sections_of_both_contacts(solved, tmp_path):
+    infos = plot_case(solved, tmp_path)
+    assert [i.name for i in infos] == ["contact_shear", "contact_energy", "contact_1_stress", "contact_2_stress"]
+    for info in infos:
+        ET.parse(tmp_path / f"{info.name}.svg")
+        assert info.caption and info.sentence
+
+
+def test_frictionless_and_tall_contacts_are_drawn(tmp_path):
+    """mu = 0 has no tractions to show; an ellipse longer in the rolling direction has its panels side by side."""
+    free = tr.solve(tr.Case(friction_coefficient=0.0, motor_force=0.0), outputs=OUTPUTS)
+    assert {i.name for i in plot_case(free, tmp_path / "free")} == {"contact_1_stress", "contact_2_stress"}
+    tall = tr.solve(tr.Case(roller_profile_radius=5.0), outputs=("forces", "contact", "tractions"))
+    assert {i.name for i in plot_case(tall, tmp_path / "tall")} == {"contact_shear", "contact_energy"}
+
+
+def test_a_lifted_contact_is_left_out(solved, tmp_path):
+    ds = solved.copy()
+    for name, variable in ds.data_vars.items():
+        if "contact" in variable.dims and variable.dtype.kind == "f":
+            ds[name] = variable.where(ds["contact"] == 2)
+    names = {i.name for i in plot_case(ds, tmp_path)}
+    assert names == {"contact_shear", "contact_energy", "contact_2_stress"}
+
+
+def test_several_cases_at_once_are_refused(tmp_path):
+    ds = tr.solve([tr.Case(), tr.Case()], outputs=("forces",))
+    with pytest.raises(InputError, match="one case"):
+        plot_case(ds, tmp_path)
+
+
+def test_drawing_leaves_the_callers_matplotlib_alone(grid):
+    """No change of rcParams and no pyplot figure left open."""
+    import matplotlib
+    import matplotlib.pyplot as plt
+
+    before = matplotlib.rcParams["font.size"]
+    with style.look():
+        pass
+    assert matplotlib.rcParams["font.size"] == before and not plt.get_fignums()
+
+
+@pytest.mark.parametrize("motor_force", [-30.0, 0.0])
+def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force):
+    """No contact left to draw is no reason to raise."""
+    ds = tr.solve(tr.Case(axial_force=150.0, motor_force=motor_force), outputs=OUTPUTS)
+    assert int(ds["regime"]) == 2
+    assert "contact_1_stress" not in {i.name for i in plot_case(ds, tmp_path)}

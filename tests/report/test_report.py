@@ -1,0 +1,187 @@
+"""The report: complete, one file without network, safe against markup in names, whole in a browser."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+import xarray as xr
+from synthetic_results import PAIRS, grid_study, sampled_study
+
+from trackroller.report import write_report
+from trackroller.report.figures.study import draw_all
+from trackroller.report.figures.study_view import StudyView
+from trackroller.report.page import contents, models_used
+from trackroller.report.tables import causes, regime_table, validity_table
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+FACTORS = {"friction_coefficient": [0.05, 0.3, 0.4], "roller_profile_radius": [-8.0, -7.0, -6.4],
+           "material_pair": list(PAIRS), "motor_force": [-30.0, 0.0], "axial_force": [0.0, 30.0, 130.0],
+           "guide_curve_radius": [220.0, float("inf")]}  # fmt: skip
+
+
+class _Balanced(HTMLParser):
+    """Collects open tags; a report must close what it opens."""
+
+    void = frozenset(("meta", "link", "br", "img"))
+
+    def __init__(self):
+        super().__init__()
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in self.void:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    grid_study(FACTORS).to_netcdf(folder / "study.nc")
+    draw_all(folder / "study.nc", folder / "figures")
+    return write_report(folder / "study.nc", folder / "figures", folder / "report.html")
+
+
+def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
+    text = report.read_text(encoding="utf-8")
+    wanted = ("friction-and-fit", "540 cases", "Roller profile radius", "full slip", "lift-off", "Best 1", "Worst 5",
+              "Papers behind the methods", "applmech3020041", "abcdef0", "Conventions", "static")  # fmt: skip
+    assert [w for w in wanted if w not in text] == []
+    assert text.count("<figure") == 6
+    assert re.search(r"<figcaption><strong>[^<]+\.</strong>Figure 1\. ", text)
+
+
+def test_it_is_one_file_without_network_or_script(report):
+    text = report.read_text(encoding="utf-8")
+    sources = re.findall(r'(?:src|href)="([^"]*)"', text)
+    assert sources and all(s.startswith(("data:", "#")) for s in sources)
+    assert "<script" not in text and "@import" not in text and "url(" not in text
+    assert not list(report.parent.glob(".*.part"))
+
+
+def test_names_from_the_study_are_escaped_and_tags_balance(report):
+    text = report.read_text(encoding="utf-8")
+    assert "&lt;five pairs&gt;" in text and "<five pairs>" not in text
+    parser = _Balanced()
+    parser.feed(text)
+    assert parser.open == []
+
+
+def test_regimes_name_the_levels_that_cause_them():
+    view = StudyView.of(grid_study(FACTORS))
+    rows = {r["name"]: r for r in regime_table(view)}
+    assert sum(r["count"] for r in rows.values()) == len(view.table)
+    assert rows["lift-off"]["causes"][0] == "axial force: 130 N (100\u00a0%)"
+    assert any("friction coefficient: 0.05" in c for c in rows["full slip"]["causes"])
+    assert rows["failed"]["causes"] == [] and rows["rolling"]["causes"] == []
+
+
+def test_causes_of_all_and_of_none():
+    view = StudyView.of(grid_study(FACTORS))
+    assert causes(view, np.ones(len(view.table), bool)) == ["all cases"]
+    assert causes(view, np.zeros(len(view.table), bool)) == []
+
+
+def test_validity_bits_are_counted_by_mask():
+    ds = grid_study(FACTORS)
+    ds["validity"].attrs["comment"] = "half_space: a; b: c; static: peak above R_m; conformal: edge"
+    rows = {r["name"]: r for r in validity_table(StudyView.of(ds), ds)}
+    assert rows["conformal"]["count"] == int(((ds["validity"] & 8) > 0).sum())
+    assert rows["static"]["meaning"] == "peak above R_m" and rows["half space"]["meaning"] == "a; b: c"
+
+
+def test_best_designs_roll_and_are_sorted_by_life():
+    found = contents(grid_study(FACTORS))
+    best, worst = dict(found["best"]), dict(found["worst"])
+    assert set(best["Regime"]) == {"rolling"}
+    longest, shortest = best["Life of the roller [h]"][0], worst["Life of the roller [h]"][0]
+    life = grid_study(FACTORS)["roller_life_hours"]
+    rolling = grid_study(FACTORS)["regime"] == 0
+    from trackroller.report.figures.style import rounded
+
+    assert longest == rounded(float(life.where(rolling).max()), 4) and shortest == rounded(float(life.min()), 4)
+
+
+def test_a_loads_only_study_and_a_missing_figure_folder_still_give_a_report(tmp_path):
+    ds = grid_study({"axial_force": [0.0, 130.0], "radial_force": [-200.0, -100.0]}, only=("normal_force",))
+    ds.to_netcdf(tmp_path / "study.nc")
+    text = write_report(tmp_path / "study.nc", tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
+    assert "<figure" not in text and "Best 1" not in text and "lift-off" in text
+
+
+def test_a_study_in_which_everything_failed_shows_the_reasons(tmp_path):
+    ds = grid_study({"axial_force": [0.0, 130.0], "radial_force": [-200.0, -100.0]})
+    ds["regime"][:] = 3
+    for name, variable in ds.data_vars.items():
+        if variable.dtype.kind == "f":
+            ds[name] = variable * np.nan
+    ds["reason"] = xr.full_like(ds["regime"], "no convergence <x>", dtype=object)
+    ds.to_netcdf(tmp_path / "study.nc")
+    text = write_report(tmp_path / "study.nc", tmp_path, tmp_path / "report.html").read_text()
+    assert "no convergence &lt;x&gt;" in text and "Best 1" not in text
+
+
+def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
+    found = contents(sampled_study(60))
+    row = next(f for f in found["factors"] if f["name"] == "Friction coefficient")
+    assert row["spec"] == "uniform 0.02, 0.4" and "…" in row["values"]
+    assert found["design"] == "lhs"
+
+
+PROBE = """<script>addEventListener('load', () => {
+  const width = document.documentElement.clientWidth, out = [];
+  for (const e of document.querySelectorAll('body *')) {
+    const box = e.getBoundingClientRect();
+    if (box.width && (box.right > width + 1 || box.left < -1)) out.push(e.tagName + ' ' + e.textContent.slice(0, 30));
+    if (e.scrollWidth > e.clientWidth + 1 && e.clientWidth && !['SUB', 'I', 'A'].includes(e.tagName))
+      out.push('inner ' + e.tagName + ' ' + e.textContent.slice(0, 30));
+  }
+  const images = [...document.images].filter(i => !i.complete || !i.naturalWidth).length;
+  document.title = JSON.stringify({width, page: document.documentElement.scrollWidth, out: out.slice(0, 5), images});
+})</script>"""
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@pytest.mark.parametrize("width", [1280, 800])
+def test_a_browser_shows_it_whole_and_without_console_errors(report, tmp_path, width):
+    """Nothing is wider than the window, every figure loads, the console stays empty."""
+    page = tmp_path / "probe.html"
+    page.write_text(report.read_text(encoding="utf-8").replace("</body>", PROBE + "</body>"), encoding="utf-8")
+    done = subprocess.run(
+        [str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
+         f"--user-data-dir={tmp_path / 'profile'}", f"--window-size={width},1000", "--enable-logging=stderr",
+         "--virtual-time-budget=5000", "--dump-dom", page.as_uri()],
+        capture_output=True, text=True, timeout=60)  # fmt: skip
+    assert "CONSOLE" not in done.stderr
+    title = re.search(r"<title>(\{.*?\})</title>", done.stdout)
+    assert title, done.stdout[:500] + done.stderr[-500:]
+    found = json.loads(title.group(1).replace("&amp;", "&").replace("&lt;", "<").replace("&gt;", ">"))
+    assert found["images"] == 0 and found["out"] == [] and found["page"] <= found["width"] == width
+
+
+def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
+    ds = sampled_study(40)
+    law = np.where(np.arange(40) < 20, "", json.dumps({"kind": "linear", "speed": 50, "lowest": 0.3}))
+    ds = ds.assign_coords(friction_law=("case", law.astype(object)))
+    ds["contact_model_used"] = ("case", np.arange(40) % 2 * 2, {"flag_meanings": "sliding fastsim kalker"})
+    ds["stopped"] = ("case", (np.arange(40) < 7).astype("i1"))
+    assert models_used(ds) == [("Contact model chosen", "sliding in 20, kalker in 20 of 40 cases")]
+    told = contents(ds)
+    assert any(s.startswith("7 of 40 cases met the condition of stop_if") for s in told["summary"])
+    assert models_used(sampled_study(40)) == []
+
+
+def test_a_handful_of_cases_among_many_tells_no_cause():
+    view = StudyView.of(sampled_study(400))
+    hit = np.zeros(400, dtype=bool)
+    hit[:3] = True
+    assert causes(view, hit) == []

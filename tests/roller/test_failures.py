@@ -1,0 +1,81 @@
+"""A case that fails says why and what to do, in Python, on the command line and in a study."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from test_cli import trackroller
+
+import trackroller as tr
+from trackroller.roller.case import to_table
+from trackroller.roller.failures import STEEP, with_reasons
+from trackroller.roller.options import Options
+from trackroller.study.config import parse_study
+from trackroller.study.run import run_study
+from trackroller.study.status import status_of
+
+SLENDER = {"roller_profile_radius": -6.001}  # beyond what fastsim reaches
+POINTS = [[x, 0.5 * (x * x) / -7] for x in np.linspace(-1, 1, 21).tolist()]
+
+
+def said(case: dict, *, failed: bool = True, bits: int = 0, **options) -> str:
+    """The reason of a case that fails (or just misses its tolerance), without solving it."""
+    ds = xr.Dataset({"regime": ((), 3 if failed else 0), "converged": ((), 0), "residual": ((), 3.21e-4),
+                     "validity": ((), bits)})  # fmt: skip
+    return str(with_reasons(ds, to_table(tr.Case(**case)), Options(**options))["reason"].item())
+
+
+def test_hints_name_what_is_known_to_fail():
+    halfspace = {"normal": "halfspace"}
+    rough = said({"roller_profile": {"points": POINTS, "frame": "contact"}}, **halfspace)
+    assert rough.startswith("no convergence, residual 3e-04. The roller_profile goes") and "smooth" in rough
+    smoothed = {"points": POINTS, "frame": "contact", "smooth": 0.001}
+    assert said({"roller_profile": smoothed}, **halfspace) == "no convergence, residual 3e-04"
+    assert "steep_friction" in said({}, bits=STEEP, contact_model="kalker")
+    assert "too slender" in said(SLENDER, contact_model="fastsim")
+    assert "slender" not in said({}, contact_model="fastsim") + said(SLENDER, contact_model="kalker")
+
+
+def test_a_row_that_misses_its_tolerance_has_a_reason_and_others_have_none():
+    assert "misses the tolerance, residual 3e-04" in said({}, failed=False)
+    found = tr.solve([tr.Case(), tr.Case(**SLENDER)], "forces", contact_model="fastsim")
+    assert found["regime"].values.tolist() == [0, 3]
+    assert found["reason"].values[0] == "" and "slender" in found["reason"].values[1]
+    assert "reason" not in tr.solve(tr.Case(), "forces")
+
+
+def test_a_failed_case_ends_with_exit_1_and_its_reason(tmp_path):
+    (tmp_path / "case.yaml").write_text("roller_profile_radius: -6.001\ncontact_model: fastsim\n")
+    told = trackroller("solve", "case.yaml", cwd=tmp_path, code=1).stdout
+    assert "reason: no convergence" in told and "kalker" in told
+    assert "nan" not in told and "undefined here:" in told and "normal_force" in told
+    done = trackroller("solve", "case.yaml", "--json", cwd=tmp_path, code=1)
+    assert "slender" in json.loads(done.stdout)["reason"]["value"] and "slender" in done.stderr
+    trackroller("solve", "case.yaml", "-o", "out.nc", cwd=tmp_path, code=1)
+    with xr.open_dataset(tmp_path / "out.nc") as ds:
+        assert "slender" in str(ds["reason"].item())
+    assert "slender" in trackroller("plot", "case.yaml", cwd=tmp_path, code=1).stderr
+    (tmp_path / "good.yaml").write_text("guide_curve_radius: inf\n")
+    told = trackroller("solve", "good.yaml", cwd=tmp_path).stdout
+    assert "undefined here: guide_life_hours" in told and "reason" not in told
+
+
+def test_a_study_keeps_the_reasons(tmp_path):
+    study = parse_study({
+        "name": "slender", "contact_model": "fastsim", "outputs": ["forces"],
+        "factors": {"roller_profile_radius": {"values": [-6.001, -7]}}})  # fmt: skip
+    plan = run_study(study, tmp_path)
+    with xr.open_dataset(plan.folder.gathered) as ds:
+        assert "slender" in ds["reason"].values[0] and ds["reason"].values[1] == ""
+    (reason,) = status_of(study, tmp_path).by_reason
+    assert "slender" in reason
+
+
+@pytest.mark.parametrize("shortcuts", [True, False])
+def test_rows_of_a_batch_get_their_own_reason(shortcuts):
+    cases = [tr.Case(**SLENDER, velocity=v) for v in (50.0, 60.0)]
+    found = tr.solve([*cases, tr.Case()], "forces", contact_model="fastsim", shortcuts=shortcuts)
+    assert [bool(r) for r in found["reason"].values] == [True, True, False]

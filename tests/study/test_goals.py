@@ -1,0 +1,263 @@
+"""Keys analysis, pareto and constraints of a study file; delta; the S-N diagram; what a report makes of them."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from trackroller.analysis.delta import delta
+from trackroller.analysis.givendata import bins, given_data, pawn, pawn_interval
+from trackroller.analysis.pareto import study_pareto
+from trackroller.analysis.restore import design_of
+from trackroller.analysis.robustness import b10, material_deviations
+from trackroller.analysis.sensitivity import analyse, analyse_dataset
+from trackroller.errors import InputError
+from trackroller.numerics import expressions
+from trackroller.report import sentences as words
+from trackroller.report.decisions import decisions
+from trackroller.report.figures.study_view import StudyView
+from trackroller.report.figures.woehler import curve, woehler
+from trackroller.study.config import parse_study
+
+LHS = {"name": "a", "design": "lhs", "samples": 400, "outputs": ["forces", "contact", "friction_work", "life"],
+       "factors": {"axial_force": {"uniform": [0.0, 1.0]}, "velocity": {"uniform": [1.0, 2.0]},
+                   "roller_material": {"values": ["PA6", "POM"]}}}  # fmt: skip
+GOALS = {"pareto": {"roller_life_hours": "max", "friction_power": "min", "axis_distance": "min"}}
+STEEL = {"name": "steel", "tensile_strength": 720.0, "fatigue_strength_ratio": 0.5, "cycles_at_tensile_strength": 1e4,
+         "cycles_at_fatigue_limit": 5e6, "youngs_modulus": 2.1e5, "poisson_ratio": 0.3}  # fmt: skip
+
+
+def solved(data=LHS, regime=None, **fake):
+    """A study through its reader, with functions of the axial force and the velocity in the solver's place."""
+    study = parse_study(data)
+    ds = study.design()
+    x, v = ds["axial_force"].values, ds["velocity"].values
+    for name, of in fake.items():
+        ds[name] = ("case", of(x, v), {"units": "h" if "life" in name else "W"})
+    ds["regime"] = ("case", (np.zeros(x.size) if regime is None else regime(x, v)).astype(np.int8))
+    ds.attrs = {"study": study.merged(), "materials": json.dumps({"PA6": STEEL, "POM": STEEL})}
+    return ds
+
+
+@pytest.mark.parametrize(("data", "parts"), [
+    ({"analysis": {"outputs": ["roller_life_hour"]}}, ["analysis.outputs", "roller_life_hours"]),
+    ({"analysis": {"outputs": ["roller_peak_stress"]}}, ["analysis.outputs", "Add peak_stress"]),
+    ({"analysis": {"outputs": ["normal_force"]}}, ["one number a case", "normal_force[1]"]),
+    ({"analysis": {"outputs": []}}, ["analysis.outputs"]),
+    ({"analysis": {"resample": 100}}, ["resample", "resamples"]),
+    ({"analysis": {"resamples": 5}}, ["analysis.resamples", "50"]),
+    ({"analysis": {"scale": {"friction_power": "log"}}}, ["analysis.scale.friction_power", "log10"]),
+    ({"analysis": {"measures": ["detla"]}}, ["analysis.measures", "delta"]),
+    ({"analysis": {"keep": ["full_slip"]}}, ["analysis.keep", "rolling"]),
+    ({"analysis": {"material_scatter": True}}, ["material_scatter", "nested"]),
+    ({"analysis": 3}, ["analysis"]),
+    ({"pareto": {"friction_power": "min"}}, ["pareto", "two or more"]),
+    ({"pareto": {"friction_power": "min", "roller_life_hours": "up"}}, ["pareto.roller_life_hours", "max"]),
+    ({"pareto": {"friction_power": "min", "roller_material": "max"}}, ["pareto", "number"]),
+    (GOALS | {"constraints": ["regime != full_slp"]}, ["constraints", "full_slip"]),
+    (GOALS | {"constraints": ["regime < 2"]}, ["constraints", "regime < 2"]),
+    (GOALS | {"constraints": ["max_pressure + 2"]}, ["constraints", "comparison"]),
+    (GOALS | {"constraints": "slip < 1"}, ["constraints", "list"]),
+    (GOALS | {"constraints": ["().__class__ == 1"]}, ["constraints", "not allowed"]),
+    ({"constraints": ["slip < 1"]}, ["constraints", "pareto"]),
+])  # fmt: skip
+def test_wrong_goals_of_a_study_are_refused_with_field_and_remedy(data, parts):
+    with pytest.raises(InputError) as error:
+        parse_study(LHS | data)
+    for part in parts:
+        assert part in str(error.value)
+
+
+def test_material_scatter_needs_materials_that_have_some():
+    data = {"name": "n", "design": "nested", "factors": {"axial_force": {"uniform": [0.0, 1.0]}}}
+    with pytest.raises(InputError, match=r"no scatter is known of 1\.7225-normalised"):
+        parse_study(data | {"analysis": {"material_scatter": True}})
+    assert parse_study(data | {"analysis": {"material_scatter": 4}}).config.analysis.material_scatter == 4
+
+
+def test_conditions_compare_join_and_treat_what_is_not_a_number_as_not_met():
+    values = {"a": np.array([1.0, 2.0, np.nan]), "kind": np.array(["x", "y", "x"], dtype=object), "x": "x"}
+    cases = {"a < 2": [1, 0, 0], "a != 1": [0, 1, 0], "0 < a <= 2 and kind != x": [0, 1, 0], "not a > 1": [1, 0, 0],
+             "a > 1 or kind == 'x'": [1, 1, 0], "kind == x": [1, 0, 1]}  # fmt: skip
+    for text, meets in cases.items():
+        np.testing.assert_array_equal(expressions.condition(text, values), np.array(meets, dtype=bool), err_msg=text)
+
+
+def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_path):
+    """Three goals, a regime and a limit, from the stored study alone; the table follows the first goal."""
+    ds = solved(LHS | {"pareto": {"roller_life_hours": "max", "friction_power": "min", "axial_force": "max"},
+                       "constraints": ["regime != full_slip", "friction_power < 15", "roller_material == 'PA6'"]},
+                lambda x, v: x > 0.9, roller_life_hours=lambda x, v: 100 * v,
+                friction_power=lambda x, v: 10 * v)  # fmt: skip
+    front = study_pareto(ds)
+    kept = ds.isel(case=front["row"].values)
+    assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
+    assert set(kept["roller_material"].values) == {"PA6"}
+    told = decisions(ds, None)["pareto"]
+    assert told["columns"][0] == "Life of the roller [h] ↑" and told["rows"]
+    lives = [float(ds["roller_life_hours"][case]) for case, _ in told["rows"]]
+    assert lives == sorted(lives, reverse=True)
+
+
+def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
+    ds = solved(LHS | {"analysis": {"outputs": ["friction_power"], "scale": "log10", "measures": ["delta"]}},
+                roller_life_hours=lambda x, v: v, friction_power=lambda x, v: 10 ** (3 * x))  # fmt: skip
+    ds.to_netcdf(tmp_path / "study.nc")
+    sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
+    assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
+    assert "delta" in sens and "pawn" not in sens and "first" in sens
+    told = decisions(ds, tmp_path / "out.nc")["sensitivity"]
+    assert told["measures"][0]["rows"][0][0] == "Axial force" and "lhs" == told["method"]
+    # an inert factor's delta is within chance
+    column = told["measures"][0]["columns"].index("delta")
+    assert any(cells[column].startswith("(") for _, cells in told["measures"][0]["rows"][1:])
+
+
+def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
+    """The rolling half alone decides the index; what drives the slip has an output of its own."""
+    ds = solved(LHS, lambda x, v: x > 0.5, roller_life_hours=lambda x, v: np.where(x > 0.5, 1e-9, 10**v),
+                friction_power=lambda x, v: 0 * x + 7.0)  # fmt: skip
+    sens = analyse_dataset(ds)
+    life = sens.sel(output="roller_life_hours")
+    assert float(life["first"].sel(factor="velocity")) > 0.9 and not int(life["reliable"])
+    assert "200 of 400 rows used" in life["note"].item() and "200 full slip" in life["note"].item()
+    assert float(sens["first"].sel(output="full_slip", factor="axial_force")) > 0.9
+    assert "constant" in sens["note"].sel(output="friction_power").item()
+    assert np.isnan(sens["delta"].sel(output="friction_power")).all()
+    assert "No index can be given" in words.tornado(sens, "friction_power")
+
+
+def test_zero_and_infinite_lives_are_left_out_and_counted():
+    ds = solved(LHS, roller_life_hours=lambda x, v: np.where(x < 0.1, np.inf, np.where(x > 0.9, 0.0, 10**v)))
+    sens = analyse_dataset(ds, ["roller_life_hours"])
+    note = sens["note"].item()
+    assert "40 unlimited" in note and "40 not positive" in note and "320 of 400" in note
+    assert np.isfinite(sens["first"]).any()
+
+
+def test_delta_agrees_with_salib_knows_categories_and_keeps_the_inert_in_the_noise():
+    from SALib.analyze import delta as oracle
+
+    x = np.random.default_rng(0).random((600, 3)) * 2 * np.pi - np.pi
+    y = x[:, 0] + 2 * x[:, 1]
+    own = [delta(y, x[:, j], seed=1) for j in range(3)]
+    problem = {"num_vars": 3, "names": ["a", "b", "c"], "bounds": [[-np.pi, np.pi]] * 3}
+    theirs = oracle.analyze(problem, x, y, num_resamples=3, seed=1, method="delta")["delta_raw"]
+    np.testing.assert_allclose([d[0] for d in own[:2]], theirs[:2], atol=0.08)
+    assert own[2][0] <= own[2][3] and own[1][1] < own[1][0] < own[1][2]
+    group = np.arange(1200) % 3
+    exact, low, high, _ = delta((group == 1).astype(float), group, ordered=False)
+    assert exact == pytest.approx(4 / 9, abs=0.02) and low <= 4 / 9 <= high
+
+
+def test_pawn_interval_is_as_wide_as_the_index_scatters_from_sample_to_sample():
+    found = []
+    for seed in range(20):
+        x = np.random.default_rng(100 + seed).random(600)
+        y, group = x + np.random.default_rng(seed).normal(0, 0.3, 600), bins(x, 10)
+        value = pawn(y, group, noise=False)[0]
+        found.append((value, *pawn_interval(y, group, value, resamples=100)))
+    mean = np.mean([value for value, _, _ in found])
+    assert sum(low <= mean <= high for _, low, high in found) >= 17
+
+
+def test_every_measure_has_an_interval_and_only_the_wanted_are_there():
+    x = np.random.default_rng(3).random((300, 2))
+    found = given_data(x[:, 0], x, np.array([True, True]), measures=("delta", "pawn"), resamples=50)
+    assert set(found) == {"delta", "delta_low", "delta_high", "delta_noise", "pawn", "pawn_low", "pawn_high",
+                          "pawn_noise", "rows_used"}  # fmt: skip
+    assert found["delta"][0] > 0.6 > found["delta_noise"][0]
+
+
+def test_lines_of_the_diagram_are_those_of_pylife():
+    """S-N lines at 10, 50 and 90 % from T_N, at and above the knee."""
+    pytest.importorskip("pylife.materiallaws.woehlercurve")
+    import pylife.materiallaws.woehlercurve  # noqa: F401
+
+    k = np.log(5e6 / 1e4) / np.log(2)
+    line = pd.Series({"SD": 360.0, "ND": 5e6, "k_1": k, "k_2": k, "TN": 4.0, "TS": 4.0 ** (1 / k)})
+    cycles = np.geomspace(1e4, 1e7, 7)
+    for probability in (0.1, 0.5, 0.9):
+        expected = line.woehler.load(cycles, failure_probability=probability)
+        found = curve(STEEL | {"scatter_in_cycles": 4.0}, "elementary", probability, cycles)
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("rule", ["elementary", "haibach", "unlimited"])
+def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
+    ds = xr.Dataset(coords={"contact": [1, 2], "body": ["roller", "guide"], "case": np.arange(40)})
+    ds["axial_force"] = ("case", np.arange(40.0))
+    stress = np.linspace(100, 800, 40)[:, None, None] * np.array([1.0, 0.9])[None, :, None] * np.ones(2)
+    ds["peak_stress"] = (("case", "contact", "body"), stress)
+    from trackroller.damage.fatigue import life_cycles
+
+    ds["life_cycles"] = (("case", "contact", "body"), life_cycles(stress, 720.0, 360.0, 1e4, 5e6, rule))
+    ds["regime"] = ("case", (np.arange(40) % 4 == 0).astype(np.int8))
+    study = {"name": "a", "factors": {"axial_force": {"values": list(range(40))}}, "life_rule": rule,
+             "base": {"roller_material": "steel", "guide_material": "steel"}}  # fmt: skip
+    ds.attrs = {"study": json.dumps(study), "materials": json.dumps({"steel": STEEL | {"scatter_in_cycles": 4.0}})}
+    _, info = woehler(StudyView.of(ds))
+    assert "Half of the cases load the roller" in info.sentence and "0.5 times the life" in info.sentence
+    assert "10 cases in full slip" in info.caption
+    assert "beyond the axis" in info.caption
+
+
+def test_scatter_of_each_material_widens_its_own_cases():
+    """s = lg(T_N) / 2.563 by material and body; T_S counts by its power k."""
+    ds = solved()
+    k = np.log(500) / np.log(2)
+    ds.attrs["materials"] = json.dumps({"PA6": STEEL | {"scatter_in_cycles": 4.0}, "1.7225-normalised": STEEL,
+                                        "POM": STEEL | {"scatter_in_stress": 4.0 ** (1 / k)}})  # fmt: skip
+    found = material_deviations(ds, True)
+    np.testing.assert_allclose(found["roller"], np.log10(4) / 2.5631, rtol=1e-4)
+    assert (found["guide"] == 0).all() and material_deviations(ds, False) == {}
+    np.testing.assert_allclose(material_deviations(ds, 4)["guide"], np.log10(4) / 2.5631, rtol=1e-4)
+    lives = np.full(400, 1e3)
+    half = np.where(np.arange(400) % 2, 0.5, 0.0)
+    t = b10(lives, half)[0]  # mean of the two distributions: Phi((lg t - 3) / 0.5) / 2 = 0.1
+    assert np.log10(t) == pytest.approx(3 - 0.5 * 0.8416, abs=2e-3)
+
+
+def test_nested_study_with_material_scatter_reaches_the_report(tmp_path):
+    data = {"name": "n", "design": "nested", "samples": 200, "outputs": ["forces", "life"],
+            "factors": {"contact_angle": {"values": [30, 36]}, "axial_force": {"normal": [0.0, 1.0]},
+                        "velocity": {"uniform": [1.0, 2.0]}}}  # fmt: skip
+    lives = {}
+    for scatter in (False, 9):
+        ds = solved(data | {"analysis": {"material_scatter": scatter}}, lambda x, v: v > 1.95,
+                    roller_life_hours=lambda x, v: 10 ** (3 + 0.1 * x))  # fmt: skip
+        ds.to_netcdf(tmp_path / "study.nc")
+        sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
+        lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
+        told = decisions(ds, tmp_path / "out.nc")["robust"]
+        assert len(told["tables"][0]["rows"]) == 2 and "5" in told["tables"][0]["rows"][0][1][5]
+    spread = np.hypot(0.1, np.log10(9) / 2.5631)
+    assert np.log10(lives[9]) == pytest.approx(3 - 1.2816 * spread, abs=0.03)
+    assert lives[9] < lives[False] and "T_N = 9" in told["scatter"]
+
+
+def test_correlated_columns_of_a_table_are_told(tmp_path):
+    rows = [f"{-50 - i},{0.1 + 0.002 * i},{(i * 37) % 101}" for i in range(60)]
+    (tmp_path / "t.csv").write_text("radial_force,friction_coefficient,axial_force\n" + "\n".join(rows))
+    study = parse_study({"name": "t", "design": "table", "table": "t.csv"}, Path(tmp_path / "s.yaml"))
+    ds = study.design()
+    ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
+    ds.attrs = {"study": study.merged()}
+    assert design_of(ds).method == "table"
+    assert "go together (rank correlation 1.00)" in analyse_dataset(ds, ["roller_life_hours"]).attrs["treatment"]
+
+
+def test_sources_of_an_analysis_named_in_the_workflow_are_there():
+    """A misspelt source would never redo a result."""
+    import re
+
+    root = Path(__file__).parents[2]
+    rules = (root / "workflow" / "rules" / "show.smk").read_text(encoding="utf-8")
+    named = re.findall(r'"([\w/]+\.py)"', rules)
+    assert len(named) > 15
+    for path in named:
+        if not path.startswith(".."):
+            assert (root / "trackroller" / path).is_file() or path.startswith("scripts"), path

@@ -1,0 +1,314 @@
+"""Nothing computed is lost: kills, growth, damage, full disks and failed cases, with a quick stand-in solver."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections import Counter
+from pathlib import Path
+
+import fake_solver
+import numpy as np
+import pytest
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.study import store
+from trackroller.study.config import parse_study
+from trackroller.study.files import WorkError, write_whole
+from trackroller.study.plan import identify, make_plan
+from trackroller.study.run import run_study
+from trackroller.study.status import status_of
+
+HERE = Path(__file__).parents[1]
+LOADS = [float(v) for v in range(20, 50)]
+DATA = {"name": "s", "outputs": ["forces"], "chunk_size": 20,
+        "factors": {"axial_force": {"values": LOADS}, "friction_coefficient": {"values": [0.1, 0.2]}}}  # fmt: skip
+
+
+def changed(**factors):
+    """The study with other or further factors."""
+    return DATA | {"factors": DATA["factors"] | {k: {"values": v} for k, v in factors.items()}}
+
+
+@pytest.fixture
+def solved(tmp_path, monkeypatch):
+    """Counts how often each case was solved."""
+    file = tmp_path / "solved.txt"
+    file.touch()
+    monkeypatch.setenv("FAKE_SOLVED", str(file))
+    return lambda: Counter(file.read_text().splitlines())
+
+
+def run(data, results, **more):
+    lines: list[str] = []
+    plan = run_study(parse_study(data), results, solver=fake_solver.solve, tell=lines.append, **more)
+    with xr.open_dataset(plan.folder.gathered) as opened:
+        return plan, opened.load(), lines
+
+
+def run_apart(results, kill=None):
+    """The same run in a process of its own, which may kill itself with SIGKILL."""
+    code = f"import test_resume as t; t.run(t.DATA, {str(results)!r})"
+    env = os.environ | ({"FAKE_KILL": str(kill)} if kill else {}) | {"PYTHONPATH": str(HERE)}
+    return subprocess.run([sys.executable, "-c", code], cwd=HERE, env=env, capture_output=True, text=True, timeout=120)
+
+
+def test_gathered_grid_has_its_factors_as_labelled_dimensions(tmp_path):
+    _, ds, _ = run(changed(material_pair=[["PA6", "POM"], ["POM", "PA6"]]), tmp_path)
+    assert dict(ds.sizes) == {"axial_force": 30, "friction_coefficient": 2, "material_pair": 2, "contact": 2}
+    assert list(ds["material_pair"].values) == ["PA6 / POM", "POM / PA6"]
+    assert list(ds["roller_material"].values) == ["PA6", "POM"]
+    expected = np.sin(ds["axial_force"]) + ds["friction_coefficient"] * xr.DataArray([1.0, 2.0], dims="contact")
+    xr.testing.assert_allclose(ds["normal_force"].drop_vars(ds.coords), expected.broadcast_like(
+        ds["normal_force"]).transpose(*ds["normal_force"].dims).drop_vars(ds.coords, errors="ignore"))  # fmt: skip
+    for name in ("study", "versions", "git_commit", "seed", "accuracy", "date_created", "materials"):
+        assert name in ds.attrs
+    assert all("units" in ds[name].attrs for name in ("normal_force", "axial_force", "radial_force"))
+
+
+def test_killed_run_goes_on_and_ends_bit_for_bit_the_same(tmp_path, solved, monkeypatch):
+    _, whole, _ = run(DATA, tmp_path / "whole")
+    before = sum(solved().values())
+    codes = [run_apart(tmp_path / "killed", before + 7 + 16 * i).returncode for i in range(3)]
+    assert all(code == -9 for code in codes)
+    assert run_apart(tmp_path / "killed").returncode == 0
+    killed = xr.open_dataset(tmp_path / "killed" / "s" / "study.nc").load()
+    xr.testing.assert_identical(killed.drop_attrs(), whole.drop_attrs())
+    lost = sum(solved().values()) - 2 * before
+    assert lost <= 3 * 20, "at most the block that was running when the process died"
+
+
+def test_second_run_solves_nothing(tmp_path, solved):
+    run(DATA, tmp_path)
+    run(DATA, tmp_path)
+    assert max(solved().values()) == 1
+
+
+@pytest.mark.parametrize("more", [
+    {"axial_force": [*LOADS, 50.0, 51.0]}, {"friction_coefficient": [0.05, 0.1, 0.15, 0.2]},
+    {"motor_force": [-30.0, 0.0]}, {"axial_force": LOADS[5:]},
+], ids=["level", "levels between", "factor", "fewer"])  # fmt: skip
+def test_growing_a_study_solves_new_cases_only(tmp_path, solved, more):
+    run(DATA, tmp_path)
+    first = sum(solved().values())
+    plan, ds, _ = run(changed(**more), tmp_path)
+    old = 60 if "axial_force" not in more else 2 * len(set(LOADS) & set(more["axial_force"]))
+    assert sum(solved().values()) - first == plan.size - old
+    assert np.isfinite(ds["normal_force"]).all()
+
+
+def test_killed_and_then_grown_study_keeps_finished_blocks(tmp_path, solved):
+    assert run_apart(tmp_path, 45).returncode == -9
+    plan, _, _ = run(changed(axial_force=[10.0, *LOADS]), tmp_path)
+    assert sum(solved().values()) <= plan.size + 20
+
+
+def test_accuracy_and_material_values_change_the_identity(tmp_path, solved):
+    run(DATA, tmp_path)
+    run(DATA | {"accuracy": "preview"}, tmp_path)
+    assert set(solved().values()) == {2}
+    run(DATA | {"base": {"roller_material": "PA6"}}, tmp_path)
+    assert set(solved().values()) == {3}
+    run(DATA | {"description": "other words", "seed": 5}, tmp_path)
+    assert set(solved().values()) == {3}
+
+
+def flip(path):
+    data = bytearray(path.read_bytes())
+    for place in range(len(data) // 4, len(data)):
+        data[place] ^= 0x55
+    path.write_bytes(data)  # in place: under both names of a chunk
+
+
+def cut(path):
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def empty(path):
+    path.write_bytes(b"")
+
+
+def spoil_the_middle(path):
+    data = np.frombuffer(path.read_bytes(), dtype=np.uint8).copy()
+    used = np.flatnonzero(data)  # a small file is mostly empty space
+    data[used[len(used) // 3 : 2 * len(used) // 3]] ^= 0x5A
+    path.write_bytes(data.tobytes())
+
+
+def put_another_in_its_place(path):
+    other = next(p for p in sorted(path.parent.glob(f"*{path.suffix}")) if p != path)
+    path.write_bytes(other.read_bytes())
+
+
+@pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle, put_another_in_its_place])
+@pytest.mark.parametrize("place", ["store", "chunks", "plan"])
+def test_damaged_file_is_found_named_and_mended(tmp_path, solved, damage, place):
+    plan, whole, _ = run(DATA, tmp_path)
+    victim = sorted((plan.folder.root / place).glob("*.n*"))[1]
+    damage(victim)
+    _, again, lines = run(DATA, tmp_path)
+    xr.testing.assert_identical(again.drop_attrs(), whole.drop_attrs())
+    assert sum(n - 1 for n in solved().values()) == (0 if place == "plan" else 20)
+    assert any(victim.name in line and "corrupt" in line for line in lines)
+
+
+def test_chunk_whose_one_copy_is_damaged_is_mended_from_the_other(tmp_path, solved):
+    plan, _, _ = run(DATA, tmp_path)
+    shown, kept = (plan.folder.chunk(n) for n in plan.chunks), list(map(plan.folder.kept, plan.chunks))
+    for place in shown:  # as after copying the folder: two files in place of two names
+        data = place.read_bytes()
+        place.unlink()
+        place.write_bytes(data)
+    flip(kept[0])
+    run(DATA, tmp_path)
+    assert max(solved().values()) == 1 and kept[0].is_file()
+
+
+def test_deleted_shown_chunk_is_made_again_from_the_store(tmp_path, solved):
+    plan, _, _ = run(DATA, tmp_path)
+    shutil.rmtree(plan.folder.root / "chunks")
+    run(DATA, tmp_path)
+    assert max(solved().values()) == 1
+    assert len(list((plan.folder.root / "chunks").glob("*.nc"))) == len(plan.chunks)
+
+
+def test_failed_cases_are_rows_with_a_reason_and_the_rest_goes_on(tmp_path, monkeypatch, solved):
+    data = changed(axial_force=[7.0, 13.0, *LOADS])
+    _, ds, _ = run(data, tmp_path)
+    assert int((ds["regime"] == 3).sum()) == 4
+    assert "thirteen" in str(ds["reason"].sel(axial_force=13.0).values[0])
+    assert "no convergence" in str(ds["reason"].sel(axial_force=7.0).values[0])
+    assert ds["normal_force"].sel(axial_force=13.0).isnull().all()
+    assert int(ds["converged"].sum()) == 60
+    status = status_of(parse_study(data), tmp_path)
+    assert (status.total, status.done, status.failed) == (64, 64, 4)
+    assert status.by_level[("axial_force", "13")] == 2
+    before = sum(solved().values())
+    mended = lambda design, database=None, **o: fake_solver.solve(design.assign(axial_force=design.axial_force + 100))  # noqa: E731
+    plan = run_study(parse_study(data), tmp_path, solver=mended, rerun_failed=True)
+    assert sum(solved().values()) - before == 4
+    with xr.open_dataset(plan.folder.gathered) as again:
+        assert int((again["regime"] == 3).sum()) == 0
+
+
+def test_two_models_as_a_factor_stand_side_by_side(tmp_path):
+    plan, ds, _ = run(DATA | {"spin_model": ["edge", "skewed"]}, tmp_path)
+    assert ds.sizes["spin_model"] == 2 and plan.size == 120
+
+
+def test_sampled_study_has_the_dimension_case(tmp_path):
+    _, ds, _ = run({"name": "l", "design": "lhs", "samples": 50, "outputs": ["forces"],
+                    "factors": {"axial_force": {"uniform": [20, 50]}}}, tmp_path)  # fmt: skip
+    assert ds.sizes["case"] == 50 and ds["axial_force"].dims == ("case",)
+
+
+def test_table_of_cases(tmp_path):
+    (tmp_path / "cases.csv").write_text("axial_force,roller_material\n20,PA6\n30,POM\n")
+    study = parse_study({"name": "t", "design": "table", "table": "cases.csv", "outputs": ["forces"]},
+                        tmp_path / "t.yaml")  # fmt: skip
+    plan = run_study(study, tmp_path, solver=fake_solver.solve)
+    with xr.open_dataset(plan.folder.gathered) as ds:
+        assert list(ds["roller_material"].values) == ["PA6", "POM"]
+
+
+def test_results_folder_that_cannot_be_written_is_an_input_error(tmp_path):
+    (tmp_path / "s").write_text("a file where the folder should be")
+    with pytest.raises(InputError, match="cannot be a folder"):
+        make_plan(parse_study(DATA), tmp_path)
+
+
+def test_full_disk_ends_with_a_clear_message_and_leaves_nothing_behind(tmp_path):
+    def write(beside):
+        with open("/dev/full", "wb", buffering=0) as stream:
+            beside.write_bytes(b"half")
+            stream.write(b"x")
+
+    with pytest.raises(WorkError, match=r"disk is full.*kept"):
+        write_whole(tmp_path / "out.nc", write)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_really_full_disk_and_then_resume(tmp_path, solved):
+    mount = tmp_path / "small"
+    mount.mkdir()
+    done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "tmpfs", str(mount)], capture_output=True)
+    if done.returncode:
+        pytest.skip("no right to mount a small disk here")
+    many = changed(friction_coefficient=np.linspace(0.01, 0.9, 60).tolist()) | {"chunk_size": 600}
+    try:
+        with pytest.raises(WorkError, match="kept"):
+            run(many, mount)
+        assert not list(mount.rglob("*.tmp"))
+        before = solved()
+        assert before, "some cases were finished"
+        subprocess.run(["mount", "-o", "remount,size=60m", str(mount)], check=True)
+        run(many, mount)
+        assert sum(n - 1 for n in solved().values()) <= 256, "no more than the block that could not be written"
+    finally:
+        subprocess.run(["umount", "-l", str(mount)], check=False)
+
+
+def test_block_survives_the_file_and_damage_never_does(tmp_path):
+    block = store.failure(np.array([b"a" * 32, b"b" * 32]), "reason")
+    store.write(tmp_path / "x.nc", block)
+    again = store.read(tmp_path / "x.nc")
+    assert again.reasons == block.reasons and (again.values == block.values).all()
+    whole = (tmp_path / "x.nc").read_bytes()
+    rng = np.random.default_rng(1)
+    for place in rng.integers(0, len(whole), 40):
+        data = bytearray(whole)
+        data[place] ^= 1 << int(rng.integers(8))
+        (tmp_path / "y.nc").write_bytes(data)
+        try:
+            found = store.read(tmp_path / "y.nc")
+        except store.CorruptFile:
+            continue
+        assert (found.values == block.values).all() and found.reasons == block.reasons
+
+
+def test_numbers_of_a_case_do_not_depend_on_its_neighbours():
+    """The real solver: else a resumed run could not end bit for bit like an undisturbed one."""
+    import trackroller as tr
+
+    design = tr.load_study(HERE.parent / "config" / "studies" / "default.yaml").design()
+    design = design.drop_vars(list(design.coords)).isel(case=np.random.default_rng(3).permutation(5400)[:60])
+    whole = tr.solve(design)
+    for size in (1, 4, 23):
+        for start in range(0, 60 if size > 1 else 10, size):
+            part = tr.solve(design.isel(case=slice(start, start + size)))
+            for name in whole.data_vars:
+                np.testing.assert_array_equal(part[name].values, whole[name].values[start : start + size], err_msg=name)
+
+
+SAMPLED = {"a": {"uniform": [0.01, 0.5]}, "axial_force": {"expression": "20 + 40 * a"},
+           "friction_coefficient": {"uniform": [0.05, 0.3]},
+           "radial_force": {"values": [-200.0, -150.0, -100.0]}, "motor_force": {"values": [0.0, -10.0]}}  # fmt: skip
+
+
+@pytest.mark.parametrize(("design", "small", "large"), [
+    ("lhs", 30, 60), ("lhs", 30, 47), ("sobol", 30, 50), ("saltelli", 8, 16), ("morris", 5, 9), ("nested", 10, 15),
+])  # fmt: skip
+def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, solved, design, small, large):
+    data = {"name": "g", "design": design, "outputs": ["forces"], "factors": SAMPLED, "chunk_size": 20}
+    run(data | {"samples": small}, tmp_path)
+    before = solved()
+    plan, ds, _ = run(data | {"samples": large}, tmp_path)
+    cases = len(np.unique(identify(plan.study, plan.study.design())))
+    assert 0 < sum(before.values()) < sum(solved().values()) == cases, "each case of the larger sample once"
+    run(data | {"samples": large}, tmp_path)
+    assert sum(solved().values()) == cases, "planning again changes nothing"
+    assert status_of(parse_study(data | {"samples": large}), tmp_path).missing == 0
+    assert np.isfinite(ds["normal_force"]).all()
+
+
+def test_doubled_latin_hypercube_is_one_again_and_every_size_keeps_its_rows():
+    from trackroller.study.design.grown_lhs import grown_lhs
+
+    small, large, odd = (grown_lhs(3, sizes, 4) for sizes in ([20], [20, 40], [20, 40, 57]))
+    assert (large[:20] == small).all() and (odd[:40] == large).all()
+    assert (np.sort((large * 40).astype(int), axis=0) == np.arange(40)[:, None]).all()
+    assert all(len(np.unique((column * 57).astype(int))) >= 45 for column in odd.T)
+    assert ((odd >= 0) & (odd < 1)).all()

@@ -1,0 +1,51 @@
+"""Edge scenes: the quick part of the catalogue holds, kernels keep digits, random extremes are finite or flagged."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from validation.extremes.checks import examine, run_cases
+from validation.extremes.kernels import KERNELS
+from validation.extremes.random_cases import random_extremes
+from validation.extremes.scenes import scenes, thinned
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("scene", scenes(), ids=lambda s: s.name)
+def test_claims_on_a_scene_hold(scene):
+    broken = [f for f in examine(scene, "sliding", "preview")[1] if not f.holds]
+    assert not broken
+
+
+@pytest.mark.parametrize("model", ["kalker", "fastsim"])
+def test_rolling_contact_holds_on_a_thinned_scene(model):
+    scene = next(s for s in scenes() if s.name == "loads")
+    broken = [f for f in examine(thinned(scene, 4), model, "preview")[1] if not f.holds]
+    assert not broken
+
+
+@pytest.mark.parametrize("kernel", KERNELS, ids=lambda k: k.__name__)
+def test_a_kernel_keeps_its_digits(kernel):
+    assert kernel().holds
+
+
+@settings(max_examples=6, deadline=None, derandomize=True)
+@given(st.integers(0, 2**31))
+def test_random_extremes_are_finite_or_flagged_and_quiet(seed):
+    ds, warned = run_cases(random_extremes(40, seed), "sliding", "preview")
+    carries = ds.regime.values < 2
+    assert warned == 0
+    for name in ("normal_force", "lateral_force", "driving_force", "max_pressure", "peak_stress", "life_cycles"):
+        assert not np.isnan(ds[name].values[carries]).any()
+        assert np.isnan(ds[name].values[~carries]).all()
+    assert (ds.regime.values == 3).mean() < 0.1
+
+
+def test_the_page_is_what_its_data_say():
+    assert subprocess.run([sys.executable, "-m", "validation.adopt.extremes", "--check"], cwd=ROOT, check=False).returncode == 0

@@ -1,0 +1,1 @@
+"""Analyse a solved study: sensitivity indices, convergence, robustness and Pareto sets."""

@@ -1,0 +1,104 @@
+"""Sensitivities as a labelled data set, and in words what was used, left out and goes together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+
+from trackroller.analysis import indices
+from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.outputs import Output
+
+CORRELATED = 0.5  # rank correlation of two columns of a table from which on it is told
+RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
+Fields = dict[str, np.ndarray]
+
+
+def note(column: Output, used: int, total: int, unit: str) -> str:
+    """What was used for one output and why the rest was not, in words."""
+    if indices.constant(column.values):
+        return "constant or never usable: no index can be given"
+    text = f"{used} of {total} {unit} used"
+    if column.excluded:
+        text += "; rows left out: " + ", ".join(f"{n} {why}" for why, n in column.excluded.items())
+    if used < RELIABLE * total:
+        text += "; the indices hold for the usable region only"
+    return text
+
+
+def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
+    """How the regimes of a study were treated, in words."""
+    counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
+    words = {name: name.replace("_", " ").replace("lift off", "lift-off") for name in REGIMES}
+    text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
+    left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
+    if not left:
+        return f"{text}; no row left out for its regime"
+    return (f"{text}; {' and '.join(left)} rows left out of every index and never filled in; "
+            "their occurrence is analysed as an output of its own")  # fmt: skip
+
+
+def correlated(design: SampledDesign) -> str:
+    """Warning of columns of a table that go together, in words; empty for designs whose factors are independent."""
+    if design.method != "table" or len(design.factors) < 2:
+        return ""
+    from scipy.stats import rankdata
+
+    names = list(design.factors)
+    table = np.abs(np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False)))
+    pairs = [(float(table[i, j]), names[i], names[j]) for i in range(len(names)) for j in range(i)]
+    size, one, other = max(pairs)
+    if size < CORRELATED:
+        return ""
+    both = f"{factor_name(other)} and {factor_name(one)}"
+    return f"; {both} go together (rank correlation {size:.2f}): each is given the influence of both"
+
+
+_DIMS = {1: ("output", "factor"), 2: ("output", "factor", "factor_2"), 0: ("output",)}
+_WORDS = {
+    "S1": "first-order Sobol index", "ST": "total Sobol index", "S2": "second-order Sobol index",
+    "mu": "mean elementary effect", "mu_star": "mean absolute elementary effect",
+    "sigma": "standard deviation of elementary effects", "effects_used": "elementary effects used",
+    "main_share": "share of variance of main effect", "interaction_share": "share of variance of interaction",
+    "higher_share": "share of variance of interactions of three and more factors",
+    "effect": "change over the factor's range", "curvature": "quadratic coefficient, coded",
+    "interaction": "two-factor interaction effect", "r_squared": "share of variance fitted",
+    "fit_alone": "share of variance alone, by a fitted polynomial",
+    "fit_share": "share of variance predicted by the fitted polynomial",
+    "first": "share of variance explained alone, from given data", "pawn": "PAWN index", "delta": "delta index",
+    "pawn_noise": "PAWN index an inert factor stays below", "delta_noise": "delta index an inert factor stays below",
+    "prcc": "partial rank correlation coefficient",
+}  # fmt: skip
+
+
+def labelled(design: SampledDesign, columns: list[Output], results: list[Fields], at: np.ndarray) -> xr.Dataset:
+    """Results of each output as one data set; `at` holds the sample sizes of the courses."""
+    out = xr.Dataset(coords={
+        "output": np.array([c.name for c in columns], dtype=object),
+        "factor": np.array(list(design.factors), dtype=object),
+        "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
+        "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
+        "scale": ("output", np.array([c.scale for c in columns], dtype=object)),
+        "factor_name": ("factor", np.array([factor_name(n) for n in design.factors], dtype=object)),
+    })  # fmt: skip
+    for name in results[0]:
+        values = np.stack([r[name] for r in results])
+        root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")
+        dims = ("output", "sample_size", "factor") if "_course" in name else _DIMS[values.ndim - 1]
+        attrs = {"units": "1", "long_name": _WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
+        if root in ("mu", "mu_star", "sigma", "effect", "curvature", "interaction"):
+            attrs["units"], attrs["comment"] = "", "in units of the output on its scale (log10: decades)"
+        out[name] = (dims, values, attrs)
+    if "factor_2" in out.dims:
+        out = out.assign_coords(factor_2=out["factor"].values)
+    if at.size and "sample_size" in out.dims:
+        out = out.assign_coords(sample_size=at)
+    return out
+
+
+def factor_name(name: str) -> str:
+    """A factor's name for people: that of the parameter, or its own with spaces."""
+    return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")

@@ -1,0 +1,84 @@
+"""The design behind a result: drawn again from the study file stored in it, and checked against its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factors import Factor
+from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
+from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study
+
+
+def design_of(ds: xr.Dataset, study: Mapping[str, Any] | None = None) -> SampledDesign:
+    """The design a study was solved on, drawn again from the stored study file and checked against its rows.
+
+    Raises `InputError` if the stored factors do not reproduce the rows.
+    """
+    study = read_study(ds) if study is None else study
+    method = str(study.get("design", ds.attrs.get("design", ""))) if study else ""
+    if not method:
+        raise InputError("study", ds.attrs.get("study"), "a result with its merged study file as attribute `study`")
+    specs = dict(study.get("factors", {}))
+    for name in OPTION_FACTORS:
+        if isinstance(study.get(name), list):
+            specs[name] = {"values": study[name]}
+    if method == "table":
+        return _table_design(ds, specs)
+    options = {k: study[k] for k in OPTIONS.get(method, {}) if study.get(k) is not None}
+    base = {k: v for k, v in study.get("base", {}).items() if isinstance(v, (int, float))}
+    design = sample(specs, method, int(study.get("samples", 1024)), int(study.get("seed", 1)), base=base, **options)
+    _check_rows(ds, design)
+    return design
+
+
+def _check_rows(ds: xr.Dataset, design: SampledDesign) -> None:
+    dims = case_dims(ds, design.factors)
+    rows = int(np.prod([ds.sizes[d] for d in dims])) if dims else 1
+    if rows != design.size:
+        raise InputError("study", f"{rows} rows", f"the {design.size} rows of its design {design.method}",
+                         "Gather the study again.")  # fmt: skip
+    for name, factor in design.factors.items():
+        if name not in ds.variables or not factor.ordered or ds[name].dtype.kind not in "fiu":
+            continue
+        if not np.allclose(flat(ds, name, dims), design.columns[name], rtol=1e-6, atol=1e-12):
+            raise InputError("study", name, "the values of its design: same seed, same samplers",
+                             "Rows and study file do not belong together: run the study again.")  # fmt: skip
+
+
+def _table_design(ds: xr.Dataset, specs: Mapping[str, Any]) -> SampledDesign:
+    """A table's factors are those columns that vary; expressions beside it are not independent."""
+    names = [str(n) for n in ds.variables if ds[n].dims == ("case",) and n not in specs and n != "case"
+             and (n in PARAMETERS or n in ds.coords or ds[n].dtype.kind in "OUST")]  # fmt: skip
+    columns: dict[str, np.ndarray] = {}
+    free: dict[str, Factor] = {}
+    for name in names:
+        if name in BOOKKEEPING - {"material_pair"}:
+            continue
+        values = ds[name].values
+        number = values.dtype.kind in "fiu"
+        if number and not np.isfinite(values.astype(float)).all() and np.isnan(values.astype(float)).any():
+            continue
+        levels = tuple(dict.fromkeys(values.tolist()))
+        if len(levels) > 1:
+            columns[name] = values.astype(float) if number else values.astype(object)
+            free[name] = Factor(name, "values", levels=levels)
+    if "material_pair" in free:  # the two materials are the pair once more
+        for name in MATERIAL_FIELDS:
+            columns.pop(name, None)
+            free.pop(name, None)
+    if not free:
+        raise InputError("study", list(ds.variables), "a table with at least one column that varies")
+    unit = np.stack([columns[n] if f.ordered else _index(columns[n], f) for n, f in free.items()], axis=1)
+    return SampledDesign(columns, free, "table", unit.astype(float), {})
+
+
+def _index(values: np.ndarray, factor: Factor) -> np.ndarray:
+    where = {level: i for i, level in enumerate(factor.levels)}
+    return np.array([where[v] for v in values.tolist()], dtype=float)

@@ -1,0 +1,7 @@
+"""The command line, one module for each group of commands, and what the workflow's scripts call."""
+
+from __future__ import annotations
+
+from trackroller.cli.main import main
+
+__all__ = ["main"]

@@ -1,0 +1,192 @@
+"""The command line: parse, call, print. Exit 0 done, 1 the work failed, 2 the input is wrong."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from trackroller import __version__
+from trackroller.errors import InputError
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False,
+                  help="Parameter studies of locating-bearing track rollers.")  # fmt: skip
+materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
+app.add_typer(materials, name="materials")
+
+NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="spare nothing; the numbers stay the same")]
+Results = Annotated[Path, typer.Option("--results", help="folder that holds results/NAME/")]
+StudyFile = Annotated[Path, typer.Argument(help="study file (YAML)", show_default=False)]
+AnyStudy = Annotated[str, typer.Argument(help="study file, or name of a study that was run", show_default=False)]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"trackroller {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="print it")] = False,
+) -> None:
+    pass
+
+
+@app.command()
+def solve(
+    case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
+    settings: Annotated[list[str] | None, typer.Option("--set", help="key=value, again and again")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+    no_shortcuts: NoShortcuts = False,
+) -> None:
+    """Solve one case; exit 1 if it fails. Keys: parameters and materials of a case, options of a study file."""
+    from trackroller.cli.case import as_text, is_failed, print_json, solve_case, write_result
+
+    dataset = solve_case(case, settings or [], **({"shortcuts": False} if no_shortcuts else {}))
+    if out is not None:
+        write_result(dataset, out)
+    if as_json:
+        print_json(dataset)
+    elif out is None:
+        as_text(dataset)
+    if is_failed(dataset):
+        if as_json or out is not None:
+            print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
+        raise typer.Exit(1)
+
+
+@app.command()
+def plan(
+    target: Annotated[Path | None, typer.Argument(help="study or case file (YAML)", show_default=False)] = None,
+    results: Results = Path("results"),
+    explain: Annotated[bool, typer.Option("--explain", help="stages that run, and those that are spared")] = False,
+    settings: Annotated[list[str] | None, typer.Option("--set", help="key=value of a case")] = None,
+    no_shortcuts: NoShortcuts = False,
+) -> None:
+    """Number of cases, chunks, expected time and disk, and with --explain the stages; nothing is solved."""
+    from trackroller.cli.plan import print_plan
+
+    print_plan(target, results, explain, settings or [], no_shortcuts)
+
+
+@app.command()
+def run(
+    study: StudyFile,
+    results: Results = Path("results"),
+    rerun_failed: Annotated[bool, typer.Option("--rerun-failed", help="solve failed cases anew")] = False,
+    scheduler: Annotated[str | None, typer.Option(help="local or tcp://host:port, dask.distributed")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no progress bar")] = False,
+) -> None:
+    """Solve what is missing of a study and gather it; stop and start again as often as you like."""
+    from trackroller.cli.study import run_with_progress
+
+    run_with_progress(study, results, rerun_failed, scheduler, quiet)
+
+
+@app.command()
+def status(study: AnyStudy, results: Results = Path("results")) -> None:
+    """Done, missing, failed by reason and by factor level, and the time left."""
+    from trackroller.cli.study import print_status
+
+    print_status(study, results)
+
+
+@app.command()
+def repeat(
+    study: AnyStudy,
+    case: Annotated[int, typer.Argument(help="case number (variable `case` of study.nc)", show_default=False)],
+    results: Results = Path("results"),
+) -> None:
+    """Solve one case of a study anew and compare; prints the command that does so without the study."""
+    from trackroller.cli.study import print_repeat
+
+    raise typer.Exit(print_repeat(study, case, results))
+
+
+@app.command()
+def spectrum(
+    file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+) -> None:
+    """Damage of a load spectrum per shift, and life in shifts of roller and guide."""
+    from trackroller.cli.spectrum import run_spectrum
+
+    run_spectrum(file, as_json, out)
+
+
+@app.command()
+def plot(
+    target: Annotated[str, typer.Argument(help="case file (YAML), or name of a study", show_default=False)],
+    settings: Annotated[list[str] | None, typer.Option("--set", help="key=value of a case")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="folder for the figures")] = None,
+    results: Results = Path("results"),
+) -> None:
+    """Draw a case (tractions, friction energy, stress sections) or the figures of a study."""
+    from trackroller.cli.case import plot_target
+
+    plot_target(target, settings or [], out, results)
+
+
+@materials.command("list")
+def materials_list() -> None:
+    """Names and values of all materials."""
+    from trackroller.cli.materials import print_list
+
+    print_list()
+
+
+@materials.command("show")
+def materials_show(name: Annotated[str, typer.Argument(show_default=False)]) -> None:
+    """Every value of a material with unit, source and mark."""
+    from trackroller.cli.materials import print_material
+
+    print_material(name)
+
+
+@materials.command("friction")
+def materials_friction() -> None:
+    """Friction coefficients by pair."""
+    from trackroller.cli.materials import print_friction
+
+    print_friction()
+
+
+@materials.command("add")
+def materials_add(
+    name: Annotated[str, typer.Argument(show_default=False)],
+    settings: Annotated[list[str], typer.Option("--set", help="field=value, e.g. youngs_modulus=210000")],
+    file: Annotated[Path, typer.Option(help="your materials file")] = Path("config/materials.yaml"),
+    replace: Annotated[bool, typer.Option("--replace", help="change a material that is there already")] = False,
+) -> None:
+    """Put a material into your own file; comments in it stay."""
+    from trackroller.cli.materials import add
+
+    add(name, settings, file, replace)
+
+
+def main() -> None:
+    """Entry point: every foreseeable error is one line on stderr."""
+    from trackroller.study.files import WorkError, disk_error
+
+    try:
+        app()
+    except InputError as exc:
+        print(f"trackroller: {exc}", file=sys.stderr)
+        raise SystemExit(2) from None
+    except WorkError as exc:
+        print(f"trackroller: {exc}", file=sys.stderr)
+        raise SystemExit(1) from None
+    except KeyboardInterrupt:
+        print("trackroller: stopped; finished cases are kept, the same command goes on", file=sys.stderr)
+        raise SystemExit(1) from None
+    except BrokenPipeError:
+        sys.stderr.close()
+        raise SystemExit(1) from None
+    except OSError as exc:
+        print(f"trackroller: {disk_error(exc, Path(str(exc.filename or 'a file')))}", file=sys.stderr)
+        raise SystemExit(1) from None

@@ -1,0 +1,95 @@
+"""What a study or a case will ask of the machine, told before anything is solved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from trackroller.study.config import load_study
+from trackroller.study.cost import bytes_a_case, duration, measured_rate, size, study_rate
+
+MOST = 20_000  # cases of a study that --explain looks at
+
+
+def print_plan(path: Path | None, results: Path, explain: bool, words: list[str], no_shortcuts: bool) -> None:
+    """Plan of a study file, or of a case file (or of the paper's example) with `words` key=value."""
+    from trackroller.cli.case import is_study
+
+    if path is None or not is_study(path):
+        _print_case(path, words, no_shortcuts)
+        return
+    _print_study(path, results)
+    if explain:
+        print()
+        _explain_study(path, no_shortcuts)
+
+
+def _print_study(path: Path, results: Path) -> None:
+    """Cases, chunks, expected time and disk; nothing is written."""
+    from trackroller.study.plan import chunk_size, study_folder
+    from trackroller.study.status import status_of
+
+    study = load_study(path)
+    status = status_of(study, results)
+    chunk = chunk_size(study, status.missing)
+    measured = measured_rate(study_folder(study.name, results).root / "store")
+    chunks = -(-status.missing // chunk)
+    speed = measured or study_rate(study)
+    seconds = status.missing / speed
+    told = "measured" if measured else "estimated"
+    print(f"study     {study.name} ({study.config.design})")
+    print(f"cases     {status.total}, {status.done} of them solved already")
+    print(f"chunks    {chunks} of up to {chunk} cases")
+    print(f"time      {duration(seconds)} on one core, {duration(seconds / 2)} on two ({told} cases/s: "
+          f"{speed:.3g})")  # fmt: skip
+    print(f"disk      about {size(status.total * bytes_a_case(study.config.outputs))}")
+
+
+def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
+    from trackroller.cli.case import case_of
+    from trackroller.roller.case import to_table
+    from trackroller.roller.options import Options
+
+    case, told = case_of(path, words)
+    if no_shortcuts:
+        told["shortcuts"] = False
+    _print_stages(to_table(case), Options(**told))
+
+
+def _explain_study(path: Path, no_shortcuts: bool) -> None:
+    from trackroller.roller.case import to_table
+    from trackroller.roller.options import Options
+    from trackroller.study.design.entries import OPTION_FACTORS
+    from trackroller.study.plan import case_options
+
+    study = load_study(path)
+    design = study.design()
+    table = to_table(design.drop_vars(list(design.coords)), study.materials)
+    options, group = case_options(study, design)
+    if len(table) > MOST:
+        print(f"stages of the first {MOST} of {len(table)} cases")
+        table, group = table.take(np.arange(MOST)), group[:MOST]
+    for number in np.unique(group):
+        rows = np.flatnonzero(group == number)
+        told = dict(options if isinstance(options, dict) else options[rows[0]])
+        if no_shortcuts:
+            told["shortcuts"] = False
+        if not isinstance(options, dict):
+            varied = [name for name in OPTION_FACTORS if name in study.factors]
+            print(", ".join(f"{name.replace('_', ' ')} {told[name]}" for name in varied) + ":")
+        _print_stages(table.take(rows), Options(**told))
+
+
+def _print_stages(table, options) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from trackroller.study.explain import explain
+
+    console = Console(width=None if Console().is_terminal else 140)
+    shown = Table("stage", "runs", "of", "why")
+    shown.columns[1].justify = shown.columns[2].justify = "right"
+    for stage in explain(table, options):
+        shown.add_row(stage.name, f"{stage.count}" if stage.runs else "-", f"{stage.total} {stage.unit}", stage.why)
+    console.print(shown)

@@ -1,0 +1,77 @@
+"""Command about a load spectrum: damage of a shift, and how many shifts the parts last."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.parameters import REGIMES
+from trackroller.study.spectrum.damage import BODIES, summary
+from trackroller.study.spectrum.solve import load_spectrum, solve_spectrum
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def run_spectrum(path: Path, as_json: bool, out: Path | None) -> None:
+    """Solve the blocks of a spectrum file; print tables, JSON or write netCDF."""
+    from trackroller.cli.case import print_json, write_result
+
+    dataset = solve_spectrum(load_spectrum(path))
+    if out is not None:
+        write_result(dataset, out)
+    if as_json:
+        print_json(dataset)
+    elif out is None:
+        print_spectrum(dataset)
+
+
+def print_spectrum(ds: xr.Dataset) -> None:
+    """Damage of each block, lives in shifts, and in words what decides them."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(width=None if Console().is_terminal else 140)
+    title = f"{ds.attrs['title']}: damage per shift, in the track of each body that fails first"
+    table = Table("block", "distance [m]", "regime", title=title, title_justify="left")
+    for body in BODIES:
+        table.add_column(f"{body} peak [MPa]", justify="right")
+        table.add_column(f"{body} damage [-]", justify="right")
+    for i, name in enumerate(ds["block"].values):
+        cells = [str(name), f"{float(ds['distance'][i]):g}", REGIMES[int(ds["regime"][i])].replace("_", " ")]
+        for body in BODIES:
+            track = _track(ds, body)
+            for variable in ("peak_stress", "damage"):
+                cells.append(_cell(float(ds[variable].sel(body=body, contact=track)[i])))
+        table.add_row(*cells)
+    sums = [_cell(float(ds["damage_sum"].sel(body=b, contact=_track(ds, b)))) for b in BODIES]
+    table.add_row("sum", f"{float(ds['distance'].sum()):g}", "", "", sums[0], "", sums[1])
+    console.print(table)
+    for body in BODIES:
+        shifts = _cell(float(ds[f"{body}_life_shifts"]))
+        console.print(f"{body:<7} {shifts} shifts{_scatter(ds, body)}", highlight=False)
+    for sentence in summary(ds):
+        console.print(sentence, highlight=False)
+
+
+def _track(ds: xr.Dataset, body: str) -> int:
+    shifts = ds["life_shifts"].sel(body=body).values
+    return int(ds["contact"].values[int(np.argmin(np.where(np.isnan(shifts), np.inf, shifts)))])
+
+
+def _cell(value: float) -> str:
+    return "-" if np.isnan(value) else "unlimited" if np.isinf(value) else f"{value:.4g}"
+
+
+def _scatter(ds: xr.Dataset, body: str) -> str:
+    """Shifts at each failure probability, where the material gives its scatter."""
+    if "life_shifts_at_probability" not in ds:
+        return ""
+    lives = ds["life_shifts_at_probability"].sel(body=body)
+    if bool(lives.isnull().all()):
+        return ""
+    said = [f"{_cell(float(lives.sel(probability=p).min(skipna=False)))} until {100 * float(p):g} % have failed"
+            for p in ds["probability"].values]  # fmt: skip
+    return f" ({', '.join(said)})"

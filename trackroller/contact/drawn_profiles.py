@@ -1,0 +1,193 @@
+"""Cross-sections and gaps beside one contact from the profiles that a case tells (see `profiles.canonical`)."""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, with_edges
+from trackroller.contact.profiles import FEWEST
+from trackroller.errors import ShapeError
+
+ASIDE, FIRST = 0.2, 5e-4  # of that radius: bodies that meet so far from it and so much earlier touch elsewhere
+INTERLOCK = 0.01  # of the guide's profile radius, by which shapes may overlap beside the nominal contact
+ASTRAY = 2.5  # times further or nearer to the middle than the nominal contact a drawn one may be
+NARROWEST, WIDEST = 5e-3, 50.0  # extent of points about the contact, over the guide's profile radius
+
+
+@lru_cache(maxsize=256)
+def _parsed(text: str) -> dict[str, Any]:
+    return json.loads(text)
+
+
+def cross_section(text: str, body: str, radius: float, alpha: float, guide_radius: float, side: int) -> CrossSection:
+    """The cross-section of one body beside one contact.
+
+    Parameters
+    ----------
+    text : canonical JSON of the profile, '' for the circle of `radius` [mm]
+    body : 'guide_profile' or 'roller_profile'
+    alpha : contact angle [rad]; guide_radius : nominal r_C,G [mm], which places the contact beside the middle
+    side : 1 or 2, the contact
+
+    Without edges of its own, a circle ends at the middle of the guide, where the other flank begins, and at the
+    guide's equator. Raises `ShapeError` if a drawn curve has nowhere the inclination of the contact.
+    """
+    told: dict[str, Any] = _parsed(text) if text else {"arc": radius}
+    middle, equator = -guide_radius * math.sin(alpha), guide_radius * math.cos(alpha)
+    if "arc" in told:
+        shape = with_edges(arcs([told["arc"]], []), middle, equator)
+    elif "parabola" in told:
+        shape = with_edges(parabola(told["parabola"]), middle, equator)
+    elif "arcs" in told:
+        rows = told["arcs"]
+        shape = with_edges(arcs([r["radius"] for r in rows], [r["to"] for r in rows[:-1]]), middle, equator)
+    else:
+        shape = _from_points(told, body, alpha, guide_radius, side)
+    edge: dict[str, float] = told.get("edge", {})
+    if "width" in told:
+        reach = (0.5 * told["width"] - guide_radius * math.sin(alpha)) / math.cos(alpha)
+        if reach <= 0.0:
+            apart = 2 * guide_radius * math.sin(alpha)
+            raise ShapeError(f"{body}.width", told["width"], f"more than {apart:.6g} mm, the distance of the contacts")
+        edge = {"outer": reach}
+    return with_edges(shape, -edge.get("inner", math.inf), edge.get("outer", math.inf), edge.get("chamfer", 0.0))
+
+
+def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: float, side: int) -> CrossSection:
+    points = np.asarray(told["points"])
+    x, z = points[:, 0], points[:, 1]
+    out = -1.0 if body == "roller_profile" else 1.0
+    noise = told.get("smooth", 0.0)
+    if told["frame"] == "contact":
+        wide = x[-1] - x[0]
+        if not NARROWEST < wide / guide_radius < WIDEST:
+            raise ShapeError(body, f"points over {wide:.4g} mm", f"{NARROWEST * guide_radius:.4g} to "
+                             f"{WIDEST * guide_radius:.4g} mm, beside a guide_profile_radius of {guide_radius:g} mm",
+                             "Give x and z in mm.")  # fmt: skip
+        return _flat_enough(drawn(x, out * z, noise), body, guide_radius)
+    if side == 2 and np.count_nonzero(x <= 0) >= FEWEST:
+        x, z = -x[::-1], z[::-1]
+    x, z = x[x >= 0], z[x >= 0]
+    if x.size < FEWEST:
+        raise ShapeError(body, f"{x.size} points with x >= 0", f"at least {FEWEST} on the side of a contact",
+                         "In frame: section x = 0 is the middle of the guide; see also frame: contact.")  # fmt: skip
+    nominal = guide_radius * math.sin(alpha)
+    u, w = x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
+    u, w = _single_valued(u, w)
+    apex = _touching_point(u, w, noise, body, alpha)
+    # back in the picture, where the nominal geometry has its contact too
+    place = apex * math.cos(alpha) + float(np.interp(apex, u, w)) * math.sin(alpha)
+    if not nominal / ASTRAY < place < nominal * ASTRAY:
+        raise ShapeError(body, f"a curve that is inclined by the contact angle {place:.4g} mm from the middle",
+                         f"{nominal / ASTRAY:.4g} to {nominal * ASTRAY:.4g} mm: the nominal contact lies "
+                         f"guide_profile_radius sin(contact_angle) = {nominal:.4g} mm from it",
+                         "Give x and z in mm, x = 0 in the middle, and the nominal radius near the drawn one; or use "
+                         "frame: contact.")  # fmt: skip
+    return _flat_enough(drawn(u - apex, out * w, noise), body, guide_radius)
+
+
+def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSection:
+    """The shape, if more than a speck of it is flat enough to bear; heights in other units are not."""
+    low, high = shape.limits
+    if high - low > NARROWEST * guide_radius:
+        return shape
+    raise ShapeError(body, f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact",
+                     f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least, beside a "
+                     f"guide_profile_radius of {guide_radius:g} mm",
+                     "Give x and z in mm; smooth what is noise (`smooth`).")  # fmt: skip
+
+
+def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The longest stretch in which the turned curve runs outward."""
+    breaks = np.flatnonzero(np.diff(u) <= 0)
+    starts, ends = np.concatenate([[0], breaks + 1]), np.concatenate([breaks + 1, [u.size]])
+    k = int(np.argmax(ends - starts))
+    return u[starts[k] : ends[k]], w[starts[k] : ends[k]]
+
+
+def _touching_point(u, w, noise, body: str, alpha: float) -> float:
+    """Where the curve is parallel to the tangent plane; the place nearest to the apex of a parabola through it."""
+    from trackroller.contact.cross_sections import smoothed
+
+    if u.size < FEWEST:
+        raise _nowhere_parallel(u, w, body, alpha)
+    spline = smoothed(u, w, noise)
+    slope = spline.derivative()
+    places = np.linspace(u[0], u[-1], 40 * u.size + 1)
+    values = slope(places)
+    turns = np.flatnonzero(values[:-1] * values[1:] <= 0)
+    if turns.size == 0:
+        raise _nowhere_parallel(u, w, body, alpha, (noise, values) if noise else None)
+    from scipy.optimize import brentq
+
+    roots = np.array([brentq(slope, places[k], places[k + 1]) if values[k] * values[k + 1] < 0
+                      else places[k + (values[k] != 0)] for k in turns])  # fmt: skip
+    square, linear, _ = np.polyfit(u - u.mean(), w, 2)
+    apex = u.mean() - 0.5 * linear / square if square != 0 else u.mean()
+    return float(roots[np.argmin(np.abs(roots - apex))])
+
+
+def _nowhere_parallel(u, w, body: str, alpha: float, smooth: tuple | None = None) -> ShapeError:
+    """The error of points without a contact, or of the curve if `smooth` (noise, slopes that it left) lost it."""
+    steps = np.diff(w) / np.diff(u) if u.size > 1 else np.full(1, math.tan(alpha))
+    angle = math.degrees(alpha)
+    points = angle - np.degrees(np.arctan(steps))
+    lean = points if smooth is None else angle - np.degrees(np.arctan(smooth[1]))
+    low, high = (round(float(v), 3) + 0.0 for v in (lean.min(), lean.max()))
+    wanted = f"one that is somewhere inclined by the contact angle of {angle:.4g} deg"
+    if smooth is not None and points.min() <= angle <= points.max():
+        return ShapeError(f"{body}.smooth", smooth[0], f"less: smoothed so, the curve is inclined by {low:.4g} to "
+                          f"{high:.4g} deg only, and {wanted} is needed (the points are)",
+                          "Give the standard deviation of the noise in mm, some 0.001, or 'auto'.")  # fmt: skip
+    upside_down = points.min() <= -angle <= points.max()
+    remedy = ("It is inclined so the other way round: z counts from the guide towards the roller's axis."
+              if upside_down else "Draw more of it, or use frame: contact.")  # fmt: skip
+    return ShapeError(body, f"a curve inclined by {low:.4g} to {high:.4g} deg", wanted, remedy)
+
+
+def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alpha: float, rolling_radius: float,
+        guide_curve_radius: float, side: int) -> Gap:  # fmt: skip
+    """The gap beside contact `side` of profiles in canonical JSON ('': the circle); lengths mm, angle rad.
+
+    Beside a parabola the other body, if not drawn, is a parabola too. Raises `ShapeError` for shapes that interlock.
+    """
+    if '"parabola"' in guide + roller:
+        guide = guide or json.dumps({"parabola": guide_radius})
+        roller = roller or json.dumps({"parabola": roller_radius})
+    found = Gap(cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
+                cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
+                alpha, rolling_radius, guide_curve_radius)  # fmt: skip
+    less = " Or smooth less: `smooth` is the noise in mm." if '"smooth"' in guide + roller else ""
+    _check_touch(found, "roller_profile" if roller else "guide_profile", guide_radius, less)
+    return found
+
+
+def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> None:
+    """`ShapeError` (its remedy with `more`) for bodies that overlap, or touch far from the nominal contact."""
+    x = np.linspace(*found.limits, 801)
+    lateral = found.lateral(x)
+    first, depth = float(x[np.argmin(lateral)]), float(-lateral.min())
+    if depth > INTERLOCK * guide_radius:
+        raise ShapeError(body, f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward",
+                         "shapes that touch at the nominal contact, give or take what load and wear can close",
+                         "Compare both profiles (and the radii of those not drawn) beside that point."
+                         + more)  # fmt: skip
+    if depth > FIRST * guide_radius and abs(first) > ASIDE * guide_radius:
+        raise ShapeError(body, f"shapes that touch {first:.3g} mm outward of the nominal contact, {depth:.3g} mm "
+                         "before they touch there",
+                         f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it: all lever arms rest on it",
+                         "Make the groove wider than the guide there, or mend contact_angle and the nominal "
+                         "radii." + more)  # fmt: skip
+
+
+def treats_sides_alike(text: str) -> bool:
+    """Does the profile treat both contacts alike (one mirrors the other)?"""
+    told = _parsed(text) if text else {}
+    if told.get("frame") != "section":
+        return True
+    return sum(p[0] <= 0 for p in told["points"]) < FEWEST

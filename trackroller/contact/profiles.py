@@ -1,0 +1,164 @@
+"""Drawn and measured cross-sections of guide and roller: what a case may say about them.
+
+The picture in which they are drawn, for both bodies the same::
+
+         z (towards the roller's axis)
+         |        roller: material above its curve
+         |     ___________
+         |   /   groove    \\
+         | /  .---------.   \\        guide: material below its curve
+         |  /   guide    \\
+    -----+--------------------> x (along the roller's axis)
+       x = 0: middle of the guide
+
+`frame: section` is this picture. Contact 1 takes its part with x >= 0, contact 2 that with x <= 0 mirrored (or the
+same part, if nothing is drawn there); the curve touches where its inclination is the contact angle. `frame: contact` is
+the picture turned by the contact angle, x = 0 at the nominal point of contact and x > 0 outward in both contacts, z
+along the common normal towards the roller. Where the two curves lie in the picture does not matter, only their shape.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from trackroller.contact.point_files import read_points
+from trackroller.errors import InputError, unknown_name
+
+FORMS = ("arc", "parabola", "arcs", "points", "file")
+KEYS = (*FORMS, "frame", "smooth", "edge", "width")
+EDGE_KEYS = ("inner", "outer", "chamfer")
+FRAMES = ("section", "contact")
+FEWEST, MOST = 5, 20_000  # points of a drawn cross-section
+
+
+def canonical(value: Mapping[str, Any], field: str = "profile") -> dict[str, Any]:
+    """A checked mapping of plain numbers that tells the same cross-section, files read into points.
+
+    Parameters
+    ----------
+    value : exactly one of
+        `arc: r` a circle (> 0 convex, < 0 a groove, inf straight) [mm];
+        `parabola: r` its approximation in Hertz's theory;
+        `arcs: [{radius: r, to: x}, ..., {radius: r}]` tangent arcs from inside to outside, x from the nominal contact;
+        `points: [[x, z], ...]` drawn or measured points [mm], x increasing;
+        `file: name.csv` the same as two columns of a file (see `trackroller.contact.point_files.read_points`);
+        and for points and files `frame: section | contact` (default section) and `smooth`: the standard deviation of
+        the measuring noise [mm], 'auto', or 0 (default: the spline goes through every point);
+        for all `edge: {inner: mm, outer: mm, chamfer: mm}`: where the material ends, as distances from the nominal
+        contact along the tangent plane, and the radius its edge is rounded with; or `width: mm`, of the whole
+        groove or guide along the roller's axis
+    field : `guide_profile` or `roller_profile`, for messages
+
+    Raises `InputError` naming the part, its value, what is allowed and what to do. An empty mapping gives {}.
+    """
+    if not value:
+        return {}
+    for key in value:
+        if key not in KEYS:
+            raise unknown_name(f"{field} entry", str(key), KEYS)
+    forms = [key for key in FORMS if key in value]
+    if len(forms) != 1:
+        raise InputError(field, sorted(map(str, value)), "exactly one of " + ", ".join(FORMS),
+                         "Keep the one that describes the cross-section.")  # fmt: skip
+    out = _shape(forms[0], value, field)
+    if "points" not in out:
+        for key in ("frame", "smooth"):
+            if key in value:
+                raise InputError(f"{field}.{key}", value[key], "only with points or a file", "Leave it out.")
+    if "edge" in value and "width" in value:
+        raise InputError(field, "edge and width", "one of both", "Keep the one that you know.")
+    if "edge" in value:
+        out["edge"] = _edge(value["edge"], f"{field}.edge")
+    if "width" in value:
+        out["width"] = _number(value["width"], f"{field}.width", positive=True)
+    return out
+
+
+def _number(value: Any, field: str, positive: bool = False, finite: bool = True) -> float:
+    words = ("a number > 0" if positive else "a number other than 0") + (" [mm]" if finite else " or inf [mm]")
+    try:
+        number = math.nan if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if math.isnan(number) or number == 0.0 or (positive and number < 0) or (finite and math.isinf(number)):
+        raise InputError(field, value, words)
+    return number
+
+
+def _shape(form: str, value: Mapping[str, Any], field: str) -> dict[str, Any]:
+    if form in ("arc", "parabola"):
+        return {form: _number(value[form], f"{field}.{form}", finite=False)}
+    if form == "arcs":
+        return {"arcs": _arcs(value["arcs"], f"{field}.arcs")}
+    rows = read_points(value["file"], f"{field}.file") if form == "file" else value["points"]
+    frame = value.get("frame", "section")
+    if frame not in FRAMES:
+        raise unknown_name(f"{field}.frame", str(frame), FRAMES)
+    out: dict[str, Any] = {"points": _points(rows, f"{field}.{form}"), "frame": frame}
+    x = [p[0] for p in out["points"]]
+    if frame == "contact" and not x[0] < 0 < x[-1]:
+        raise InputError(f"{field}.{form}", [x[0], x[-1]], "points on both sides of the nominal contact x = 0",
+                         "In frame: contact x counts from there; frame: section has x = 0 in the middle.")  # fmt: skip
+    smooth = value.get("smooth", 0.0)
+    if smooth != "auto" and not (_is_number(smooth) and 0.0 <= float(smooth) < math.inf):
+        raise InputError(f"{field}.smooth", smooth, "the standard deviation of the noise >= 0 [mm], or 'auto'")
+    if smooth:
+        out["smooth"] = smooth if smooth == "auto" else float(smooth)
+    return out
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
+
+
+def _arcs(rows: Any, field: str) -> list[dict[str, float]]:
+    if not isinstance(rows, (list, tuple)) or not rows or not all(isinstance(row, Mapping) for row in rows):
+        raise InputError(field, rows, "a list of {radius: mm, to: mm} from inside to outside, the last without `to`")
+    out: list[dict[str, float]] = []
+    for i, row in enumerate(rows):
+        here = f"{field}[{i}]"
+        for key in row:
+            if key not in ("radius", "to"):
+                raise unknown_name(f"{here} entry", str(key), ("radius", "to"))
+        last = i == len(rows) - 1
+        if "radius" not in row or ("to" in row) == last:
+            raise InputError(here, dict(row), "a radius, and where the arc ends (`to`) for all but the last")
+        arc = {"radius": _number(row["radius"], f"{here}.radius", finite=False)}
+        if not last:
+            if not (_is_number(row["to"]) and math.isfinite(row["to"])) or (out and row["to"] <= out[-1]["to"]):
+                raise InputError(f"{here}.to", row["to"], "a finite place [mm] beyond the end of the arc before")
+            arc["to"] = float(row["to"])
+        out.append(arc)
+    return out
+
+
+def _points(rows: Any, field: str) -> list[list[float]]:
+    try:
+        points = np.asarray([[float(v) for v in row] for row in rows], dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(field, rows if len(str(rows)) < 200 else "...", "rows of two numbers x, z [mm]") from None
+    if points.ndim != 2 or points.shape[1] != 2 or not FEWEST <= len(points) <= MOST:
+        raise InputError(field, f"an array of shape {points.shape}",
+                         f"{FEWEST} to {MOST} rows of two numbers x, z [mm]")  # fmt: skip
+    if not np.all(np.isfinite(points)):
+        row = int(np.flatnonzero(~np.all(np.isfinite(points), axis=1))[0])
+        raise InputError(f"{field}[{row}]", points[row].tolist(), "finite numbers", "Leave out what was not measured.")
+    falls = np.flatnonzero(np.diff(points[:, 0]) <= 0)
+    if falls.size:
+        row = int(falls[0]) + 1
+        raise InputError(f"{field}[{row}]", points[row].tolist(), "x increases from row to row",
+                         "Sort the points by x and keep one of those with the same x.")  # fmt: skip
+    return points.tolist()
+
+
+def _edge(value: Any, field: str) -> dict[str, float]:
+    if not isinstance(value, Mapping) or not value:
+        raise InputError(field, value, "a mapping with one or more of " + ", ".join(EDGE_KEYS))
+    for key in value:
+        if key not in EDGE_KEYS:
+            raise unknown_name(f"{field} entry", str(key), EDGE_KEYS)
+    return {key: _number(value[key], f"{field}.{key}", positive=True) for key in EDGE_KEYS if key in value}

@@ -1,8 +1,0 @@
-"""Equilibrium of the roller: normal forces, rolling radius shift and regime, for any contact model."""
-
-from __future__ import annotations
-
-from trackroller.equilibrium.roller import ContactLaw, Loads
-from trackroller.equilibrium.solution import FAILED, FULL_SLIP, LIFT_OFF, ROLLING, Equilibrium, solve_equilibrium
-
-__all__ = ["FAILED", "FULL_SLIP", "LIFT_OFF", "ROLLING", "ContactLaw", "Equilibrium", "Loads", "solve_equilibrium"]

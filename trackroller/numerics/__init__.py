@@ -1,0 +1,1 @@
+"""Numerical helpers without physics: quadrature, threads, interpolation knots and expressions."""

@@ -1,0 +1,169 @@
+"""Designs that were solved with several contact models: the cases of a study, sorted by design and model."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.parameters import EXACTNESS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.geometry import curvatures, rolling_radius
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.outputs import flat, read_study
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MODEL = "contact_model"
+INPUTS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, "material_pair", *(o for o in OPTION_FACTORS if o != MODEL))
+RESULTS = ("regime", "normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral",
+           "semi_axis_rolling", "friction_energy_per_distance", "friction_energy_balance", "peak_stress",
+           "stick_area_fraction", "roller_life_hours", "guide_life_hours", "life_cycles")  # fmt: skip
+LIVES = (("roller_life_hours", "life of the roller", "h"), ("guide_life_hours", "life of the guide", "h"),
+         ("life_cycles", "life", "overrollings"))  # fmt: skip
+
+
+def pairs(ds: xr.Dataset) -> xr.Dataset | None:
+    """The designs of a study by contact model; None if the study has but one model.
+
+    Parameters
+    ----------
+    ds : gathered study, a grid unstacked into its factors or with one dimension `case`
+
+    Returns
+    -------
+    Dataset over `contact_model` (the cheapest first, the reference last) and `design`: those results that a comparison
+    looks at, NaN where a design lacks a model (regime -1), and as coordinates all inputs, `spin` and `lean`, which is
+    mu tan(alpha). A design is here if the reference and one model more solved it; two cases are one design if they
+    agree in every input but the model. Attributes: `reference`, `factors` (JSON list of what else varies), `left`
+    (cases without a partner), `life` (words), `grid` (1: every combination is there), `base` (JSON).
+    """
+    if MODEL not in ds.variables or "regime" not in ds:
+        return None
+    present = set(np.unique(ds[MODEL].values.astype(str)).tolist())
+    models = [m for m in EXACTNESS[::-1] if m in present]
+    if len(models) < 2:
+        return None
+    order = tuple(map(str, ds["regime"].dims))
+    if MODEL in order:
+        order = (MODEL, *(d for d in order if d != MODEL))
+    columns = _inputs(ds, order)
+    rows = _grid_rows(ds, order, models) if MODEL in order else _matched_rows(ds, columns, models)
+    return _sorted_out(ds, order, models, rows, columns)
+
+
+def _inputs(ds: xr.Dataset, order: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """Every input that the data set knows, one value a case, (rows,)."""
+    study, found = read_study(ds), {}
+    names = [*INPUTS, *(n for n in study.get("factors", {}) if n != MODEL and n not in INPUTS)]
+    rows = int(np.prod([ds.sizes[d] for d in order]))
+    for name in names:
+        held = f"{name}_value" if f"{name}_value" in ds.variables else name  # friction by a word for its level
+        if held in ds.variables and set(ds[held].dims) <= set(order):
+            values = flat(ds, held, order) if ds[held].ndim else np.full(rows, ds[held].item())
+            values = np.broadcast_to(values, (rows,))
+        elif name in PARAMETERS:
+            given = study.get("base", {}).get(name, PARAMETERS[name].default)
+            values = np.full(rows, given if isinstance(given, (int, float)) else np.nan)
+        else:
+            continue
+        found[name] = values.astype(float) if values.dtype.kind in "fiu" else values.astype(str)
+    return found
+
+
+def _grid_rows(ds: xr.Dataset, order: tuple[str, ...], models: list[str]) -> np.ndarray:
+    """Row of each model and design, (models, designs), of a grid flattened in `order`."""
+    listed = ds[MODEL].values.astype(str).tolist()
+    rows = np.arange(int(np.prod([ds.sizes[d] for d in order]))).reshape(len(listed), -1)
+    return rows[[listed.index(m) for m in models]]
+
+
+def _matched_rows(ds: xr.Dataset, columns: Mapping[str, np.ndarray], models: list[str]) -> np.ndarray:
+    """Row of each model and design, (models, designs), -1 where the design lacks it; designs in order of rows."""
+    own = ds[MODEL].values.astype(str)
+    code = np.zeros(own.size, dtype=np.int64)
+    for values in columns.values():
+        if not _varies(values):
+            continue
+        _, number = np.unique(values, return_inverse=True)
+        _, code = np.unique(code * (int(number.max()) + 1) + number, return_inverse=True)
+    rows = np.full((len(models), int(code.max(initial=-1)) + 1), -1)
+    for i, model in enumerate(models):
+        at = np.flatnonzero(own == model)[::-1]  # of equal cases the first
+        rows[i, code[at]] = at
+    rows = rows[:, (rows[-1] >= 0) & (rows[:-1] >= 0).any(axis=0)]
+    return rows[:, np.argsort(rows[-1], kind="stable")]
+
+
+def _sorted_out(ds: xr.Dataset, order: tuple[str, ...], models: list[str], rows: np.ndarray,
+                columns: Mapping[str, np.ndarray]) -> xr.Dataset:  # fmt: skip
+    import xarray as xr
+
+    data: dict[str, Any] = {}
+    lacking = rows < 0
+    for name in RESULTS:
+        if name not in ds:
+            continue
+        values = flat(ds, name, order).astype(float)[rows]
+        values[lacking] = -1.0 if name == "regime" else np.nan
+        rest = [d for d in ds[name].dims if d not in order]
+        data[name] = ((MODEL, "design", *rest), values)
+    inputs = {name: values[rows[-1]] for name, values in columns.items()}
+    coords: dict[str, Any] = {name: ("design", values) for name, values in inputs.items()}
+    coords |= {n: ds[n].values for n in ("contact", "body") if n in ds.coords}
+    coords["spin"] = ("design", spin(inputs), {"long_name": "spin phi rho", "units": "1"})
+    lean = inputs["friction_coefficient"] * np.tan(np.deg2rad(inputs["contact_angle"]))
+    coords["lean"] = ("design", lean, {"long_name": "mu tan(alpha)", "units": "1"})
+    out = xr.Dataset(data, coords={MODEL: models, **coords})
+    study = read_study(ds)
+    out.attrs = {
+        "reference": models[-1], "factors": json.dumps(_factors(study, inputs, order)), "grid": int(MODEL in order),
+        "left": int(ds["regime"].size - (~lacking).sum()), "life": "",
+        "base": json.dumps(study.get("base", {}), default=str),
+    }  # fmt: skip
+    return _with_life(out)
+
+
+def _factors(study: Mapping[str, Any], inputs: Mapping[str, np.ndarray], order: tuple[str, ...]) -> list[str]:
+    """What varies besides the contact model, in the study's order; what is computed from factors is none."""
+    given = study.get("factors", {})
+    free = [str(n) for n, spec in given.items() if not (isinstance(spec, Mapping) and "expression" in spec)]
+    free += [n for n in OPTION_FACTORS if isinstance(study.get(n), list)] + [d for d in order if d != "case"]
+    vary = [n for n, values in inputs.items() if _varies(values) and n != MODEL]
+    return [n for n in dict.fromkeys(free) if n in vary] or [n for n in vary if n not in MATERIAL_FIELDS]
+
+
+def _varies(values: np.ndarray) -> bool:
+    """Is there more than one value? NaN, for not given, is one."""
+    same = values == values[:1]
+    if values.dtype.kind == "f":
+        same |= np.isnan(values) & np.isnan(values[:1])
+    return not bool(np.all(same))
+
+
+def _with_life(ds: xr.Dataset) -> xr.Dataset:
+    """With `life`, the first of `LIVES` that has numbers."""
+    for name, words, unit in LIVES:
+        if name in ds and bool((ds[name] > 0).any()):
+            life = ds[name].min([d for d in ("contact", "body") if d in ds[name].dims])
+            ds["life"] = life.assign_attrs(long_name=words, units=unit)
+            ds.attrs["life"] = words
+            break
+    return ds
+
+
+def spin(inputs: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Spin of a design, phi rho with phi = sin(alpha)/r_A and 4/rho = k_x + k_y [1], shape (n,).
+
+    How much the direction of slip turns over a patch: the spin creepage phi [1/mm] times the radius of curvature rho
+    [mm] by Kalker (1990), "Three-Dimensional Elastic Bodies in Rolling Contact"; over the friction coefficient it says
+    how far elastic slip is saturated. Independent of load and stiffness.
+    """
+    alpha = np.deg2rad(inputs["contact_angle"])
+    r_a = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        k_x, k_y = curvatures(inputs["roller_profile_radius"], inputs["guide_profile_radius"],
+                              inputs["guide_curve_radius"], r_a, alpha)  # fmt: skip
+        return np.asarray(np.sin(alpha) / r_a * 4.0 / (k_x + k_y))

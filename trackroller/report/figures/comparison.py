@@ -1,0 +1,221 @@
+"""The contact models side by side, for any study with them as a factor: errors, forces, work, stick, stress, life."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.report.comparison.errors import GOOD, errors, measured
+from trackroller.report.comparison.groups import spin_is_its_own
+from trackroller.report.comparison.words import gap, percent, short, telling_factors
+from trackroller.report.figures import style
+from trackroller.report.figures.comparison_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Drawn = tuple["Figure", style.FigureInfo] | None
+Values = Callable[["xr.Dataset"], "xr.DataArray"]
+LEAST = 6e-4  # error at the foot of the axes
+COLUMNS = 3  # factors that the errors are drawn over
+
+
+def drawers(ds: xr.Dataset) -> list[partial[Drawn]]:
+    """What draws each figure of the comparison; none for a study with one contact model or without pairs of cases.
+
+    Parameters
+    ----------
+    ds : gathered study
+    """
+    from trackroller.report.comparison.pairs import pairs
+
+    paired = pairs(ds)
+    if paired is None or not paired.sizes["design"] or not measured(found := errors(paired)):
+        return []
+    draws = (error, error_by_factor, forces, energy, stick, peak_and_life)
+    return [partial(draw, paired, found) for draw in draws]
+
+
+def _lines(shown: Frame, axes: Any, values: Values, hollow: bool = False) -> dict[str, Any]:
+    """One line a model in every column of a row of panels; of many designs the medians, with the reference's band."""
+    handles, rolls = {}, rolling(shown.ds)
+    for model in map(str, shown.ds["contact_model"].values):
+        own = np.where(rolls, values(shown.ds.sel(contact_model=model)).values, np.nan)
+        for column, panel in enumerate(axes):
+            band = shown.bands(own, column)
+            shade = shown.many and model == shown.ds.attrs["reference"]
+            handles[model] = line(panel, shown.x, band, model, hollow, shade)
+    return handles
+
+
+def _told(shown: Frame, words: str) -> str:
+    many = f" Medians of the designs; band: 5 to 95 % with {shown.ds.attrs['reference']}." if shown.many else ""
+    return f"{words}{many} {shown.held}".strip()
+
+
+def error(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Error of the cheaper models against the reference over friction and drive, all other factors as they vary."""
+    shown = frame(paired)
+    wanted = [q for q in measured(found) if q.name not in ("friction_energy_balance", "stick")]
+    if shown is None or not wanted:
+        return None
+    figure, axes = panels(shown, [f"{q.label}\nerror [%]" for q in wanted], 27.0)
+    handles: dict[str, Any] = {}
+    for row, q in zip(axes, wanted, strict=True):
+        handles |= _error_row(shown, row, found, q.name)
+    dotted = f"Dotted: {percent(GOOD)}; at the foot: {percent(LEAST)} or less."
+    many = " Lines: medians of the designs; bands: 5 to 95 %." if shown.many else ""
+    words = f"{dotted} The worse contact; rolling only.{many}"
+    close(figure, handles, "What the cheaper contact models miss", words, 2)
+    caption = f"Error of the cheaper contact models against {paired.attrs['reference']}."
+    return figure, style.FigureInfo("models-error", caption, short(paired)[0])
+
+
+def _error_row(shown: Frame, row: Any, found: xr.Dataset, name: str) -> dict[str, Any]:
+    """Errors of all cheaper models in a row of panels."""
+    handles, top = {}, 1.0
+    for model in map(str, found["contact_model"].values):
+        e = np.clip(found[name].sel(contact_model=model).values, LEAST, 1e3)
+        for column, panel in enumerate(row):
+            band = 100 * shown.bands(e, column)
+            handles[f"{model} against {found.attrs['reference']}"] = line(panel, shown.x, band, model, shade=shown.many)
+            top = float(np.nanmax([top, np.nanmax(band, initial=0.0)]))
+    for panel in row:
+        panel.axhline(100 * GOOD, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
+        panel.set_yscale("log")
+        panel.set_ylim(0.05, max(100.0, 1.5 * top))
+    return handles
+
+
+def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Error of normal force, friction and peak stress over spin and over the factors that matter most besides."""
+    names = ["spin"] if spin_is_its_own(paired) and np.isfinite(paired["spin"]).all() else []
+    cheapest = found.isel(contact_model=0)
+    names = [*names, *telling_factors(cheapest)][:COLUMNS]
+    wanted = [q for q in measured(found) if q.name in ("normal_force", "friction_force", "peak_stress")]
+    if not names or not wanted:
+        return None
+    frames = [shown for name in names if (shown := frame(paired, name, split=False)) is not None]
+    height = 30.0 + 30.0 * len(wanted) + max(label_mm(shown.x) for shown in frames)
+    figure = style.new_figure(height, style.COLUMN_MM * (1 if len(names) < 2 else 2))
+    axes = figure.subplots(len(wanted), len(names), sharex="col", sharey="row", squeeze=False)
+    handles: dict[str, Any] = {}
+    for column, shown in enumerate(frames):
+        for row, q in enumerate(wanted):
+            axes[row, 0].set_ylabel(f"{q.label}\nerror [%]")
+            handles |= _error_row(shown, axes[row, column : column + 1], found, q.name)
+        set_axis(axes[-1, column], shown.x)
+    words = f"Lines: medians of all designs that roll; bands: 5 to 95 %; dotted: {percent(GOOD)}."
+    close(figure, handles, "Where the cheaper contact models miss most", words, 2)
+    caption = ("Error of the cheaper contact models over spin (spin creepage by radius of curvature) and over the "
+               "factors that matter most, all else as it varies.")  # fmt: skip
+    return figure, style.FigureInfo("models-error-factors", caption, "")
+
+
+def forces(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Normal and lateral force and spin moment of both contacts by model."""
+    from matplotlib.lines import Line2D
+
+    wanted = [(n, label) for n, label in (
+        ("normal_force", "Normal force\n" + r"$F_\mathrm{N}$ [N]"),
+        ("lateral_force", "Lateral force\n" + r"$F_\mathrm{T}$ [N]"),
+        ("spin_moment", "Spin moment\n" + r"$M_\mathrm{R}$ [N·mm]")) if n in paired]  # fmt: skip
+    shown = frame(paired, hold=True)
+    if shown is None or not wanted:
+        return None
+    figure, axes = panels(shown, [label for _, label in wanted], 31.0)
+    handles: dict[str, Any] = {}
+    for row, (name, _) in zip(axes, wanted, strict=True):
+        for contact in (1, 2):
+            own = _lines(shown, row, partial(_of_contact, name=name, contact=contact), contact == 2)
+            handles = own | handles  # the legend shows the filled marks
+    for contact, face in ((1, "0.3"), (2, "white")):
+        mark = Line2D([], [], color="0.3", marker="o", linestyle="", markersize=3.5, markerfacecolor=face)
+        handles[f"contact {contact}"] = mark
+    close(figure, handles, "Forces by contact model", _told(shown, "Rolling only."))
+    return figure, style.FigureInfo("models-forces", "Normal and lateral force and spin moment by contact model.",
+                                    gap(found, "normal_force"))  # fmt: skip
+
+
+def _of_contact(one: xr.Dataset, name: str, contact: int) -> xr.DataArray:
+    return one[name].sel(contact=contact)
+
+
+def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Friction energy of both contacts per distance: summed over the patches, and what the resultants put in."""
+    name, balance = "friction_energy_per_distance", "friction_energy_balance"
+    shown = frame(paired, hold=True)
+    if shown is None or name not in paired:
+        return None
+    figure, axes = panels(shown, ["Friction energy of both\ncontacts per distance [J/m]"], 40.0)
+    handles = _lines(shown, axes[0], lambda one: one[name].sum("contact", skipna=False))
+    if "sliding" in handles and balance in paired:
+        handles = {f"{m}, local product" if m == "sliding" else m: h for m, h in handles.items()}
+        implied = shown.ds[balance].sel(contact_model="sliding").sum("contact", skipna=False)
+        own = np.where(rolling(shown.ds), implied.values, np.nan)
+        for column, panel in enumerate(axes[0]):
+            band = shown.bands(own, column)
+            handles["sliding, from the resultants"] = line(panel, shown.x, band, "sliding", True, linestyle="-.")
+    lines = [np.asarray(drawn.get_ydata(), float) for panel in axes[0] for drawn in panel.lines]
+    values = np.concatenate(lines) if lines else np.empty(0)
+    if (values > 0).any():
+        axes[0, 0].set_yscale("log")
+        top = float(np.nanmax(values))
+        style.log_ticks(axes[0, 0].yaxis, max(float(values[values > 0].min()), top / 39), top)
+    close(figure, handles, "Friction energy by contact model", _told(shown, "Rolling only."), 2)
+    caption = ("Friction energy of both contacts per distance. The local product is the published one; from the "
+               "resultants is the work that drive and tilting forces put in.")  # fmt: skip
+    return figure, style.FigureInfo("models-energy", caption, gap(found, "friction_energy"))
+
+
+def stick(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Share of the patch that sticks."""
+    shown = frame(paired, hold=True)
+    if shown is None or "stick_area_fraction" not in paired:
+        return None
+    figure, axes = panels(shown, ["Share of the patch\nthat sticks [%]"], 36.0)
+    handles = _lines(shown, axes[0], lambda one: 100.0 * one["stick_area_fraction"].max("contact"))
+    words = _told(shown, "The larger share of the two contacts; the rest of the patch slips.")
+    close(figure, handles, "Stick and slip by contact model", words)
+    return figure, style.FigureInfo("models-stick", "Share of the patch that sticks, by contact model.",
+                                    gap(found, "stick"))  # fmt: skip
+
+
+def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+    """Peak von Mises stress of the roller (else of what was asked for) and life."""
+    from trackroller.report.figures.study_life import capped, mark_unlimited
+
+    rows: list[tuple[str, Values]] = []
+    shown = frame(paired, hold=True)
+    if shown is None:
+        return None
+    if "peak_stress" in paired:
+        bodies = list(map(str, paired["body"].values))
+        body = "roller" if "roller" in bodies else bodies[0]
+        rows.append((f"Peak stress of\nthe {body} [MPa]", lambda one: one["peak_stress"].sel(body=body).max("contact")))
+    height = None
+    if "life" in paired:
+        capped_life, height = capped(shown.ds["life"].values)
+        lives = shown.ds["life"].copy(data=capped_life)
+        label = style.with_unit(style.capital(paired.attrs["life"]), paired["life"].attrs["units"])
+        rows.append((label.replace(" of ", " of\n"), lambda one: lives.sel(contact_model=one["contact_model"].item())))
+    if not rows:
+        return None
+    figure, axes = panels(shown, [label for label, _ in rows], 33.0)
+    handles: dict[str, Any] = {}
+    for row, (_, values) in zip(axes, rows, strict=True):
+        handles |= _lines(shown, row, values)
+    if "life" in paired:
+        lived = lives.values[np.isfinite(lives.values)]
+        for panel in axes[-1]:
+            panel.set_yscale("log")
+            mark_unlimited(panel, height)
+        style.log_ticks(axes[-1, 0].yaxis, float(lived.min()), float(lived.max()))
+    words = _told(shown, "The more loaded of the two contacts.")
+    close(figure, handles, "Peak stress and life by contact model", words)
+    return figure, style.FigureInfo("models-peak-life", "Peak von Mises stress and life by contact model.",
+                                    gap(found, "peak_stress"))  # fmt: skip

@@ -1,0 +1,217 @@
+"""Surface tractions and friction energy over the contact patches of one case."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.report.figures import style
+from trackroller.report.figures.contact_outline import Patch, framed, patches_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+ARROWS = (17, 11)  # along the long and the short axis of the patch
+SLENDER = 4.0  # a longer ellipse than this is not drawn to scale
+
+
+def case_text(ds: xr.Dataset) -> str:
+    """What the case is, as far as the data set tells."""
+    regime = int(ds["regime"]) if "regime" in ds else 0
+    forces = ds["normal_force"].values if "normal_force" in ds else np.array([])
+    text = f"Regime: {style.REGIME_LABELS[regime]}"
+    said = [f"{style.rounded(float(f), 4)} N in contact {i + 1}" for i, f in enumerate(forces) if np.isfinite(f)]
+    return f"{text}; normal force {' and '.join(said)}." if said else f"{text}."
+
+
+def _shapes(patches: list[Patch]) -> str:
+    return "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
+
+
+def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
+    """A figure with the patches to one scale unless they are very slender, and room for a profile.
+
+    Wide patches lie one above the other, tall ones stand side by side.
+    """
+    from matplotlib.ticker import MaxNLocator
+
+    boxes, count = np.array([p.box for p in patches]), len(patches)
+    (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
+    a, b = 0.5 * (right - left), 0.5 * (front - rear)
+    to_scale, tall = 1 / SLENDER <= b / a <= SLENDER, b > 1.2 * a
+    height = float(np.clip((30 if tall else 62) * b / a, 22, 66)) if to_scale else (60.0 if tall else 34.0)
+    rows = (1 if tall else count) + profile
+    columns = count if tall else 1
+    figure = style.new_figure(34 + (rows - profile) * (height + 9) + 38 * profile)
+    grid = figure.add_gridspec(rows, columns, height_ratios=[height] * (rows - profile) + [30] * profile)
+    maps = [figure.add_subplot(grid[0, i] if tall else grid[i, 0]) for i in range(count)]
+    for i, axes in enumerate(maps):
+        axes.set_xlim(left - 0.08 * a, right + 0.08 * a)
+        axes.set_ylim(rear - 0.12 * b, front + 0.12 * b)
+        axes.set_aspect("equal" if to_scale else "auto")
+        axes.xaxis.set_major_locator(MaxNLocator(2 if tall else 5))
+        axes.yaxis.set_major_locator(MaxNLocator(5))
+        axes.grid(False)
+        if i == 0 or not tall:
+            axes.set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]")
+        if i == count - 1 or tall:
+            axes.set_xlabel("$x_\\mathrm{C}$ (lateral) [mm]")
+    return figure, maps, figure.add_subplot(grid[-1, :]) if profile else None, to_scale
+
+
+def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
+    """Filled contours cut along the edge of the patch, and this edge."""
+    from matplotlib.patches import PathPatch
+
+    levels = np.linspace(0, top, 17)
+    x, y, shown = framed(patch.x, patch.y, values) if patch.solved else (patch.x, patch.y, values)
+    image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
+    edge = PathPatch(patch.outline, facecolor="none", edgecolor="black", linewidth=0.9)
+    axes.add_patch(edge)
+    image.set_clip_path(edge)
+    axes.set_title(f"Contact {patch.contact}", loc="left", fontsize=7.5, pad=3)
+    return image
+
+
+def _light(name: str = "YlGnBu", end: float = 0.62) -> Any:
+    """The lighter part of a colour map, on which black arrows are seen."""
+    import matplotlib
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap(matplotlib.colormaps[name](np.linspace(0, end, 64)))
+
+
+def _bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    bar = figure.colorbar(image, ax=axes, location="bottom", aspect=35, pad=0.02, ticks=MaxNLocator(6))
+    bar.set_label(label)
+
+
+def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
+    """Direction and size of the shear traction on the roller, with the spin pole."""
+    patches = patches_of(ds, "shear_lateral", "shear_rolling")
+    sizes = [np.hypot(p.field("shear_lateral"), p.field("shear_rolling")) for p in patches]
+    top, image = max((float(s.max()) for s in sizes), default=0.0), None
+    if not top > 0:  # no contact, or no friction
+        return None
+    figure, grid, _, to_scale = _canvas(patches)
+    for axes, patch, size in zip(grid, patches, sizes, strict=True):
+        image = _fill(axes, patch, size, top, _light())
+        _arrows(axes, patch, top, to_scale)
+        _pole(axes, patch)
+    _bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
+    note = "" if to_scale else " Axes not to one scale."
+    pole = any(p.spin_pole is not None for p in patches)
+    dot = " Black dot: spin pole." if pole else ""
+    style.head(figure, "Shear traction on the roller", f"{case_text(ds)}{dot}{note}")
+    style.finish(figure)
+    best = int(np.argmax([s.max() for s in sizes]))
+    caption = (
+        f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; shade: size, MPa). "
+        + ("The black dot is the spin pole, about which the surfaces turn on each other. " if pole else "")
+        + case_text(ds)
+    )
+    largest = style.number(float(sizes[best].max()))
+    sentence = f"The largest shear traction is {largest} MPa, in contact {patches[best].contact}."
+    return figure, style.FigureInfo("contact_shear", caption, sentence)
+
+
+def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
+    count = ARROWS if patch.a >= patch.b else ARROWS[::-1]
+    columns, rows = (_every(len(v), n) for v, n in ((patch.x, count[0]), (patch.y, count[1])))
+    pick = np.ix_(rows, columns)
+    keep = patch.inside[pick]
+    x, y = np.meshgrid(patch.x[columns], patch.y[rows])
+    u, v = patch.field("shear_lateral")[pick], patch.field("shear_rolling")[pick]
+    step = float(min(np.ptp(axes.get_xlim()) / count[0], np.ptp(axes.get_ylim()) / count[1]))
+    size: dict[str, Any] = (
+        {"angles": "xy", "scale_units": "xy", "scale": top / (1.5 * step)}
+        if to_scale
+        else {"angles": "uv", "scale_units": "width", "scale": top / 0.075}
+    )
+    axes.quiver(
+        x[keep],
+        y[keep],
+        u[keep],
+        v[keep],
+        pivot="mid",
+        units="inches",
+        width=0.010,
+        headwidth=4,
+        headlength=4.5,
+        headaxislength=4,
+        zorder=3,
+        **size,
+    )
+
+
+def _every(length: int, count: int) -> np.ndarray:
+    """About `count` evenly spaced indices, symmetric about the middle."""
+    step = max(-(-(length - 1) // (count - 1)), 1)
+    return np.arange((length - 1) % step // 2, length, step)
+
+
+def _pole(axes: Axes, patch: Patch) -> None:
+    if patch.spin_pole is None:
+        return
+    x, y = patch.spin_pole
+    (left, right), (rear, front) = axes.get_xlim(), axes.get_ylim()
+    if left <= x <= right and rear <= y <= front:
+        axes.plot(x, y, "o", color="black", markersize=5, markeredgecolor="white", markeredgewidth=0.8, zorder=5)
+    elif np.isfinite(x):
+        beyond = x > 0.5 * (left + right)
+        axes.annotate(
+            f"spin pole at x = {style.number(x)} mm",
+            (0.99 if beyond else 0.01, 0.03),
+            fontsize=6.5,
+            ha="right" if beyond else "left",
+            xycoords="axes fraction",
+        )
+
+
+def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
+    """Friction energy per area over both patches, and its profile across the running track."""
+    name = "friction_energy_density"
+    patches = patches_of(ds, name)
+    fields = [np.where(p.inside, p.field(name), 0.0) for p in patches]
+    top, image = max((float(f.max()) for f in fields), default=0.0), None
+    if not top > 0:
+        return None
+    figure, grid, across, to_scale = _canvas(patches, profile=True)
+    assert across is not None
+    for axes, patch, field in zip(grid, patches, fields, strict=True):
+        image = _fill(axes, patch, field, top, "cividis")
+    _bar(figure, image, grid, "Friction energy per area and distance [J/(m mm²)]")
+    profiles = [p.summed(f, 0) for p, f in zip(patches, fields, strict=True)]
+    for i, (patch, profile) in enumerate(zip(patches, profiles, strict=True)):
+        across.plot(
+            patch.x, profile, color=style.palette(2)[i], linestyle=style.LINES[i], label=f"contact {patch.contact}"
+        )
+    across.set_xlim(grid[0].get_xlim())
+    across.locator_params(axis="x", nbins=5)
+    across.set_ylim(bottom=0)
+    across.set_xlabel("$x_\\mathrm{C}$ (lateral) [mm]")
+    across.set_ylabel("Sum along $y_\\mathrm{C}$\n[J/(m mm)]")
+    across.set_title("Across the running track", loc="left", fontsize=7.5, pad=3)
+    figure.legend(loc="outside lower left", ncols=2)
+    style.head(
+        figure, "Friction energy of both contacts", case_text(ds) + ("" if to_scale else " Axes not to one scale.")
+    )
+    style.finish(figure)
+    caption = (
+        f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
+        f"direction: what each strip of the running track takes. {case_text(ds)}"
+    )
+    totals = [float(q.summed(p, 0)) for p, q in zip(profiles, patches, strict=True)]
+    words = " and ".join(f"{style.number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))
+    worst = int(np.argmax([p.max() for p in profiles]))
+    place = float(patches[worst].x[int(np.argmax(profiles[worst]))])
+    sentence = (
+        f"Friction takes {words}; the strip at x = {style.rounded(place, 2)} mm of contact "
+        f"{patches[worst].contact} takes most."
+    )
+    return figure, style.FigureInfo("contact_energy", caption, sentence)

@@ -1,0 +1,1 @@
+"""Solve one roller: case, geometry, equilibrium, stages and the labelled data set."""

@@ -1,0 +1,236 @@
+"""What an accuracy setting means for each stage, and what error it leaves.
+
+The settings are rungs of measured ladders (`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff` from
+`snakemake tradeoff`): one for the quadrature of forces, one for the search of the peak stress, one for the elements of
+each rolling contact model. A preset or a tolerance takes from each the cheapest rung that keeps its promise.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import resources
+from typing import Any
+
+from trackroller.contact.settings import Accuracy
+from trackroller.errors import InputError, unknown_name
+from trackroller.halfspace.peak import PeakSettings
+from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
+
+FORCE_QUANTITIES = ("normal_force", "friction_force", "spin_moment")
+PEAK_OUTPUTS = frozenset(("peak_stress", "life", "subsurface"))
+FORCE_SHARE = 0.1  # of the tolerance that the forces of full sliding may take: they are cheap
+PEAK_SHARE = 0.2  # of the tolerance that the search for the peak may take where elements take the rest
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Measured relative errors over the design sample: percentiles, and `bound`, which 99 % of all cases keep."""
+
+    median: float
+    p95: float
+    p99: float
+    bound: float
+
+
+@dataclass(frozen=True)
+class Rung:
+    """One measured setting of a ladder: its cost [s of CPU time a case] and its errors by quantity."""
+
+    settings: Mapping[str, Any]
+    cost: float
+    errors: Mapping[str, Levels]
+
+    def keeps(self, tolerance: float, quantities: Iterable[str], level: str = "bound") -> bool:
+        """Does it keep all quantities that it was measured for within the tolerance, by this level of error?"""
+        return all(getattr(self.errors[q], level) <= tolerance for q in quantities if q in self.errors)
+
+
+Ladders = Mapping[str, tuple[Rung, ...]]
+
+
+@functools.cache
+def ladders() -> Ladders:
+    """The measured ladders `forces`, `peak`, `fastsim`, `kalker`, each from cheap to dear."""
+    text = resources.files("trackroller.roller").joinpath("accuracy.json").read_text(encoding="utf-8")
+    return read_ladders(json.loads(text)["ladders"])
+
+
+def read_ladders(records: Mapping[str, Iterable[Mapping[str, Any]]]) -> Ladders:
+    """Ladders from the records that the measurement writes."""
+    return {name: tuple(sorted((_rung(r) for r in rungs), key=lambda r: r.cost)) for name, rungs in records.items()}
+
+
+def _rung(record: Mapping[str, Any]) -> Rung:
+    errors = {name: Levels(*values) for name, values in record["errors"].items()}
+    return Rung(record["settings"], float(record["cost"]), errors)
+
+
+def _cheapest(
+    ladder: tuple[Rung, ...], tolerance: float, quantities: Iterable[str], level: str = "bound"
+) -> Rung | None:
+    wanted = tuple(quantities)
+    return next((rung for rung in ladder if rung.keeps(tolerance, wanted, level)), None)
+
+
+def _finest(ladder: tuple[Rung, ...], quantities: Iterable[str]) -> Rung:
+    wanted = tuple(quantities)
+    return min(ladder, key=lambda rung: max(rung.errors[q].bound for q in wanted if q in rung.errors))
+
+
+def _composed(name: str, tolerance: float, forces: Rung, peak: Rung, elements: int) -> Accuracy:
+    rough, fine = tolerance > 1e-2, tolerance < 5e-4
+    points = (31, 31) if rough else (81, 121) if fine else (41, 61)
+    return Accuracy(name, tolerance, forces.settings["force_nodes"], forces.settings["coarse_nodes"],
+                    PeakSettings(*peak.settings["peak"]), *points, elements)  # fmt: skip
+
+
+# What a preset keeps in 99 % of the designs measured: error of the peak and of the forces in full sliding, which are
+# cheap; and in 95 %, as fewer designs were measured, of the forces of `kalker`. None: twice the elements of `standard`.
+PROMISES: dict[str, tuple[float, float, float | None]] = {
+    "preview": (2e-2, 5e-3, 1.5e-2), "standard": (4e-3, 2e-5, 8e-3), "reference": (3e-4, 1e-7, None),
+}  # fmt: skip
+
+
+def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung | None]:
+    """Cheapest rungs for forces, peak and elements that keep what a preset promises; the finest where none does."""
+    peak_error, force_error, element_error = PROMISES[name]
+    forces, peak, rolling = measured["forces"], measured["peak"], measured["kalker"]
+    return (
+        _cheapest(forces, force_error, FORCE_QUANTITIES, "p99") or _finest(forces, FORCE_QUANTITIES),
+        _cheapest(peak, peak_error, ("peak_stress",), "p99") or _finest(peak, ("peak_stress",)),
+        None if element_error is None
+        else _cheapest(rolling, element_error, FORCE_QUANTITIES, "p95") or _finest(rolling, FORCE_QUANTITIES),
+    )  # fmt: skip
+
+
+def _preset(name: str) -> Accuracy:
+    forces, peak, rolling = preset_rungs(name, ladders())
+    elements = rolling.settings["elements"] if rolling else 2 * _preset("standard").elements
+    return _composed(name, PROMISES[name][0], forces, peak, elements)
+
+
+PRESETS = {name: _preset(name) for name in ACCURACIES}
+
+
+def accuracy_settings(
+    accuracy: str | float | Accuracy, contact_model: str = "sliding", outputs: Iterable[str] = DEFAULT_OUTPUTS
+) -> Accuracy:
+    """Settings of a preset, or the cheapest measured setting that meets a relative tolerance.
+
+    Parameters
+    ----------
+    accuracy : preset; or relative tolerance, in (0, 1), of what is asked for: F_N relative to itself, F_T and F_A to
+        mu F_N, M_R to mu F_N sqrt(a b), friction work and peak stress to themselves. Measured to hold in 99 % of the
+        cases; life errs by the Woehler exponent times the peak. `Accuracy` objects pass.
+    contact_model : the ladder to choose from; the error of discretisation is meant, not that of the model
+    outputs : groups of results that have to meet it
+
+    Raises `InputError` for unknown names, numbers outside (0, 1) and tolerances below what the model reaches.
+    """
+    if isinstance(accuracy, Accuracy):
+        return accuracy
+    if isinstance(accuracy, str):
+        if accuracy in PRESETS:
+            return PRESETS[accuracy]
+        try:
+            accuracy = float(accuracy)
+        except ValueError:
+            raise unknown_name("accuracy", str(accuracy), (*ACCURACIES, "a relative tolerance such as 1e-3")) from None
+    if isinstance(accuracy, bool) or not 0.0 < accuracy < 1.0:
+        raise InputError("accuracy", accuracy, f"one of {', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
+    return _for_tolerance(float(accuracy), contact_model, frozenset(outputs))
+
+
+@functools.lru_cache(maxsize=256)
+def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]) -> Accuracy:
+    peaks = bool(outputs & PEAK_OUTPUTS)
+    wanted = (*FORCE_QUANTITIES, *(("friction_energy",) if "friction_work" in outputs else ()),
+              *(("peak_stress",) if peaks else ()))  # fmt: skip
+    rolling = contact_model != "sliding"
+    elements = PRESETS["standard"].elements
+    if rolling:
+        ladder = contact_model if contact_model in ladders() else "kalker"
+        rung = _cheapest(ladders()[ladder], (1.0 - PEAK_SHARE) * tolerance if peaks else tolerance, wanted)
+        if rung is None:
+            shares = {ladder: 1.0 - PEAK_SHARE, "peak": PEAK_SHARE} if peaks else {ladder: 1.0}
+            raise _beyond(tolerance, contact_model, shares, wanted)
+        elements = rung.settings["elements"]
+    share = FORCE_SHARE if peaks and not rolling else 1.0
+    nodes, searches = ladders()["forces"], ladders()["peak"]
+    forces = _cheapest(nodes, share * tolerance, wanted) or _cheapest(nodes, tolerance, wanted)
+    peak = _cheapest(searches, PEAK_SHARE * tolerance if rolling else tolerance, ("peak_stress",) if peaks else ())
+    if peak is None or (forces is None and not rolling):
+        shares = {"peak": PEAK_SHARE} if rolling else {"forces": 1.0, **({"peak": 1.0} if peaks else {})}
+        raise _beyond(tolerance, contact_model, shares, wanted)
+    return _composed(f"{tolerance:g}", tolerance, forces or _finest(nodes, FORCE_QUANTITIES), peak, elements)
+
+
+def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: Iterable[str]) -> InputError:
+    """The refusal, with the tolerance that the finest rungs of the ladders reach with their shares of it."""
+    bounds: dict[str, float] = {}
+    for ladder, share in shares.items():
+        known = [q for q in wanted if q in ladders()[ladder][0].errors]
+        rung = _finest(ladders()[ladder], known)
+        for q in known:
+            bounds[q] = max(bounds.get(q, 0.0), rung.errors[q].bound / share)
+    worst = max(bounds, key=lambda q: bounds[q])
+    reached = rounded_up(bounds[worst])
+    return InputError("accuracy", tolerance, f"the finest tolerance that {model} reaches here is {reached:g}, by its "
+                      f"{worst.replace('_', ' ')}", "Use 'reference' for the best there is, or a larger tolerance, or "
+                      "ask only for outputs that are needed.")  # fmt: skip
+
+
+def rounded_up(value: float) -> float:
+    """The next larger number with two figures."""
+    from math import ceil, floor, log10
+
+    unit = 10.0 ** (floor(log10(value)) - 1)
+    return float(f"{ceil(value / unit - 1e-9) * unit:.3g}")
+
+
+_QUANTITY_OF = {
+    "normal_force": "normal_force", "lateral_force": "friction_force", "driving_force": "friction_force",
+    "spin_moment": "spin_moment", "friction_power": "friction_energy",
+    "friction_energy_per_distance": "friction_energy", "peak_stress": "peak_stress", "life_cycles": "life",
+    "life_hours": "life", "roller_life_hours": "life", "guide_life_hours": "life",
+}  # fmt: skip
+_RELATIVE_TO = {
+    "normal_force": "itself", "friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)",
+    "friction_energy": "itself", "peak_stress": "itself", "life": "itself",
+}  # fmt: skip
+
+
+def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[str, Levels]:
+    """Measured errors by quantity for settings that are made of rungs; those of stages add up.
+
+    Quantities without a measurement (settings of one's own) are missing.
+    """
+    rungs = ladders()
+    own: dict[str, dict[str, Any]]
+    own = {"forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
+           "peak": {"peak": list(vars(settings.peak).values())}}  # fmt: skip
+    if contact_model != "sliding":
+        ladder = contact_model if contact_model in rungs else "kalker"
+        own = {ladder: {"elements": settings.elements}, "peak": own["peak"]}
+    total: dict[str, Levels] = {}
+    for ladder, wanted in own.items():
+        found = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
+        for name, levels in (found.errors if found else {}).items():
+            total[name] = _sum(total[name], levels) if name in total else levels
+    return total
+
+
+def _sum(one: Levels, other: Levels) -> Levels:
+    return Levels(*(a + b for a, b in zip(vars(one).values(), vars(other).values(), strict=True)))
+
+
+def error_attributes(settings: Accuracy, contact_model: str) -> dict[str, dict[str, Any]]:
+    """Attributes that tell the expected error of discretisation, by result variable."""
+    levels = expected_errors(settings, contact_model)
+    return {variable: {"expected_relative_error": rounded_up(max(levels[q].median, 1e-16)),
+                       "relative_error_99_percent": rounded_up(max(levels[q].bound, 1e-16)),
+                       "relative_error_refers_to": _RELATIVE_TO[q]}
+            for variable, q in _QUANTITY_OF.items() if q in levels}  # fmt: skip

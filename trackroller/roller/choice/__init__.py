@@ -1,0 +1,1 @@
+"""Choose the cheapest contact model that meets a tolerance."""

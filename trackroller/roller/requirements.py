@@ -1,0 +1,147 @@
+"""What a scene requires: which of its cases differ in their mechanics, and which symmetries spare work.
+
+Nothing here changes a number beyond rounding; `solve(..., shortcuts=False)` does without all of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.contact.common import Resultants, SurfaceTractions
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.roller.case import CaseTable
+
+if TYPE_CHECKING:
+    from trackroller.roller.equilibrium import ContactLaw
+
+# they turn forces and stresses into power, cycles and hours, and nothing else
+AFTERWARDS = ("velocity", "guide_overrollings_per_hour")
+
+
+def is_mirror_symmetric(table: CaseTable) -> np.ndarray:
+    """Without an axial force, and with one cross-section for both sides, contact 2 mirrors contact 1; shape (n,)."""
+    drawn = (table.guide_profile != "") | (table.roller_profile != "")
+    return (table.axial_force == 0.0) & ~drawn
+
+
+def is_frictionless(table: CaseTable) -> np.ndarray:
+    """No friction, no tractions: every contact model gives the same; shape (n,)."""
+    return table.friction_coefficient == 0.0
+
+
+def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
+    """Cases that differ in forces or stresses, and which of them stands for each case.
+
+    Cases that differ in travel speed (with a constant friction law), overrollings per hour or strength alone share
+    their forces, tractions and stresses. Returns the rows (m,) of the first of each kind, and its number (n,).
+    """
+    columns = [getattr(table, name) for name in PARAMETERS if name not in AFTERWARDS]
+    columns += [m.youngs_modulus for m in (table.roller, table.guide)]
+    columns += [m.poisson_ratio for m in (table.roller, table.guide)]
+    columns.append(np.where(table.friction_law != "", table.velocity, 0.0))
+    for name in MAPPING_FIELDS:
+        texts = getattr(table, name)
+        known = {text: i for i, text in enumerate(dict.fromkeys(texts.tolist()))}
+        columns.append(np.array([known[text] for text in texts.tolist()], dtype=float))
+    return distinct_rows(np.stack(columns, axis=1))
+
+
+def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First row of each kind (m,), in the order they come, and the number of its kind for each row (n,); by bits."""
+    rows = np.ascontiguousarray(values + 0.0)  # -0.0 is 0.0
+    keys = rows.view(np.dtype((np.void, rows.shape[1] * rows.itemsize))).reshape(-1)
+    _, first, number = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty_like(order)
+    rank[order] = np.arange(order.size)
+    return first[order], rank[number.reshape(-1)]
+
+
+def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Patches whose tractions have one direction or are none, by their ellipticity alone, and their length [mm].
+
+    Their stresses over p_max depend on b/a, on mu and on the direction only. Rows of `ellipse.patch_rows` (n, 12); the
+    others are left as they are, with length 1. The ratio is taken to 13 digits, so that patches of different
+    loads have the same.
+    """
+    plain = (patches[:, 2] == 0.0) | (patches[:, 7] != 0.0)
+    length = np.where(plain, patches[:, 0], 1.0)
+    if not plain.any():
+        return patches, length
+    out = patches.copy()
+    ratio = patches[plain, 1] / patches[plain, 0]
+    step = 10.0 ** (np.floor(np.log10(ratio)) - 12.0)
+    out[plain] = [1.0, 1.0, 0.0, 0.5, np.sqrt(0.75), 1e3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]  # what they do not depend on
+    out[plain, 1] = np.rint(ratio / step) * step
+    out[plain, 2], out[plain, 7] = patches[plain, 2], patches[plain, 7]
+    return out, length
+
+
+@dataclass(frozen=True)
+class Mirror:
+    """Rollers whose contact 2 is contact 1 seen in a mirror; `symmetric` (n,). All False: nothing is spared.
+
+    Arrays over patches have contact 1 of all rollers first, then contact 2.
+    """
+
+    symmetric: np.ndarray
+
+    def law(self, law: ContactLaw) -> ContactLaw:
+        """The contact law, asked for one contact of symmetric rollers only."""
+        if not self.symmetric.any():
+            return law
+
+        def one_sided(ellipse, slip, friction, rows, fine):
+            half = len(rows) // 2
+            twin = self.symmetric[rows[half:]]
+            asked = np.concatenate([np.ones(half, bool), ~twin])
+            found = law(ellipse.take(asked), slip.take(asked), friction[asked], rows[asked], fine)
+            sides = []
+            for values, sign in zip((found.lateral_force, found.driving_force, found.spin_moment), (-1, 1, -1),
+                                    strict=True):  # fmt: skip
+                full = np.empty(len(rows))
+                full[asked] = values
+                full[half:][twin] = sign * full[:half][twin]
+                sides.append(full)
+            return Resultants(*sides)
+
+        return one_sided
+
+    def asked(self, good: np.ndarray) -> np.ndarray:
+        """Which of the existing patches `good` (2 n,) have to be solved, shape (2 n,)."""
+        return good & ~np.concatenate([np.zeros_like(self.symmetric), self.symmetric])
+
+    def _copies(self, good: np.ndarray, found: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Values (2 n, ...) of the solved patches, with those of contact 1 in contact 2; and which are copies."""
+        full = np.full((good.size, *found.shape[1:]), np.nan, dtype=found.dtype if found.dtype != bool else float)
+        full[patches] = found
+        half = good.size // 2
+        twin = np.concatenate([np.zeros(half, bool), self.symmetric & good[half:]])
+        full[twin] = full[:half][self.symmetric & good[half:]]
+        return full, twin
+
+    def spread(self, good: np.ndarray, found: np.ndarray, sign: float = 1.0) -> np.ndarray:
+        """Values of the patches `asked(good)` for all of `good`; `sign` -1 for what changes sign in the mirror."""
+        full, twin = self._copies(good, found, self.asked(good))
+        if sign < 0:
+            full[twin] = -full[twin] + 0.0
+        return full[good]
+
+    def spread_surface(self, good: np.ndarray, found: SurfaceTractions) -> SurfaceTractions:
+        """Tractions of the patches `asked(good)` for all of `good`, x running from -a to a in each."""
+
+        def mirrored(values: np.ndarray, sign: float, flip: bool = True) -> np.ndarray:
+            full, twin = self._copies(good, values, self.asked(good))
+            part = full[twin][..., ::-1] if flip else full[twin]
+            full[twin] = sign * part + 0.0
+            return full[good]
+
+        return SurfaceTractions(
+            mirrored(found.x, -1.0), mirrored(found.y, 1.0, flip=False), mirrored(found.pressure, 1.0),
+            mirrored(found.shear_lateral, -1.0), mirrored(found.shear_rolling, 1.0),
+            mirrored(found.slip_lateral, -1.0), mirrored(found.slip_rolling, 1.0),
+            mirrored(found.stick, 1.0).astype(bool),
+        )  # fmt: skip

@@ -1,0 +1,93 @@
+"""What each case makes of its forces and stresses: friction power, life and warnings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.contact.slip import pole_split
+from trackroller.damage import fatigue
+from trackroller.parameters import CONTACT_MODELS
+from trackroller.roller.case import CaseTable
+from trackroller.roller.dataset import VALIDITY_BITS
+from trackroller.roller.geometry import rolling_radius
+
+if TYPE_CHECKING:
+    from trackroller.roller.blocks import Block
+    from trackroller.roller.options import Options
+
+LIFE_CONVENTIONS = (
+    "Woehler line N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is "
+    "taken as the amplitude (as published); below sigma_D: elementary runs the line on, haibach uses the slope 2k - 1, "
+    "unlimited gives inf; roller: one overrolling per revolution; guide: overrollings per hour are the user's input"
+)
+
+
+def finish(table: CaseTable, block: Block, options: Options) -> None:
+    """What follows from forces and stresses case by case: power, life and warnings."""
+    v = block.values
+    if "friction_work" in options.outputs:
+        v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
+    if "life" in options.outputs:
+        life(table, v, options)
+    validity(table, block)
+
+
+def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
+    """Overrollings and hours to failure from the peak stress."""
+    per_body, errors = [], []
+    for j, m in enumerate((table.roller, table.guide)):
+        column = lambda a: a[:, None]  # noqa: E731
+        line = (column(m.tensile_strength), column(m.fatigue_limit), column(m.cycles_at_tensile_strength),
+                column(m.cycles_at_fatigue_limit))  # fmt: skip
+        per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], *line, rule=options.life_rule))
+        exponent = fatigue.woehler_exponent(*line)
+        if options.life_rule == "haibach":  # the flatter line below the fatigue limit
+            exponent = np.where(v["peak_stress"][:, :, j] < line[1], 2.0 * exponent - 1.0, exponent)
+        errors.append(exponent * v["error_estimate"][:, :, j])
+    v["life_cycles"] = np.stack(per_body, axis=2)
+    v["life_error_estimate"] = np.stack(errors, axis=2)
+    r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle))
+    roller = fatigue.roller_hours(per_body[0], table.velocity[:, None], r_a[:, None])
+    guide = fatigue.guide_hours(per_body[1], table.guide_overrollings_per_hour[:, None])
+    v["life_hours"] = np.stack([roller, guide], axis=2)
+    v["roller_life_hours"], v["guide_life_hours"] = roller.min(axis=1), guide.min(axis=1)
+
+
+def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
+    """Cases (n,) where the slip of the sliding model vanishes well apart from its spin pole, see `pole_split`."""
+    alpha = np.deg2rad(table.contact_angle)
+    split = [pole_split(v["semi_axis_lateral"][:, k], sign * np.sin(alpha), np.cos(alpha), table.guide_profile_radius,
+                        v["rolling_radius_shift"]) for k, sign in ((0, 1.0), (1, -1.0))]  # fmt: skip
+    with np.errstate(invalid="ignore"):
+        return np.maximum(*split) > 0.1
+
+
+def validity(table: CaseTable, block: Block) -> None:
+    """Bits that warn where the model leaves its ground, see `dataset.VALIDITY_BITS`."""
+    v = block.values
+    bit = {name: 1 << i for i, name in enumerate(VALIDITY_BITS)}
+    r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)
+    r_a = rolling_radius(table.axis_distance, r_g, alpha)
+    smallest = np.min(np.abs([table.roller_profile_radius, r_g, r_a / np.cos(alpha),
+                              table.guide_curve_radius / np.cos(alpha)]), axis=0)  # fmt: skip
+    a = np.max(v["semi_axis_lateral"], axis=1)
+    size = np.maximum(a, np.max(v["semi_axis_rolling"], axis=1))
+    strength = np.minimum(table.roller.tensile_strength, table.guide.tensile_strength)
+
+    def warn(name: str, condition: np.ndarray) -> None:
+        block.bits |= np.where(condition, bit[name], 0).astype(np.int32)
+
+    with np.errstate(invalid="ignore"):
+        warn("half_space", size > 0.3 * smallest)
+        # ASSUME: the database holds no yield strength, so R_m stands for it
+        warn("yield", np.max(v["max_pressure"], axis=1) > 1.6 * strength)
+        warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
+        warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & split_pole(table, v))
+        warn("large_slip", np.abs(v["slip"]) > 0.1)
+        if "peak_stress" in v:
+            limits = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)[:, None, :]
+            knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)[:, None, :]
+            warn("static", np.any(v["peak_stress"] > limits, axis=(1, 2)))
+            warn("deep_life", np.any(v["peak_stress"] < knee, axis=(1, 2)))

@@ -1,0 +1,217 @@
+"""From a study to its cases."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.numerics import expressions
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.case import geometry_problem, own_frictions
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factors import label, parse
+from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
+from trackroller.study.goals import check_scatter
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.study.config import Study
+
+MAX_CASES = 20_000_000
+_GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius",
+             "contact_angle")  # fmt: skip
+_DEFAULT_MATERIAL = "1.7225-normalised"
+
+
+def case_columns(known: Any) -> tuple[str, ...]:
+    """Names of the case fields among the columns of a design; mappings are there only where a study has them."""
+    return (*PARAMETERS, *MATERIAL_FIELDS, *(name for name in MAPPING_FIELDS if name in known))
+
+
+def draw(study: Study) -> SampledDesign:
+    """The factors' columns of a study (see `trackroller.study.design.sampling.sample`)."""
+    config = study.config
+    options = {name: getattr(config, name) for name in ("second_order", "levels", "inner", "grown_from")}
+    options = {k: v for k, v in options.items() if v is not None}
+    for name in options:
+        if name not in OPTIONS.get(config.design, {}):
+            raise InputError(name, options[name], f"design: {config.design} has no such option")
+    if config.design == "table":
+        options["table"] = table_path(study)
+    base = {k: v for k, v in config.base.items() if isinstance(v, float)}
+    design = sample(study.factors, config.design, config.samples, config.seed, base=base, **options)
+    if config.design == "table":
+        _check_columns(study, design)
+    if design.size > MAX_CASES:
+        raise InputError("design", f"{design.size} cases", f"at most {MAX_CASES} cases")
+    return design
+
+
+def _check_columns(study: Study, design: SampledDesign) -> None:
+    """A table may have columns of its own, but none that looks like a misspelt name, nor only such."""
+    known = [*PARAMETERS, *MATERIAL_FIELDS, "material_pair", *OPTION_FACTORS]
+    used = {name for spec in study.factors.values() for name in expressions.names(spec.get("expression", "0"))}
+    own = [name for name in design.columns if name not in known and name not in used]
+    for name in own:
+        if nearest(name, known) or len(own) == len(design.columns):
+            raise unknown_name("table column", name, known)
+
+
+def table_path(study: Study) -> str:
+    """Path of the CSV of cases, taken from the folder of the study file."""
+    from pathlib import Path
+
+    path = Path(str(study.config.table))
+    if not path.is_absolute() and study.path is not None:
+        path = study.path.parent / path
+    return str(path)
+
+
+def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
+    """The design as a dataset.
+
+    Dimension `case`; one variable a parameter (friction coefficients resolved to numbers, materials by
+    name). Coordinates along `case`: models that vary, and auxiliary factors of expressions. Attributes:
+    study, method, the factors and the shape of a grid.
+    """
+    import xarray as xr
+
+    design = draw(study) if design is None else design
+    n = design.size or 1
+    columns = _columns(study, design, n)
+    data = {}
+    for name, parameter in PARAMETERS.items():
+        attrs = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
+        data[name] = ("case", columns.pop(name), attrs)
+    for name in case_columns(columns)[len(PARAMETERS) :]:
+        attrs = {"long_name": name.replace("_", " ")}
+        data[name] = ("case", columns.pop(name).astype(str).astype(object), attrs)
+    coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
+    for name, values in columns.items():
+        if values.dtype == object:
+            values = np.array([label(v) for v in values], dtype=object)
+        coords[name] = ("case", values, {"long_name": name.replace("_", " ")})
+    dataset = xr.Dataset(data, coords)
+    shape = design.meta.get("shape") if design.method == "grid" else None
+    dataset.attrs = {
+        "study": study.name, "design": design.method, "seed": study.config.seed,
+        "factors": json.dumps(list(design.factors)),
+        "grid_shape": json.dumps(list(shape) if shape is not None else None),
+    }  # fmt: skip
+    return dataset
+
+
+def _columns(study: Study, design: SampledDesign, n: int) -> dict[str, np.ndarray]:
+    """Every case field and every further factor as a column of n values."""
+    base = {name: parameter.default for name, parameter in PARAMETERS.items()}
+    base |= {name: _DEFAULT_MATERIAL for name in MATERIAL_FIELDS} | study.config.base
+    base.pop("material_pair", None)
+    if pair := study.config.base.get("material_pair"):
+        base |= dict(zip(MATERIAL_FIELDS, pair, strict=True))
+    columns: dict[str, np.ndarray] = {}
+    for name, value in base.items():
+        columns[name] = np.full(n, value, dtype=object if isinstance(value, str) or value is None else float)
+    columns |= design.columns
+    if "material_pair" in columns:
+        pairs = columns.pop("material_pair")
+        if any(isinstance(p, str) for p in pairs):  # a table's cell: "roller / guide"
+            pairs = np.array([None, *map(_split_pair, pairs)], dtype=object)[1:]
+        for i, name in enumerate(MATERIAL_FIELDS):
+            columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
+    if "friction_coefficient" not in study.config.base and "friction_coefficient" not in design.columns:
+        if "friction_law" in columns:
+            columns["friction_coefficient"] = own_frictions(columns["friction_law"])
+    columns["friction_coefficient"] = _friction(study, columns)
+    for name in PARAMETERS:
+        columns[name] = np.array([math.nan if v is None else v for v in columns[name]], dtype=float)
+    return columns
+
+
+def _split_pair(text: str) -> tuple[str, str]:
+    parts = [part.strip() for part in str(text).split("/")]
+    if len(parts) != 2 or not all(parts):
+        raise InputError("material_pair", text, "a pair written 'roller material / guide material'")
+    return parts[0], parts[1]
+
+
+def _friction(study: Study, columns: dict[str, np.ndarray]) -> np.ndarray:
+    """Friction coefficients as numbers: a level's word or nothing is looked up by the pair of materials."""
+    values = columns["friction_coefficient"]
+    if values.dtype != object:
+        return values
+    known: dict[tuple[str, str, str], float] = {}
+    out = np.empty(len(values))
+    for i, value in enumerate(values):
+        if isinstance(value, (int, float)) and not math.isnan(value):
+            out[i] = value
+            continue
+        level = value if isinstance(value, str) and value in FRICTION_LEVELS else "typical"
+        key = (str(columns["roller_material"][i]), str(columns["guide_material"][i]), level)
+        if key not in known:
+            known[key] = float(study.materials.friction(key[0], key[1], level=level).value)
+        out[i] = known[key]
+    return out
+
+
+def check_materials(study: Study) -> None:
+    """Every material a study names is in the database, and has the scatter that its analysis counts on."""
+    names: dict[str, str] = {}
+    for name in MATERIAL_FIELDS:
+        if name in study.config.base:
+            names[study.config.base[name]] = f"base.{name}"
+        for value in study.factors.get(name, {}).get("values", []):
+            names[value] = f"factors.{name}"
+    pairs = [*study.factors.get("material_pair", {}).get("values", [])]
+    if "material_pair" in study.config.base:
+        pairs.append(study.config.base["material_pair"])
+    for pair in pairs:
+        names |= {material: "material_pair" for material in pair}
+    if not pairs:
+        for name in MATERIAL_FIELDS:
+            if name not in study.config.base and name not in study.factors:
+                names.setdefault(_DEFAULT_MATERIAL, name)
+    used = [study.materials.material(name) for name in names]
+    if study.config.design != "table":
+        check_scatter(study.config.analysis.material_scatter, study.config.design, used)
+
+
+def check_geometry(study: Study) -> None:
+    """No combination of the geometry's levels, or of the ends of its ranges, conforms or interlocks.
+
+    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide; expressions
+    and tables are checked on the whole design, before anything is solved.
+    """
+    config = study.config
+    if config.design == "table" or any("expression" in spec for spec in study.factors.values()):
+        design = build(study)
+        problem = geometry_problem({name: design[name].values for name in _GEOMETRY})
+    else:
+        levels = [_ends(study, name) for name in _GEOMETRY]
+        if math.prod(map(len, levels)) > MAX_CASES:
+            raise InputError("design", "grid of the geometry", f"at most {MAX_CASES} cases")
+        rows = np.array(list(itertools.product(*levels)), dtype=float)
+        problem = geometry_problem({name: rows[:, i] for i, name in enumerate(_GEOMETRY)})
+    if problem is not None:
+        where = "factors" if problem.field in study.factors else "base"
+        raise InputError(f"{where}.{problem.field}", problem.value, problem.allowed, problem.remedy)
+
+
+def _ends(study: Study, name: str) -> list[float]:
+    spec = study.factors.get(name)
+    if spec is None:
+        return [study.config.base.get(name, PARAMETERS[name].default)]
+    factor = parse(name, spec)
+    if factor.discrete:
+        return [float(level) for level in factor.levels]
+    if factor.kind == "normal":
+        return [factor.numbers[0]]
+    low, high = factor.numbers[-2:] if factor.kind == "truncnormal" else (factor.numbers[0], factor.numbers[-1])
+    if low < 0 < high and PARAMETERS[name].nonzero:
+        raise InputError(f"factors.{name}", [low, high], f"{PARAMETERS[name].allowed()}: the range holds 0")
+    return [low, high]

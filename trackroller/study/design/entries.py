@@ -1,0 +1,159 @@
+"""Entries of a study file: values of the base case and of factors, each checked in its own words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.numerics import expressions
+from trackroller.parameters import (
+    CONTACT_MODELS,
+    FRICTION_LEVELS,
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    NORMAL,
+    PARAMETERS,
+    SPIN_MODELS,
+)
+from trackroller.study.design.factors import LISTS, parse
+
+CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
+OPTION_FACTORS: dict[str, tuple[str, ...]] = {
+    "contact_model": CONTACT_MODELS, "spin_model": SPIN_MODELS, "normal": NORMAL,
+}  # fmt: skip
+MAX_LEVELS = 1_000_000
+FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
+
+
+def choice(value: Any, where: str, options: tuple[str, ...]) -> str:
+    """A word among `options`; raises `InputError` with the nearest one."""
+    if not isinstance(value, str) or value not in options:
+        raise unknown_name(where, value, options)
+    return value
+
+
+def base_value(key: Any, value: Any) -> Any:
+    """A value of the base case in its own type."""
+    if key == "material_pair":
+        return list(_pair(value, "base.material_pair"))
+    if key not in CASE_FIELDS:
+        raise unknown_name("base", str(key), (*CASE_FIELDS, "material_pair"))
+    if key in MATERIAL_FIELDS:
+        return _material_name(value, f"base.{key}")
+    if key in MAPPING_FIELDS:
+        return _mapping(key, value, f"base.{key}")
+    return _number(key, value, f"base.{key}")
+
+
+def _material_name(value: Any, where: str) -> str:
+    if not isinstance(value, str) or not value:
+        raise InputError(where, value, "the name of a material in the database",
+                         "Put your own into config/materials.yaml (`trackroller materials add`).")  # fmt: skip
+    return value
+
+
+def _mapping(name: str, value: Any, where: str) -> str:
+    """A friction law or profile as its canonical text."""
+    from trackroller.contact.friction_laws import at_rest
+    from trackroller.roller.case import mapping_text
+
+    try:
+        text = mapping_text(name, value)
+        if name == "friction_law" and not text and (own := at_rest(value)) is not None:
+            raise InputError(name, "a table of one value", "a table whose friction changes with the slip speed",
+                             f"Leave it out and give friction_coefficient: {own:g}.")  # fmt: skip
+        return text
+    except InputError as exc:
+        field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"
+        raise InputError(field, exc.value, exc.allowed, exc.remedy) from None
+
+
+def _pair(value: Any, where: str) -> tuple[str, str]:
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        raise InputError(where, value, "a pair [roller material, guide material]")
+    return _material_name(value[0], where), _material_name(value[1], where)
+
+
+def _number(name: str, value: Any, where: str) -> Any:
+    """A value of parameter `name` as a float (or a word of the friction levels, or None)."""
+    parameter = PARAMETERS[name]
+    if value is None and parameter.allow_missing:
+        return None
+    if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
+        return value
+    if isinstance(value, (list, dict, bool)) or value is None:
+        raise InputError(where, value, parameter.allowed())
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        remedy = ""
+        if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
+            remedy = f"Did you mean '{close}'?"
+        raise InputError(where, value, parameter.allowed(), remedy) from None
+    if math.isnan(number) or not parameter.accepts(number):
+        raise InputError(where, value, parameter.allowed())
+    return number
+
+
+def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
+    """A factor's dictionary, its entries in their own type; `factors` are all of the study."""
+    where = f"factors.{key}"
+    if key not in FACTOR_NAMES:
+        if not isinstance(key, str) or not key.isidentifier() or not _used(key, factors):
+            raise unknown_name("factors", str(key), FACTOR_NAMES)
+        if isinstance(spec, Mapping):
+            spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
+        parse(key, spec)
+        return dict(spec)
+    if isinstance(spec, Mapping):
+        spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
+    checked = parse(key, spec)
+    if key not in PARAMETERS and checked.kind != "values":
+        raise InputError(where, checked.kind, "names are given as {values: [...]}")
+    if key in PARAMETERS:
+        for level in (*checked.levels, *(checked.numbers if checked.kind == "uniform" else ())):
+            _number(key, level, f"{where}.{checked.kind}")
+    return dict(spec)
+
+
+def _used(name: str, factors: Mapping[Any, Any]) -> bool:
+    """Is the name an auxiliary factor, there for an expression of another one?"""
+    texts = [s["expression"] for s in factors.values() if isinstance(s, Mapping) and "expression" in s]
+    return any(isinstance(t, str) and name in expressions.names(t, "factors") for t in texts)
+
+
+def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
+    """Entries of a factor's list in their own type: numbers as floats, pairs checked, names as texts."""
+    if not isinstance(value, list):
+        return value
+    if kind != "values":
+        numbers = [_to_float(v) for v in value]
+        if kind in LISTS and len(numbers) == 3:
+            _check_count(numbers[2], where)
+        return numbers
+    if key in PARAMETERS:
+        return [_number(key, v, where) for v in value]
+    if key == "material_pair":
+        return [list(_pair(v, where)) for v in value]
+    if key not in FACTOR_NAMES:
+        return value
+    if key in OPTION_FACTORS:
+        return [choice(v, where, OPTION_FACTORS[key]) for v in value]
+    if key in MAPPING_FIELDS:
+        return [_mapping(key, v, where) for v in value]
+    return [_material_name(v, where) for v in value]
+
+
+def _check_count(count: Any, where: str) -> None:
+    """A slip of the finger may not fill the memory before it is found."""
+    if isinstance(count, (int, float)) and not count <= MAX_LEVELS:
+        raise InputError(where, count, f"at most {MAX_LEVELS} levels of a factor")
+
+
+def _to_float(value: Any) -> Any:
+    try:
+        return float(value) if isinstance(value, str) else value
+    except ValueError:
+        return value

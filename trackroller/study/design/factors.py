@@ -1,0 +1,224 @@
+"""One factor of a study: what values it takes and with what probability.
+
+A factor is a small dictionary with exactly one of these keys:
+
+================ =====================================================================
+uniform          ``[low, high]``
+loguniform       ``[low, high]``, both of one sign
+normal           ``[mean, standard deviation]``
+truncnormal      ``[mean, standard deviation, low, high]`` (mean and deviation before the cut)
+triangular       ``[low, most likely, high]``
+values           a list of numbers or of categories (names, pairs of names, null), equally likely
+linspace         ``[first, last, how many]``, equally likely
+logspace         ``[first, last, how many]`` (the values themselves, not exponents), equally likely
+expression       arithmetic over other factors and base values, e.g. ``"-1.2 * guide_profile_radius"``
+================ =====================================================================
+
+`scatter: true | false` may stand beside it in a nested study (default: distributions scatter, lists are
+design points).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from trackroller.errors import InputError, unknown_name
+
+DISTRIBUTIONS = {"uniform": 2, "loguniform": 2, "normal": 2, "truncnormal": 4, "triangular": 3}
+LISTS = ("values", "linspace", "logspace")
+KINDS = (*DISTRIBUTIONS, *LISTS, "expression")
+TAIL = 0.01  # quantile at which a normal factor is cut in designs that visit the ends of a range
+
+
+@dataclass(frozen=True)
+class Factor:
+    """A checked factor.
+
+    `kind` is one of `KINDS`; `numbers` holds the numbers of a distribution, `levels` the listed values,
+    `text` the expression; `scatter` says whether a nested study samples it inside.
+    """
+
+    name: str
+    kind: str
+    numbers: tuple[float, ...] = ()
+    levels: tuple[Any, ...] = ()
+    text: str = ""
+    scatter: bool = False
+
+    @property
+    def discrete(self) -> bool:
+        """Has a list of values."""
+        return self.kind in LISTS
+
+    @property
+    def numeric(self) -> bool:
+        """All its values are numbers (an expression always is one)."""
+        return not self.discrete or all(_is_number(v) for v in self.levels)
+
+    @property
+    def ordered(self) -> bool:
+        """Has finite numbers, so that 'more' and 'less' mean something."""
+        return self.numeric and (not self.discrete or all(math.isfinite(v) for v in self.levels))
+
+    def take(self, index: np.ndarray) -> np.ndarray:
+        """Listed values by index, shape (n,): float for numbers, object for categories."""
+        return column([self.levels[i] for i in np.asarray(index, dtype=int)], self.numeric)
+
+    def from_unit(self, unit: np.ndarray, tail: float = 0.0) -> np.ndarray:
+        """Values at the quantiles `unit`.
+
+        Parameters
+        ----------
+        unit : quantiles in [0, 1] [1], shape (n,)
+        tail : quantile [1] at which the unbounded normal distribution is cut, for designs that visit 0 and 1
+
+        Returns
+        -------
+        Values, shape (n,). Listed values fall into bins of equal probability.
+        """
+        unit = np.clip(np.asarray(unit, dtype=float), 0.0, 1.0)
+        if self.discrete:
+            count = len(self.levels)
+            return self.take(np.minimum((unit * count).astype(int), count - 1))
+        if self.kind == "uniform":
+            low, high = self.numbers
+            return low + unit * (high - low)
+        if self.kind == "loguniform":
+            low, high = self.numbers
+            return low * (high / low) ** unit
+        if self.kind == "triangular":
+            return _triangular(unit, *self.numbers)
+        from scipy import stats
+
+        mean, deviation, *ends = self.numbers
+        if self.kind == "normal":
+            cut = max(tail, 1e-9)
+            return stats.norm.ppf(np.clip(unit, cut, 1 - cut), mean, deviation)
+        low, high = ends
+        cut_low, cut_high = (low - mean) / deviation, (high - mean) / deviation
+        return np.clip(stats.truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high)
+
+
+def column(values: list[Any], numeric: bool) -> np.ndarray:
+    """A column of values: float for numbers, object (lists as tuples) for categories; shape (n,)."""
+    if numeric:
+        return np.array(values, dtype=float)
+    out = np.empty(len(values), dtype=object)
+    for i, value in enumerate(values):
+        out[i] = tuple(value) if isinstance(value, list) else value
+    return out
+
+
+def label(value: Any) -> str:
+    """A value as text for axes, tables and file coordinates."""
+    if isinstance(value, (tuple, list)):
+        return " / ".join(label(v) for v in value)
+    if isinstance(value, Mapping):
+        return str(value.get("name", "inline"))
+    return f"{value:g}" if _is_number(value) else "not given" if value is None else str(value)
+
+
+def parse(name: str, spec: Any) -> Factor:
+    """Check a factor's dictionary.
+
+    Raises `InputError` that names the factor, what is wrong and what is allowed.
+    """
+    field = f"factors.{name}"
+    if not isinstance(spec, Mapping):
+        raise InputError(
+            field,
+            spec,
+            f"a factor is a dictionary with one of {', '.join(KINDS)}",
+            "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.",
+        )
+    scatter = spec.get("scatter")
+    if not (scatter is None or isinstance(scatter, bool)):
+        raise InputError(f"{field}.scatter", scatter, "true or false")
+    for key in spec:
+        if key not in (*KINDS, "scatter"):
+            raise unknown_name(f"{field} key", key, (*KINDS, "scatter"))
+    keys = [key for key in spec if key in KINDS]
+    if len(keys) != 1:
+        raise InputError(field, dict(spec), f"exactly one of {', '.join(KINDS)} is wanted")
+    kind = keys[0]
+    value, where = spec[kind], f"{field}.{kind}"
+    if kind == "expression":
+        from trackroller.numerics.expressions import names
+
+        names(value, where)
+        return Factor(name, kind, text=value)
+    if not isinstance(value, (list, tuple)) or not value:
+        raise InputError(where, value, "a list that is not empty is wanted")
+    if kind in DISTRIBUTIONS:
+        return Factor(name, kind, _distribution(kind, value, where), scatter=scatter is not False)
+    return Factor(name, kind, levels=_levels(kind, list(value), where), scatter=bool(scatter))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+def _numbers(values: Any, count: int, where: str) -> tuple[float, ...]:
+    if len(values) != count or not all(_is_number(v) and math.isfinite(v) for v in values):
+        remedy = (
+            "Sample a fraction in [0, 1] and write the dependent range as an expression."
+            if any(isinstance(v, str) for v in values)
+            else ""
+        )
+        raise InputError(where, values, f"{count} finite numbers are wanted", remedy)
+    return tuple(float(v) for v in values)
+
+
+def _distribution(kind: str, value: Any, where: str) -> tuple[float, ...]:
+    numbers = _numbers(value, DISTRIBUTIONS[kind], where)
+    good, wanted = {
+        "uniform": (numbers[0] < numbers[1], "low < high"),
+        "loguniform": (
+            numbers[0] < numbers[1] and numbers[0] * numbers[1] > 0,
+            "low < high of one sign, not 0",
+        ),
+        "normal": (numbers[1] > 0, "a standard deviation > 0"),
+        "truncnormal": (
+            numbers[1] > 0 and numbers[-2] < numbers[-1],
+            "a standard deviation > 0 and low < high",
+        ),
+        "triangular": (
+            numbers[0] <= numbers[1] <= numbers[-1] and numbers[0] < numbers[-1],
+            "low <= most likely <= high, low < high",
+        ),
+    }[kind]
+    if not good:
+        raise InputError(where, value, f"{wanted} is wanted")
+    return numbers
+
+
+def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
+    if kind == "values":
+        levels: list[Any] = [tuple(v) if isinstance(v, list) else v for v in value]
+        if any(_is_number(v) and math.isnan(v) for v in levels):
+            raise InputError(where, value, "NaN is not a value", "Write null for 'not given'.")
+        if all(_is_number(v) for v in levels):
+            levels = [float(v) for v in levels]
+    else:
+        first, last, count = _numbers(value, 3, where)
+        if count != int(count) or count < 1:
+            raise InputError(where, value, "[first, last, how many] with a whole number >= 1 as the third")
+        if kind == "logspace" and first * last <= 0:
+            raise InputError(where, value, "first and last must have one sign and not be 0")
+        space = np.linspace if kind == "linspace" else np.geomspace
+        levels = [float(v) for v in space(first, last, int(count))]
+    if len({repr(v) for v in levels}) < len(levels):
+        raise InputError(where, value, "each value may stand once")
+    return tuple(levels)
+
+
+def _triangular(unit: np.ndarray, low: float, mode: float, high: float) -> np.ndarray:
+    share = (mode - low) / (high - low)
+    rising = low + np.sqrt(unit * (high - low) * (mode - low))
+    falling = high - np.sqrt((1 - unit) * (high - low) * (high - mode))
+    return np.where(unit < share, rising, falling)

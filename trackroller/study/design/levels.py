@@ -1,0 +1,91 @@
+"""Values of a factor in a few words: a friction law or a drawn profile is a whole mapping in a result's columns.
+
+Words tell all that a value holds, or carry a mark made from it: two levels of a factor never read the same.
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Mapping
+from typing import Any
+
+from trackroller.parameters import MAPPING_FIELDS
+from trackroller.study.design.factors import label
+
+EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
+
+
+def short(name: str, value: Any) -> str:
+    """A text level of a factor: that of a mapping in words, 'linear to 0.3 at 50 mm/s'; other texts as they are.
+
+    Parameters
+    ----------
+    name : of the factor
+    value : its value, a text (of a mapping: its canonical JSON, '' for none) or a mapping
+    """
+    if name not in MAPPING_FIELDS:
+        return str(value)
+    try:
+        told = value if isinstance(value, Mapping) else json.loads(str(value) or "{}")
+        return _law(told) if name == "friction_law" else _profile(told)
+    except (ValueError, KeyError, TypeError, AttributeError, IndexError):
+        text = str(value)
+        return text if len(text) <= 40 else f"{text[:34]}… {_mark(text)}"
+
+
+def in_words(name: str, value: Any) -> str:
+    """A level of a factor, number or not, as text for tables and messages."""
+    return short(name, value) if name in MAPPING_FIELDS else label(value)
+
+
+def _mark(told: Any) -> str:
+    """Four signs that tell apart what words would be too long for."""
+    text = told if isinstance(told, str) else json.dumps(told, sort_keys=True, default=float)
+    return f"{zlib.crc32(text.encode()) & 0xFFFF:04x}"
+
+
+def _number(value: Any) -> str:
+    """As few digits as tell the number from its neighbours."""
+    text = f"{float(value):g}"
+    return (text if float(text) == float(value) else f"{float(value):.12g}").replace("-", "−")
+
+
+def _law(told: Mapping[str, Any]) -> str:
+    kind = str(told.get("kind", "constant"))
+    if kind in ("linear", "exponential"):
+        lowest = told.get("lowest", 0.0 if kind == "linear" else 0.4)
+        return f"{kind} to {_number(lowest)} {'at' if kind == 'linear' else 'over'} {_number(told['speed'])} mm/s"
+    if kind == "table":
+        speed, friction = told["speed"], told["friction"]
+        last = f"{_number(friction[0])} to {_number(friction[-1])} from {_number(speed[-1])} mm/s"
+        return f"table {last}" if len(speed) <= 2 else f"table {_mark(told)}, {last}"
+    return kind
+
+
+def _profile(told: Mapping[str, Any]) -> str:
+    form = next((key for key in ("arc", "parabola", "arcs", "points", "file") if key in told), "")
+    if not form:
+        words = "circle"
+    elif form in ("arc", "parabola"):
+        words = f"{form} {_number(told[form])} mm"
+    elif form == "arcs":
+        words = _arcs(told["arcs"])
+    elif form == "file":
+        words = f"drawn {told['file']}"
+    else:  # the mark tells drawn shapes apart, and what is smoothed from what is not
+        words = f"drawn {_mark(told)}, {len(told['points'])} points"
+    if "width" in told:
+        words += f", {_number(told['width'])} mm wide"
+    edge = told.get("edge", {})
+    parts = [f"{words_of} {_number(edge[key])}" for key, words_of in EDGES.items() if key in edge]
+    return words + (f", edge {' '.join(parts)} mm" if parts else "")
+
+
+def _arcs(rows: list[Mapping[str, Any]]) -> str:
+    if len(rows) > 2:
+        return f"{len(rows)} arcs {_mark(rows)}"
+    first, last = rows[0], rows[-1]
+    if len(rows) == 1:
+        return f"arc {_number(first['radius'])} mm"
+    return f"arcs {_number(first['radius'])} to {_number(first['to'])}, {_number(last['radius'])} mm"

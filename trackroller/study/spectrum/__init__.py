@@ -1,0 +1,1 @@
+"""Add up the damage of a load spectrum."""

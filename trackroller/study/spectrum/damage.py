@@ -1,0 +1,174 @@
+"""Damage of a load spectrum as a labelled data set (see `trackroller.study.spectrum.solve`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.damage import fatigue
+from trackroller.parameters import REGIMES
+from trackroller.study.spectrum.file import Spectrum, overrollings_per_shift
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import Material, MaterialDatabase
+
+BODIES = ("roller", "guide")
+_BCB, _CB = ("block", "contact", "body"), ("contact", "body")
+
+
+def _line(material: Material) -> tuple[float, float, float, float]:
+    return (material.tensile_strength, material.fatigue_limit,
+            material.cycles_at_tensile_strength, material.cycles_at_fatigue_limit)  # fmt: skip
+
+
+def running_cycles(overrollings: np.ndarray, stress: np.ndarray, regime: np.ndarray) -> np.ndarray:
+    """Cycles of each track, shape (block, contact, body): none for the contact that has lifted off.
+
+    Parameters
+    ----------
+    overrollings : (block, body) [1]
+    stress : peak stress (block, contact, body) [MPa], NaN where there is none
+    regime : (block,) index into `REGIMES`
+    """
+    unknown = np.isnan(stress)
+    lifted = (regime == REGIMES.index("lift_off"))[:, None, None] & unknown & ~unknown[:, ::-1, :]
+    return np.where(lifted, 0.0, overrollings[:, None, :])
+
+
+def damage_per_shift(
+    stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str, probability: float = 0.5
+) -> tuple[np.ndarray, np.ndarray]:
+    """Cycles to failure and damage per shift of each block, both of shape (block, contact, body) [1].
+
+    Parameters
+    ----------
+    stress, cycles : (block, contact, body) [MPa], [1]
+    bodies : materials of roller and guide
+    rule : life rule
+    probability : failure probability; other than 0.5 NaN for a material without scatter
+    """
+    life = np.full(stress.shape, np.nan)
+    for i, material in enumerate(bodies):
+        t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
+        if probability == 0.5 or t_n or t_s:
+            life[..., i] = fatigue.life_cycles(
+                stress[..., i], *_line(material), rule,
+                failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s,
+            )  # fmt: skip
+    return life, fatigue.block_damage(cycles, life)
+
+
+def damage_dataset(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) -> xr.Dataset:
+    """Data set of the damage from the solved blocks; see `spectrum.solve_spectrum`."""
+    stress = solved["peak_stress"].transpose("case", "contact", "body").values
+    overrollings = overrollings_per_shift(spectrum)
+    cycles = running_cycles(overrollings, stress, solved["regime"].values)
+    case = spectrum.blocks[0].case
+    bodies = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
+    rule = spectrum.options.get("life_rule", "elementary")
+    life, damage = damage_per_shift(stress, cycles, bodies, rule)
+    total = damage.sum(axis=0)
+    shifts = fatigue.repetitions_to_failure(total, spectrum.critical_damage)
+    first = shifts.min(axis=0)  # NaN of a track that is not known stays NaN
+    variables: dict[str, Any] = {
+        "distance": ("block", [b.distance for b in spectrum.blocks], _attrs("m", "distance per shift", "s")),
+        "overrollings": (("block", "body"), overrollings, _attrs("1", "overrollings per shift", "n")),
+        "peak_stress": (_BCB, stress, _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")),
+        "life_cycles": (_BCB, life, _attrs("1", "overrollings to failure at the stress of the block", "N")),
+        "damage": (_BCB, damage, _attrs("1", "damage of the block per shift", "n/N")),
+        "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
+        "life_shifts": (_CB, shifts, _attrs("1", "shifts to failure of each track", "L_S")),
+    }
+    for i, body in enumerate(BODIES):
+        meta = _attrs("1", f"shifts to the first failure of the {body}", f"L_S,{('TR', 'G')[i]}")
+        variables[f"{body}_life_shifts"] = ((), first[i], meta)
+    return _labelled(spectrum, variables, solved, _scattered(spectrum, stress, cycles, bodies, rule), rule)
+
+
+def _attrs(units: str, long_name: str, symbol: str) -> dict[str, str]:
+    return {"units": units, "long_name": long_name, "symbol": symbol}
+
+
+def _scattered(
+    spectrum: Spectrum, stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str
+) -> np.ndarray | None:
+    """Shifts to failure at each failure probability, (probability, contact, body); None without scatter."""
+    if not any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
+        return None
+    lives = [
+        fatigue.repetitions_to_failure(
+            damage_per_shift(stress, cycles, bodies, rule, p)[1].sum(axis=0), spectrum.critical_damage
+        )
+        for p in spectrum.failure_probabilities
+    ]
+    return np.stack(lives)
+
+
+def _labelled(
+    spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset, scattered: np.ndarray | None, rule: str
+) -> xr.Dataset:
+    import xarray as xr
+
+    coords: dict[str, Any] = {
+        "block": ("block", [b.name for b in spectrum.blocks], {"long_name": "block of the spectrum"}),
+        "contact": solved["contact"],
+        "body": solved["body"],
+    }
+    if scattered is not None:
+        coords["probability"] = ("probability", list(spectrum.failure_probabilities),
+                                 {"units": "1", "long_name": "failure probability"})  # fmt: skip
+        meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
+        variables["life_shifts_at_probability"] = (("probability", *_CB), scattered, meta)
+    for name in ("regime", "converged", "validity"):
+        if name in solved:
+            variables[name] = ("block", solved[name].values, dict(solved[name].attrs))
+    attrs = {key: value for key, value in solved.attrs.items() if key != "life_conventions"} | {
+        "title": spectrum.name,
+        "description": spectrum.description,
+        "life_rule": rule,
+        "life_conventions": f"{fatigue.AMPLITUDE}; {fatigue.CONVENTIONS[rule]}; linear damage sum, failure at "
+        f"D = {spectrum.critical_damage:g}",
+        "critical_damage": spectrum.critical_damage,
+    }
+    return xr.Dataset(variables, coords=coords, attrs=attrs)
+
+
+def summary(ds: xr.Dataset) -> list[str]:
+    """What the damage says, one plain sentence a body: shifts, track, and the block that does most."""
+    sentences = []
+    for body in BODIES:
+        shifts = ds["life_shifts"].sel(body=body)
+        if bool(shifts.isnull().any()):
+            bad = _undefined_blocks(ds, body)
+            sentences.append(f"The life of the {body} is not known: {bad}{_at_most(ds, body)}.")
+            continue
+        if bool(np.isinf(shifts).all()):
+            sentences.append(f"The {body} takes no damage in this spectrum.")
+            continue
+        contact = ds["contact"].values[int(np.argmin(shifts.values))]
+        share = ds["damage"].sel(body=body, contact=contact) / ds["damage_sum"].sel(body=body, contact=contact)
+        worst = int(np.argmax(share.values))
+        sentences.append(
+            f"The {body} lasts {float(shifts.min()):.4g} shifts; contact {contact} fails first, "
+            f"{100 * float(share[worst]):.0f} % of its damage comes from '{ds['block'].values[worst]}'."
+        )
+    return sentences
+
+
+def _at_most(ds: xr.Dataset, body: str) -> str:
+    """The life that the known blocks alone allow, a bound from above; nothing where they do no damage."""
+    known = float(ds["damage"].sel(body=body).sum("block").max())  # skips the unknown ones
+    return f"; at most {ds.attrs['critical_damage'] / known:.4g} shifts by the other blocks" if known > 0 else ""
+
+
+def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
+    unknown = ds["damage"].sel(body=body).isnull().any("contact").values
+    names = ds["block"].values
+    if np.isnan(ds["overrollings"].sel(body=body).values[unknown]).all():
+        return "give guide_overrollings_per_hour, or guide_overrollings of each block"
+    listed = ", ".join(f"'{name}' ({REGIMES[int(r)]})" for name, r in
+                       zip(names[unknown], ds["regime"].values[unknown], strict=True))  # fmt: skip
+    return f"no stress in {listed}"

@@ -1,0 +1,206 @@
+"""A load spectrum as its file has it: what a roller does in a shift, in blocks.
+
+A spectrum file names the roller once (`base`) and its loads in blocks with the distance travelled per shift:
+
+    name: sorter
+    base: {axis_distance: 21.75, roller_material: PA6, guide_overrollings_per_hour: 120}
+    blocks:
+      - {name: loaded, distance: 4000, radial_force: -300, axial_force: 60}      # m per shift
+      - {name: empty, distance: 4000, radial_force: -80, guide_overrollings: 900}
+    life_rule: haibach
+
+`blocks` may also be the name of a CSV beside the file, one column a field, one line a block.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trackroller.contact.point_files import files_beside
+from trackroller.damage.fatigue import PROBABILITIES
+from trackroller.errors import InputError, unknown_name
+from trackroller.materials.yaml_file import parse_mapping, read_text
+from trackroller.parameters import SOLVE_OPTIONS
+from trackroller.roller.case import FIELDS, Case
+
+LOAD_FIELDS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity",
+               "guide_curve_radius", "guide_overrollings_per_hour")  # fmt: skip
+BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
+OPTIONS = tuple(name for name in SOLVE_OPTIONS if name not in ("outputs", "stop_if", "shortcuts"))
+FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", *OPTIONS)
+
+
+@dataclass(frozen=True)
+class Block:
+    """One kind of run in a shift.
+
+    Parameters
+    ----------
+    name : of the block
+    case : the roller with the loads of the block
+    distance : travelled per shift [m]
+    guide_overrollings : of the guide's point per shift [1]; None: from the overrollings per hour of the case
+    """
+
+    name: str
+    case: Case
+    distance: float
+    guide_overrollings: float | None = None
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """The blocks of a shift with what the damage sum needs; made by `load_spectrum` or `from_dict`."""
+
+    name: str
+    blocks: tuple[Block, ...]
+    description: str = ""
+    critical_damage: float = 1.0
+    failure_probabilities: tuple[float, ...] = PROBABILITIES
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any], folder: Path | None = None) -> Spectrum:
+        """Spectrum from a mapping with the keys of a file; `folder` is where its CSV lies.
+
+        Raises `InputError` naming block, field and value.
+        """
+        for key in values:
+            if key not in FILE_FIELDS:
+                raise unknown_name("spectrum: key", str(key), FILE_FIELDS)
+        blocks = values.get("blocks")
+        if isinstance(blocks, str):
+            blocks = _table((folder or Path()) / blocks)
+        if not isinstance(blocks, list) or not blocks:
+            raise InputError("blocks", blocks, "a list of blocks that is not empty, or the name of a CSV",
+                             "Write - {name: loaded, distance: 4000, radial_force: -300}.")  # fmt: skip
+        base = values.get("base") or {}
+        if not isinstance(base, Mapping):
+            raise InputError("base", base, "a mapping of case fields to values")
+        made = tuple(_block(block, base, i) for i, block in enumerate(blocks, start=1))
+        _check_names([block.name for block in made])
+        if not sum(block.distance for block in made) > 0:
+            raise InputError("distance", 0.0, "the distances of a shift must add up to more than 0 m")
+        return cls(
+            name=str(values.get("name", "spectrum")),
+            blocks=made,
+            description=str(values.get("description", "")),
+            critical_damage=_number("critical_damage", values.get("critical_damage", 1.0), open_lower=True),
+            failure_probabilities=_probabilities(values.get("failure_probabilities", PROBABILITIES)),
+            options=_options({key: values[key] for key in OPTIONS if key in values}),
+        )
+
+
+def load_spectrum(path: Path | str) -> Spectrum:
+    """The load spectrum of a file; raises `InputError` naming file, block, field and value."""
+    path = Path(path)
+    values = parse_mapping(read_text(path, "load spectrum"), str(path))
+    with files_beside(path):
+        return Spectrum.from_dict({"name": path.stem} | values, path.parent)
+
+
+def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
+    if not isinstance(entry, Mapping):
+        raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
+    name = str(entry.get("name") or f"block {number}")
+    where = f"block '{name}'"
+    for key in entry:
+        if key in BLOCK_FIELDS:
+            continue
+        if key in FIELDS:
+            raise InputError(f"{where}.{key}", entry[key], "the roller is the same in all blocks of a spectrum",
+                             "Give it under `base`.")  # fmt: skip
+        raise unknown_name(f"{where}: field", str(key), BLOCK_FIELDS)
+    if "distance" not in entry:
+        raise InputError(f"{where}.distance", None, "the distance travelled per shift in m is wanted")
+    overrollings = entry.get("guide_overrollings")
+    loads = {key: entry[key] for key in LOAD_FIELDS if key in entry}
+    try:
+        case = Case.from_dict({**base, **loads})
+    except InputError as error:
+        at = where if error.field in loads else "base"
+        raise InputError(f"{at}.{error.field}", error.value, error.allowed, error.remedy) from None
+    return Block(name, case, _number(f"{where}.distance", entry["distance"]),
+                 None if overrollings is None else _number(f"{where}.guide_overrollings", overrollings))  # fmt: skip
+
+
+def _number(name: str, value: Any, open_lower: bool = False) -> float:
+    allowed = f"a finite number {'>' if open_lower else '>='} 0"
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise InputError(name, value, allowed) from None
+    if not math.isfinite(number) or number < 0 or (open_lower and number == 0):
+        raise InputError(name, value, allowed)
+    return number
+
+
+def _probabilities(values: Any) -> tuple[float, ...]:
+    if not isinstance(values, (list, tuple)) or not values:
+        raise InputError("failure_probabilities", values, "a list of numbers between 0 and 1")
+    numbers = tuple(_number("failure_probabilities", value, open_lower=True) for value in values)
+    for number in numbers:
+        if number >= 1:
+            raise InputError("failure_probabilities", number, "numbers between 0 and 1", "Give 0.1 for 10 %.")
+    return tuple(sorted(set(numbers)))
+
+
+def _options(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of the solver, refused now rather than after the work."""
+    from trackroller.roller.options import Options
+
+    Options(**values)
+    return dict(values)
+
+
+def _check_names(names: list[str]) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("blocks", name, "each block needs a name of its own", "Rename one of them.")
+
+
+def _table(path: Path) -> list[dict[str, Any]]:
+    """Blocks of a CSV: a line of names, then one line a block; an empty cell is a value not given."""
+    text = read_text(path, "blocks")
+    lines = [line for line in csv.reader(text.splitlines()) if any(cell.strip() for cell in line)]
+    if len(lines) < 2:
+        raise InputError("blocks", str(path), "a CSV with a line of names and at least one block")
+    names = [name.strip() for name in lines[0]]
+    if len(set(names)) < len(names) or not all(names):
+        raise InputError("blocks", ", ".join(names), "each column needs a name of its own", f"See {path}.")
+    for number, line in enumerate(lines[1:], start=2):
+        if len(line) != len(names):
+            raise InputError(
+                "blocks", f"{path}, line {number}", f"{len(names)} cells are wanted, there are {len(line)}"
+            )
+    return [{n: c.strip() for n, c in zip(names, line, strict=True) if c.strip()} for line in lines[1:]]
+
+
+def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
+    """Overrollings of roller and guide per shift, shape (block, body) [1].
+
+    The roller makes distance / (2 pi r_A) of them. The guide's point has those given, else its overrollings
+    per hour times the hours of the block; NaN where neither is known.
+    """
+    from trackroller.roller.geometry import rolling_radius
+
+    rows = []
+    for block in spectrum.blocks:
+        case = block.case
+        radius = rolling_radius(case.axis_distance, case.guide_profile_radius, np.deg2rad(case.contact_angle))
+        guide = block.guide_overrollings
+        if guide is None:
+            per_hour = case.guide_overrollings_per_hour
+            guide = math.nan if per_hour is None else per_hour * block.distance / (60.0 * case.velocity)
+        guide = 0.0 if block.distance == 0 and block.guide_overrollings is None else guide
+        rows.append((block.distance * 1e3 / (2 * math.pi * float(radius)), guide))
+    return np.array(rows, dtype=float)

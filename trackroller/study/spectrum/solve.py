@@ -1,0 +1,54 @@
+"""How many shifts a roller lasts under a load spectrum: its blocks solved, their damage summed.
+
+ASSUME: damage adds up linearly whatever the order of the blocks (Palmgren-Miner).
+ASSUME: the blocks load the same two tracks of the roller and the same point of the guide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from trackroller.study.spectrum.damage import damage_dataset
+from trackroller.study.spectrum.file import Block, Spectrum, load_spectrum
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import MaterialDatabase
+
+__all__ = ["Block", "Spectrum", "load_spectrum", "solve_spectrum"]
+
+
+def solve_spectrum(
+    spectrum: Spectrum,
+    database: MaterialDatabase | None = None,
+    solve: Callable[..., xr.Dataset] | None = None,
+) -> xr.Dataset:
+    """Damage of each block, damage sum and life in shifts of roller and guide.
+
+    Parameters
+    ----------
+    spectrum : the blocks
+    database : the materials; the built-in and the user's own if not given
+    solve : what solves the cases, with the signature of `trackroller.solve`
+
+    Returns
+    -------
+    Dataset over block, contact, body (and probability, where a material gives scatter): overrollings per
+    shift, peak stress, damage per shift, life in shifts of each track and to the first failure of each body.
+    A block that cannot be solved makes the lives that depend on it NaN; `regime` tells which. The contact that
+    lifts off takes no damage in that block. The guide's life is NaN where its overrollings are not known.
+    """
+    from trackroller.materials import load_database
+
+    solve_cases: Callable[..., xr.Dataset]
+    if solve is None:
+        from trackroller.roller.solver import solve as solve_cases
+    else:
+        solve_cases = solve
+    database = load_database() if database is None else database
+    cases = [block.case for block in spectrum.blocks]
+    options = {key: value for key, value in spectrum.options.items() if key != "life_rule"}
+    solved = solve_cases(cases, outputs=("forces", "peak_stress"), database=database, **options)
+    return damage_dataset(spectrum, solved, database)

@@ -1,0 +1,1 @@
+"""Take measured results over into the documentation and the package."""

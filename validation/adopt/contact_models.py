@@ -1,0 +1,26 @@
+"""Takes the figures of results/contact_models over into docs/figures, for docs/contact-models.md and the README.
+
+`snakemake -s validation/Snakefile --cores all contact_models; python -m validation.adopt.contact_models [FOLDER]`
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from validation.adopt.common import FIGURES, FOLDER, copy_figures
+
+NAMES = ("error", "error-factors", "energy", "patches", "map")
+COLOURS = 64
+
+
+def main() -> None:
+    """Copy the figures under the names that the pages use."""
+    results = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER.parent / "results" / "contact_models"
+    copy_figures(results, [f"models-{name}" for name in NAMES], COLOURS)
+    for name in NAMES:
+        (FIGURES / f"models-{name}.png").replace(FIGURES / f"contact_models_{name.replace('-', '_')}.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,35 @@
+"""Takes results/extremes over into docs/extremes.md, its data and figures.
+
+`snakemake -s validation/Snakefile --cores all extremes; python -m validation.adopt.extremes`; with `--check` it only compares the page with the kept
+data and ends with 1 if the page is not up to date.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from trackroller.report.pages import markdown
+from validation.adopt.common import DATA, copy_figures, main
+from validation.extremes.page import blocks, read
+
+KEPT = DATA / "extremes.json"
+MADE_BY = "made by validation/adopt/extremes.py from docs/data/extremes.json"
+
+
+def page() -> str:
+    """The page from the kept data."""
+    kept = json.loads(KEPT.read_text(encoding="utf-8"))
+    return markdown(blocks(kept["record"], kept["figures"]), MADE_BY)
+
+
+def adopt(results: Path) -> None:
+    """Copy data (without the regime map, which the figure shows) and figures."""
+    record, figures = read(results)
+    record.pop("map")
+    KEPT.write_text(json.dumps({"record": record, "figures": figures}) + "\n", encoding="utf-8")
+    copy_figures(results, [figure["name"] for figure in figures])
+
+
+if __name__ == "__main__":
+    main("extremes", page, adopt)

@@ -1,0 +1,34 @@
+"""Takes results/paper over into docs/paper.md: `python -m validation.adopt.paper [results/paper]`, after `snakemake paper`.
+
+With `--check` it only compares the page with its data and ends with 1 if it is not up to date.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+from trackroller.report.pages import markdown
+from validation.adopt.common import DATA, copy_figures, main
+from validation.paper.compute import STORED, stored
+from validation.paper.page import blocks
+
+MADE_BY = "made by validation/adopt/paper.py from validation/paper/paper_results.json"
+
+
+def page() -> str:
+    """The page from the data in the repository."""
+    figures = json.loads((DATA / "paper_figures.json").read_text(encoding="utf-8"))
+    return markdown(blocks(stored(), figures), MADE_BY)
+
+
+def adopt(results: Path) -> None:
+    """Copy data and figures."""
+    shutil.copy(results / "paper.json", STORED)
+    shutil.copy(results / "figures" / "index.json", DATA / "paper_figures.json")
+    copy_figures(results, [picture.stem for picture in (results / "figures").glob("paper_*.png")], colours=96)
+
+
+if __name__ == "__main__":
+    main("paper", page, adopt)

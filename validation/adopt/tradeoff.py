@@ -1,0 +1,38 @@
+"""Takes a measurement of `snakemake tradeoff` over: ladders into the package, page, data and figures into the docs.
+
+    python -m validation.adopt.tradeoff [results/tradeoff]
+
+The presets follow from the ladders, so numbers of solutions may change: run the tests, and raise `RESULTS_VERSION` in
+trackroller/study/identity.py if a preset's settings changed.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from validation.adopt.common import DATA, FOLDER, copy_figures
+
+LADDERS = FOLDER.parent / "trackroller" / "data" / "accuracy.json"
+
+
+def adopt(results: Path) -> None:
+    """Copy what the measurement found; the pages are made anew in a process that reads the new ladders."""
+    summary = json.loads((results / "tradeoff.json").read_text(encoding="utf-8"))
+    if not all(summary["ladders"].values()):
+        raise SystemExit("a ladder is empty: measure all contact models first")
+    told = {"made_by": "python -m validation.adopt.tradeoff, from snakemake tradeoff", "sample": summary["sample"],
+            "ladders": summary["ladders"]}  # fmt: skip
+    LADDERS.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+    DATA.mkdir(exist_ok=True)
+    shutil.copy(results / "tradeoff.json", DATA / "tradeoff.json")
+    shutil.copy(results / "figures" / "index.json", DATA / "tradeoff_figures.json")
+    copy_figures(results, [picture.stem for picture in (results / "figures").glob("tradeoff_*.png")])
+    subprocess.run([sys.executable, str(FOLDER / "generate.py")], check=True)
+
+
+if __name__ == "__main__":
+    adopt(Path(sys.argv[1] if len(sys.argv) > 1 else "results/tradeoff"))

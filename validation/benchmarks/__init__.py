@@ -1,0 +1,1 @@
+"""Programs that measure speed and accuracy as ratios within one run."""

@@ -1,0 +1,278 @@
+"""Plain NumPy transcription of the paper's stress calculation, eqs. (1)-(6): what our speed is measured against.
+
+Written from the equations of Wenzel et al., Appl. Mech. 2022, 3, 692-704, and not from any program: the derivatives of
+Omega come from SymPy (as in the paper), are evaluated on n x n surface points, weighted with the tractions and
+integrated by Simpson's rule; displacement gradients and Hooke's law follow as printed. One point per evaluation, as
+an optimiser asks for them. The peak is sought by SciPy's differential evolution with its default settings.
+
+    python -m validation.benchmarks.published_transcription            a line of numbers per style, paper's own case
+
+Three styles give the same numbers at very different cost. A ratio must name its style, and an honest report quotes
+"printed" and "reused" side by side:
+"printed"  every integral is evaluated where it stands in eqs. (4)-(5), by scipy.integrate.simpson;
+"reused"   each of the twenty derivatives of Omega is evaluated once per point and each integral is a weighted sum:
+           the same mathematics written with care, some twenty times faster;
+"shared"   as "reused", with common subexpressions of all derivatives taken out (no faster: sums and memory decide).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+POINTS = 40  # surface points per direction
+POPSIZE = 15  # scipy's default; 3 unknowns make a population of 45
+AXES = "xyz"
+_ORDERS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)] + [
+    (i, j, 4 - i - j) for i in range(4) for j in range(4 - i)  # every fourth derivative has at least one z
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One contact patch: nodes x (nx,), y (ny,) [mm], tractions q_x, q_y, q_z (ny, nx) on the body [MPa], nu."""
+
+    x: np.ndarray
+    y: np.ndarray
+    q_x: np.ndarray
+    q_y: np.ndarray
+    q_z: np.ndarray
+    poisson_ratio: float
+
+
+STYLES = ("printed", "reused", "shared")
+
+
+@cache
+def derivatives_of_omega() -> dict:
+    """Functions of (x - xi, y - eta, z, rho): each derivative of Omega, eqs. (2)-(3), by its orders in x, y, z."""
+    import sympy as sp
+
+    x, y, z = sp.symbols("x y z", real=True)
+    name = sp.Symbol("rho", positive=True)
+    rho = sp.sqrt(x**2 + y**2 + z**2)
+    omega = z * sp.log(rho + z) - rho
+    # factor in place of simplify, which takes minutes; rho is named once, as anybody would
+    return {
+        (i, j, k): sp.lambdify(
+            (x, y, z, name), sp.factor(sp.diff(omega, x, i, y, j, z, k).subs(rho, name)), "numpy"
+        )
+        for i, j, k in _ORDERS
+    }  # fmt: skip
+
+
+@cache
+def shared_derivatives():
+    """One function of (x - xi, y - eta, z) giving all derivatives in the order of _ORDERS."""
+    import sympy as sp
+
+    x, y, z = sp.symbols("x y z", real=True)
+    rho = sp.sqrt(x**2 + y**2 + z**2)
+    omega = z * sp.log(rho + z) - rho
+    return sp.lambdify((x, y, z), [sp.diff(omega, x, i, y, j, z, k) for i, j, k in _ORDERS], "numpy", cse=True)
+
+
+def simpson_weights(x: np.ndarray) -> np.ndarray:
+    """Weights of the composite Simpson rule on equidistant nodes; for an even number of nodes the last interval is
+    integrated with the parabola through the last three nodes."""
+    h, n = x[1] - x[0], x.size
+    w = np.zeros(n)
+    odd = n if n % 2 else n - 1
+    for start in range(0, odd - 1, 2):
+        w[start : start + 3] += h / 3 * np.array([1.0, 4.0, 1.0])
+    if odd < n:
+        w[-3:] += h / 12 * np.array([-1.0, 8.0, 5.0])
+    return w
+
+
+def _integrals(contact: Contact, point: Sequence[float], style: str):
+    """Function Q(load, along): the derivative of the potential Q_load, eq. (1), along the axes named, at the point."""
+    x, y, z = point
+    # Omega depends on x - xi: derivatives with respect to x
+    u, v = x - contact.x[None, :], y - contact.y[:, None]
+    q = dict(zip(AXES, (contact.q_x, contact.q_y, contact.q_z), strict=True))
+    if style == "printed":
+        from scipy.integrate import simpson
+
+        def integral(load: str, along: str) -> float:
+            rho = np.sqrt(u**2 + v**2 + z**2)
+            omega = derivatives_of_omega()[tuple(along.count(axis) for axis in AXES)](u, v, z, rho)
+            return float(simpson(simpson(q[load] * omega, x=contact.x, axis=1), x=contact.y))
+
+        return integral
+    if style == "shared":
+        table = dict(zip(_ORDERS, shared_derivatives()(u, v, z), strict=True))
+    else:
+        rho = np.sqrt(u**2 + v**2 + z**2)
+        table = {order: f(u, v, z, rho) for order, f in derivatives_of_omega().items()}
+    weights = np.outer(simpson_weights(contact.y), simpson_weights(contact.x))
+    sums = {(load, order): float(np.sum(weights * q[load] * d)) for load in AXES for order, d in table.items()}
+    return lambda load, along: sums[load, tuple(along.count(axis) for axis in AXES)]
+
+
+def stress_at(contact: Contact, point: Sequence[float], style: str = "printed") -> np.ndarray:
+    """sigma_x, sigma_y, sigma_z, tau_xy, tau_yz, tau_xz [MPa] at one point z > 0, eqs. (1)-(5). (6,)."""
+    z, nu = point[2], contact.poisson_ratio
+    Q = _integrals(contact, point, style)
+
+    def gradient(i: str, j: str) -> float:
+        """d(E / (1 + nu) u_i) / dj, eq. (5) and its two companions; the last term by the product rule."""
+        value = -z * sum(Q(load, load + "z" + i + j) for load in AXES)
+        if j == "z":
+            value -= sum(Q(load, load + "z" + i) for load in AXES)
+        if i == "z":
+            value += Q("z", "zz" + j) + (1 - 2 * nu) * sum(Q(load, load + "z" + j) for load in AXES)
+        else:
+            value += 2 * Q(i, "zz" + j) - Q("z", i + "z" + j) + 2 * nu * sum(Q(load, load + i + j) for load in AXES)
+        return value / (2 * np.pi)
+
+    def normal(i: str) -> float:  # eq. (4); E / (1 + nu) has cancelled
+        dilatation = gradient("x", "x") + gradient("y", "y") + gradient("z", "z")
+        return nu / (1 - 2 * nu) * dilatation + gradient(i, i)
+
+    def shear(i: str, j: str) -> float:
+        return (gradient(i, j) + gradient(j, i)) / 2
+
+    return np.array([*map(normal, AXES), shear("x", "y"), shear("y", "z"), shear("x", "z")])
+
+
+def equivalent(stress: np.ndarray) -> float:
+    """sigma_DEH, eq. (6) [MPa]."""
+    sx, sy, sz, txy, tyz, txz = stress
+    return float(np.sqrt(0.5 * ((sx - sy) ** 2 + (sz - sx) ** 2 + (sy - sz) ** 2 + 6 * (txy**2 + txz**2 + tyz**2))))
+
+
+def search_box(contact: Contact) -> list[tuple[float, float]]:
+    """Bounds of the search: the patch, from 1.5 grid steps (nearer the sums break down) to its half-width deep."""
+    x, y = contact.x, contact.y
+    deepest = max(x[-1] - x[0], y[-1] - y[0]) / 2
+    start = 1.5 * max(x[1] - x[0], y[1] - y[0])
+    return [(x[0], x[-1]), (y[0], y[-1]), (start, max(deepest, 2 * start))]
+
+
+def peak_by_differential_evolution(contact: Contact, seed: int = 1, style: str = "printed", evaluate=None) -> dict:
+    """Largest equivalent stress by scipy's differential evolution, default settings (popsize 15, polish), seeded.
+
+    `evaluate(point) -> MPa` stands in for the transcription where only the number of evaluations matters.
+    Returns dict(peak [MPa], position [mm], evaluations, seconds).
+    """
+    from scipy.optimize import differential_evolution
+
+    if evaluate is None:
+
+        def evaluate(point):
+            return equivalent(stress_at(contact, point, style))
+
+    count = 0
+
+    def negative(point):
+        nonlocal count
+        count += 1
+        return -evaluate(point)
+
+    start = time.perf_counter()
+    found = differential_evolution(negative, search_box(contact), popsize=POPSIZE, rng=seed)
+    seconds = time.perf_counter() - start
+    return {"peak": -float(found.fun), "position": found.x, "evaluations": count, "seconds": seconds}
+
+
+def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
+    """How many evaluations the search takes, counted on the same field evaluated with our own kernels (quick)."""
+    from trackroller.halfspace.influence import corner_loads, stress_parts
+    from trackroller.halfspace.stress import von_mises
+
+    loads = corner_loads(contact.x, contact.y, np.stack([contact.q_x, contact.q_y, contact.q_z], -1))
+
+    def evaluate(point):
+        parts = stress_parts(loads, np.asarray(point, dtype=float)[None])[0]
+        return float(von_mises(parts[0] + contact.poisson_ratio * parts[1]))
+
+    return int(peak_by_differential_evolution(contact, seed, evaluate=evaluate)["evaluations"])
+
+
+def tractions_of_paper(
+    a: float, b: float, max_pressure: float, sine: float, cosine: float, profile_radius: float, shift: float,
+    friction: float, poisson_ratio: float, points: int = POINTS,
+) -> Contact:  # fmt: skip
+    """Tractions on the roller by eqs. (21)-(30), assumption 2. sine, cosine of the SIGNED contact angle; lengths in mm,
+    shift = r_Delta0; omega_r cancels. The misprint of eq. (21) is set right."""
+    x, y = np.linspace(-a, a, points), np.linspace(-b, b, points)
+    xx, yy = np.meshgrid(x, y)
+    pole = shift / sine
+    y_pole = -b * np.sqrt(1 - (pole / a) ** 2) if abs(pole) < a else 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        y_delta = np.where(xx < pole, (xx + a) / (pole + a), (xx - a) / (pole - a)) * y_pole
+    y_delta = np.where(np.isfinite(y_delta) & (xx != pole), y_delta, 0.0)
+    v_x = sine * (yy - y_delta)
+    height = np.sqrt(profile_radius**2 - (xx * cosine + profile_radius * sine) ** 2)
+    v_y = height - profile_radius * cosine + shift
+    size = np.hypot(v_x, v_y)
+    size[size == 0.0] = 1.0
+    p = max_pressure * np.sqrt(np.clip(1 - (xx / a) ** 2 - (yy / b) ** 2, 0, None))
+    return Contact(x, y, -v_x / size * friction * p, -v_y / size * friction * p, p, poisson_ratio)
+
+
+def contacts_of_case(case=None, points: int = POINTS) -> list[Contact]:
+    """Both contacts of a case (default: the paper's own), from our forces and ellipses and the paper's tractions."""
+    import trackroller as tr
+    from trackroller.roller.case import Case
+
+    case = Case() if case is None else case
+    ds = tr.solve(case, outputs=("forces", "contact")).squeeze()
+    angle = np.deg2rad(float(case.contact_angle))
+    found = []
+    for k, sign in enumerate((1.0, -1.0)):
+        one = ds.isel(contact=k)
+        a, b, p = (float(one[n]) for n in ("semi_axis_lateral", "semi_axis_rolling", "max_pressure"))
+        mu = case.friction_coefficient
+        found.append(
+            tractions_of_paper(a, b, p, sign * np.sin(angle), np.cos(angle), case.guide_profile_radius,
+                               float(ds["rolling_radius_shift"]), 0.3 if mu is None else mu, 0.33, points)
+        )  # fmt: skip
+    return found
+
+
+def time_transcription(
+    case=None, contacts: Sequence[Contact] | None = None, sample: int = 20, seed: int = 1,
+    style: str = "printed", full: bool = False,
+) -> dict:  # fmt: skip
+    """Seconds the transcription needs for the peaks of one case (both contacts, one body each).
+
+    Times `sample` evaluations at random points of each contact and multiplies by the evaluations the search takes
+    (`full=True` runs the search itself instead). SymPy's derivation is not counted.
+    Returns dict(seconds_per_case, cpu_seconds_per_case, evaluations, seconds_per_evaluation, points, sample, measured,
+    style).
+    """
+    contacts = contacts_of_case(case) if contacts is None else contacts
+    rng = np.random.default_rng(seed)
+    seconds, cpu, evaluations = 0.0, 0.0, 0
+    for contact in contacts:
+        if full:
+            start = time.process_time()
+            run = peak_by_differential_evolution(contact, seed, style)
+            seconds, evaluations = seconds + run["seconds"], evaluations + run["evaluations"]
+            cpu += time.process_time() - start
+            continue
+        low, high = np.array(search_box(contact)).T
+        places = rng.uniform(low, high, (sample, 3))
+        equivalent(stress_at(contact, places[0], style))  # derivation and first-call costs stay outside
+        start, start_cpu = time.perf_counter(), time.process_time()
+        for place in places:
+            equivalent(stress_at(contact, place, style))
+        each, each_cpu = (time.perf_counter() - start) / sample, (time.process_time() - start_cpu) / sample
+        count = evaluations_of_search(contact, seed)
+        seconds, cpu, evaluations = seconds + each * count, cpu + each_cpu * count, evaluations + count
+    return {
+        "seconds_per_case": seconds, "cpu_seconds_per_case": cpu, "evaluations": evaluations,
+        "seconds_per_evaluation": seconds / evaluations,
+        "points": contacts[0].x.size, "sample": 0 if full else sample, "measured": full, "style": style,
+    }  # fmt: skip
+
+
+if __name__ == "__main__":
+    for kind in STYLES:
+        print(time_transcription(style=kind))

@@ -1,0 +1,1 @@
+"""The contact models side by side over the shipped sample of rollers."""

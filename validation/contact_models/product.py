@@ -1,0 +1,126 @@
+"""The shipped comparison of contact models (`snakemake contact_models`): a study like any other, and its patches."""
+
+from __future__ import annotations
+
+import dataclasses
+import logging
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.report.comparison.words import percent
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.report.figures.style import FigureInfo
+
+log = logging.getLogger(__name__)
+MODELS = ("sliding", "fastsim", "kalker")
+# friction and share of what friction can carry that the drive takes, of the pictures of the patch
+PATCHES = ((0.05, 0.0), (0.15, 0.0), (0.15, 0.5), (0.5, 0.0), (0.5, 0.5))
+
+
+def compare(study_file: Path, out: Path) -> None:
+    """Solve the study, then figures, words and report as of any study, with pictures of the patch, into `out`."""
+    from trackroller.cli.workflow import analyse_study, draw_study, report_study
+    from trackroller.roller.case import Case
+    from trackroller.study.config import load_study
+    from trackroller.study.run import run_study
+
+    study = load_study(study_file)
+    plan = run_study(study, out.parent)
+    if plan.folder.root != out:
+        raise ValueError(f"the study must be named {out.name}")
+    gathered, analysis, figures = str(plan.folder.gathered), str(out / "sensitivity.nc"), out / "figures"
+    analyse_study(gathered, analysis)
+    draw_study(gathered, analysis, str(figures))
+    base = {k: v for k, v in study.config.base.items() if k not in study.factors}
+    draw_patches(Case.from_dict(base), figures)
+    write_words(gathered, out / "words.txt")
+    report_study(gathered, str(figures), analysis, str(out / "report.html"))
+
+
+def write_words(study_nc: str, path: Path) -> None:
+    """What the comparison says, a line a sentence, with what the random designs behind `auto` say."""
+    import xarray as xr
+
+    from trackroller.report.comparison.pairs import pairs
+    from trackroller.report.comparison.words import sentences
+
+    with xr.open_dataset(study_nc) as ds:
+        paired = pairs(ds)
+        said = sentences(paired) if paired is not None else ["The study has but one contact model."]
+    path.write_text("\n".join([*said, *map_sentences()]) + "\n", encoding="utf-8")
+
+
+def draw_patches(case: Any, out: Path) -> list[FigureInfo]:
+    """The patches of a case by model and the map behind `auto`, with their index, in the folder `out`."""
+    from trackroller.report.figures import style
+    from validation.contact_models import map as ladder_map
+    from validation.contact_models import patches as ladder_patches
+
+    infos = []
+    with style.look():
+        for draw, name, caption in (
+            (lambda: ladder_patches.patches(patch_fields(case)), "models-patches",
+             "Friction, stick and dissipation across contact 1 by contact model, free and driven."),
+            (ladder_map.choice_map, "models-map", "Cheapest contact model within a tolerance."),
+        ):  # fmt: skip
+            try:
+                style.save(draw(), out, name)
+            except OSError:  # a full disk is not the figure's fault
+                raise
+            except Exception as problem:  # a picture never fails a run, whatever the base case is
+                log.warning("figure %s was not drawn: %s", name, problem, exc_info=True)
+                continue
+            infos.append(style.FigureInfo(name, caption, ""))
+    style.write_index(infos, out, "index-models.json")
+    return infos
+
+
+def patch_fields(case: Any, wanted: Sequence[tuple[float, float]] = PATCHES) -> xr.Dataset:
+    """Tractions, slip and stick over both patches of `case` by model; dimensions contact_model x row.
+
+    `wanted`: friction coefficient of each row, and the drive as a share of mu times the sum of the normal forces that
+    the load alone causes.
+    """
+    import xarray as xr
+
+    from trackroller.roller.solver import solve
+
+    press = abs(case.radial_force) / np.cos(np.deg2rad(case.contact_angle))
+    drives = [-float(f"{share * mu * press:.1g}") if share else 0.0 for mu, share in wanted]
+    cases = [dataclasses.replace(case, motor_force=drive, friction_coefficient=mu)
+             for (mu, _), drive in zip(wanted, drives, strict=True)]  # fmt: skip
+    parts = []
+    for model in MODELS:
+        ds = solve(cases, outputs=("forces", "contact", "tractions"), contact_model=model)
+        parts.append(ds.rename(case="row").assign_coords(
+            friction_coefficient=("row", [mu for mu, _ in wanted]), motor_force=("row", drives), contact_model=model,
+        ))  # fmt: skip
+    # full sliding is drawn on its own number of points
+    points = {n: max(p.sizes[n] for p in parts) for n in ("x", "y")}
+    parts = [_resampled(p, points) for p in parts]
+    return xr.concat(parts, "contact_model", combine_attrs="drop_conflicts")
+
+
+def _resampled(ds: xr.Dataset, points: dict[str, int]) -> xr.Dataset:
+    """Fields at the nearest of their own points on a grid of `points` positions."""
+    pick = {n: np.minimum((np.arange(m) * ds.sizes[n]) // m, ds.sizes[n] - 1) for n, m in points.items()}
+    return ds.isel(pick).drop_vars([n for n in ("x", "y") if n in ds.coords])
+
+
+def map_sentences() -> list[str]:
+    """What the random designs behind `contact_model="auto"` say."""
+    from trackroller.roller.choice import choose as choice
+
+    m = choice.stored()
+    said = [f"Of {int(m['checked'])} random designs, auto takes"]
+    parts = []
+    for tolerance, shares in zip(m["tolerances"], m["shares"], strict=True):
+        parts.append(f"for {percent(float(tolerance))} sliding in {percent(shares[0])}, FASTSIM in "
+                     f"{percent(shares[1])} and the exact theory in {percent(shares[2])}")  # fmt: skip
+    return [f"{said[0]} {'; '.join(parts)}; within the tolerance were at least {percent(float(np.min(m['met'])))}."]

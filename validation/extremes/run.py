@@ -1,0 +1,91 @@
+"""Runs the catalogue of edge scenes and gathers what it finds in one record (JSON)."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trackroller.parameters import REGIMES
+from trackroller.roller.solver import solve
+from validation.extremes.checks import FAILED, NEEDED, examine, run_cases
+from validation.extremes.kernels import KERNELS
+from validation.extremes.random_cases import random_extremes
+from validation.extremes.scenes import BASE, scaled, scenes
+
+Record = dict[str, Any]
+ACCURACIES = {"sliding": "standard", "kalker": "preview", "fastsim": "preview"}
+RANDOM = {"sliding": 3000, "kalker": 60, "fastsim": 300}
+SEED = 7
+
+
+def random_record(model: str, count: int, seed: int = SEED) -> Record:
+    """Random extremes with one model: regimes, undefined numbers, warnings, and the change when units change."""
+    cases = random_extremes(count, seed)
+    ds, warned = run_cases(cases, model, ACCURACIES[model] if count <= 1000 else "preview")
+    other = solve([scaled(c, 7.3, 0.37) for c in cases], "forces", contact_model=model, accuracy=ACCURACIES[model])
+    mine = solve(cases, "forces", contact_model=model, accuracy=ACCURACIES[model])
+    carries = ds.regime.values < 2
+    bad = np.array([np.isnan(ds[v].values.reshape(count, -1)).any(axis=1) for v in NEEDED]).any(axis=0) & carries
+    both = (mine.regime.values < 2) & (other.regime.values == mine.regime.values)
+    n, m = mine.normal_force.values[both], other.normal_force.values[both] / (7.3**2 * 0.37)
+    return {"model": model, "count": count, "regimes": dict(Counter(REGIMES[i] for i in ds.regime.values)),
+            "failed_small_patch": int(np.sum((ds.regime.values == FAILED) & _small(cases))),
+            "undefined": int(bad.sum()),
+            "warnings": warned, "other_regime": int(np.sum(mine.regime.values != other.regime.values)),
+            "scaling": float(np.max(np.abs(n - m) / np.max(n, axis=1, keepdims=True), initial=0.0))}  # fmt: skip
+
+
+def _small(cases: list[Record]) -> np.ndarray:
+    """Cases whose patch, judged without friction, stays below 0.3 of every radius: the model's own ground."""
+    plain = [c | {"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.0} for c in cases]
+    ds = solve(plain, ("forces", "contact"))
+    return (ds.validity.values & 1 == 0) & (ds.regime.values == 0)
+
+
+def regime_map(points: int = 61) -> Record:
+    """Regimes of the base case over axial force (share of lift-off) and friction, free and braked."""
+    axial, friction = np.linspace(0.0, 1.3, points), np.geomspace(0.01, 2.0, points)
+    maps = {}
+    for name, share in (("free rolling", 0.0), ("driven, 20 N", -20.0)):
+        cases = [BASE | {"axial_force": a * 200 * math.tan(math.radians(30)), "friction_coefficient": m,
+                         "motor_force": share} for m in friction for a in axial]  # fmt: skip
+        ds = solve(cases, "forces")
+        jam = ds.validity.values >> 4 & 1
+        maps[name] = {"regime": ds.regime.values.reshape(points, points).tolist(),
+                      "jamming": jam.reshape(points, points).tolist()}  # fmt: skip
+    return {"axial": axial.tolist(), "friction": friction.tolist(), "maps": maps}
+
+
+def run(random: dict[str, int] | None = None, points: int = 61) -> Record:
+    """The whole catalogue."""
+    rows = []
+    for scene in scenes():
+        for model in scene.models:
+            solved, findings = examine(scene, model, ACCURACIES[model])
+            regimes = "".join(str(r) for r in solved.regime())
+            rows.append({"scene": scene.name, "title": scene.title, "quantity": scene.quantity, "unit": scene.unit,
+                         "values": [str(v) for v in scene.values], "model": model, "regimes": regimes,
+                         "findings": [{"check": f.check, "deviation": str(f.deviation), "tolerance": f.tolerance,
+                                       "where": str(f.where), "holds": f.holds} for f in findings]})  # fmt: skip
+    kernels = [k() for k in KERNELS]
+    return {
+        "scenes": rows,
+        "kernels": [{"name": k.name, "quantity": k.quantity, "values": list(k.values), "errors": list(k.errors),
+                     "tolerance": k.tolerance, "against": k.against, "single": k.single,
+                     "holds": k.holds} for k in kernels],
+        "random": [random_record(m, n) for m, n in (random or RANDOM).items()],
+        "map": regime_map(points),
+    }  # fmt: skip
+
+
+def write(record: Record, path: Path) -> None:
+    """The record as JSON, whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.name}.part")
+    part.write_text(json.dumps(record) + "\n", encoding="utf-8")
+    part.replace(path)

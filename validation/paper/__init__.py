@@ -1,0 +1,1 @@
+"""The published example, computed anew beside the printed numbers."""

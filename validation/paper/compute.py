@@ -1,0 +1,120 @@
+"""The published example computed anew: every table and figure of Wenzel et al. 2022 that a computation yields.
+
+Numbers that the paper, its program and CONTACT print stand in `data/paper_reference.json` with their origin.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.roller.case import Case
+from trackroller.roller.solver import solve
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+REFERENCE = Path(__file__).with_name("paper_reference.json")
+STORED = REFERENCE.with_name("paper_results.json")  # of the last `snakemake paper` taken over into the documentation
+# the paper's figures: 7 frictionless and with friction, free; 6 and 8 to 11 with friction, driven
+SCENES = {
+    "frictionless": {"friction_coefficient": 1e-4, "motor_force": 0.0},
+    "free": {"friction_coefficient": 0.3, "motor_force": 0.0},
+    "driven": {"friction_coefficient": 0.3, "motor_force": -30.0},
+}
+MODELS = ("sliding", "kalker")
+QUANTITIES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "max_pressure", "rolling_radius_shift")
+_FIELDS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
+
+
+@lru_cache(maxsize=1)
+def reference() -> dict[str, Any]:
+    """What the paper, the published program and CONTACT print, with their origin."""
+    return json.loads(REFERENCE.read_text(encoding="utf-8"))
+
+
+def stored() -> dict[str, Any]:
+    """The numbers of `results` as they stand in the documentation."""
+    return json.loads(STORED.read_text(encoding="utf-8"))
+
+
+def case_of(scene: str) -> Case:
+    """The paper's example in one of `SCENES`."""
+    return Case(**SCENES[scene])  # type: ignore[arg-type]
+
+
+@lru_cache(maxsize=8)
+def solved(scene: str, model: str, accuracy: str = "standard") -> xr.Dataset:
+    """All results of a scene with a contact model."""
+    return solve(case_of(scene), outputs=_FIELDS, contact_model=model, accuracy=accuracy)
+
+
+def as_published(case: Case) -> xr.Dataset:
+    """The published model with its own Hertz table and its one body of mean Poisson's ratio."""
+    return solve(case, outputs=("forces", "contact", "peak_stress", "life"), hertz="published",
+                 stress_bodies="published")  # fmt: skip
+
+
+def stress_at(scene: str, points: list[list[float]]) -> list[float]:
+    """Von Mises stress [MPa] of the sliding model on the roller, at one point (x, y, z) [mm] below each contact."""
+    from trackroller.contact.common import Ellipse, Slip
+    from trackroller.contact.sliding import spin_model_index
+    from trackroller.halfspace.ellipse import patch_rows, stress_parts
+    from trackroller.halfspace.stress import von_mises
+    from trackroller.materials import load_database
+    from trackroller.roller.geometry import rolling_radius
+
+    ds, case = solved(scene, "sliding"), case_of(scene)
+    alpha = np.deg2rad(case.contact_angle) * np.array([1.0, -1.0])
+    full = lambda v: np.full(2, float(v))  # noqa: E731
+    r_a = rolling_radius(full(case.axis_distance), full(case.guide_profile_radius), alpha)
+    ellipse = Ellipse(*(ds[n].values for n in ("semi_axis_lateral", "semi_axis_rolling", "max_pressure")))
+    slip = Slip(np.sin(alpha), np.cos(alpha), full(case.guide_profile_radius), r_a, full(ds.rolling_radius_shift))
+    rows = patch_rows(ellipse, slip, full(case.friction_coefficient), spin_model_index("skewed"))
+    nu, found = load_database().material(case.roller_material).poisson_ratio, []
+    for row, point, pressure in zip(rows, points, ellipse.max_pressure, strict=True):
+        parts = stress_parts(row, np.array([point]), 48, 48)
+        found.append(float(von_mises(parts[:, 0] + nu * parts[:, 1] + parts[:, 2] + nu * parts[:, 3])[0] * pressure))
+    return found
+
+
+def _values(ds: xr.Dataset, names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: np.round(ds[name].values.astype(float), 7).tolist() for name in names if name in ds}
+
+
+def results() -> dict[str, Any]:
+    """All numbers of the page: ours by scene and model, and those of scenes the published program cannot treat.
+
+    Keys: `ours` scene -> model -> quantities; `as_published` scene -> quantities with the published table;
+    `inner` scene -> our stress at the published place of the peak; `limits` name -> our solution; `seconds` of a case.
+    """
+    told = (*QUANTITIES, "peak_stress", "peak_z", "life_cycles", "friction_energy_per_distance",
+            "friction_energy_balance", "energy_residual", "transmitted_force", "stick_area_fraction")  # fmt: skip
+    known = reference()
+    out: dict[str, Any] = {"ours": {}, "as_published": {}, "inner": {}, "limits": {}, "accuracy": {}}
+    for scene in SCENES:
+        out["ours"][scene] = {model: _values(solved(scene, model), told) for model in MODELS}
+        places = known["published_program"][scene]["published"]["peak_position"]
+        out["inner"][scene] = [round(v, 3) for v in stress_at(scene, places)]
+        out["as_published"][scene] = _values(as_published(case_of(scene)), (*QUANTITIES, "peak_stress"))
+    for name, entry in known["limits"].items():
+        case = Case.from_dict({k: float(v) if v == "inf" else v for k, v in entry["case"].items()})
+        ds = solve(case)
+        out["limits"][name] = _values(ds, (*QUANTITIES, "semi_axis_lateral", "semi_axis_rolling", "peak_stress",
+                                           "life_cycles"))  # fmt: skip
+    for accuracy in ("preview", "standard", "reference"):
+        start = time.process_time()
+        ds = solve(case_of("free"), accuracy=accuracy)
+        out["accuracy"][accuracy] = {"seconds": round(time.process_time() - start, 4),
+                                     "peak_stress": _values(ds, ("peak_stress",))["peak_stress"]}  # fmt: skip
+    return out
+
+
+def life_ratio(of: float, to: float, exponent: float) -> float:
+    """Life at the stress `of` over that at the stress `to` on a Woehler line of this exponent."""
+    return (to / of) ** exponent

@@ -1,0 +1,12 @@
+"""Run the catalogue of edge scenes."""
+
+import sys
+
+sys.path.insert(0, str(snakemake.scriptdir + "/../.."))
+from pathlib import Path
+
+from trackroller.cli.workflow import log_to
+from validation.extremes.run import run, write
+
+log_to(snakemake.log[0])
+write(run(), Path(snakemake.output[0]))

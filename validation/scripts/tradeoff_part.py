@@ -1,0 +1,10 @@
+"""Measure one part of the trade-off."""
+
+import sys
+
+sys.path.insert(0, str(snakemake.scriptdir + "/../.."))
+from trackroller.cli.workflow import log_to
+from validation.tradeoff.parts import write_part
+
+log_to(snakemake.log[0])
+write_part(snakemake.wildcards.part, snakemake.input.sizes, snakemake.output[0])

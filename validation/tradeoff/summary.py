@@ -1,0 +1,155 @@
+"""From the measured errors to numbers one can read: percentiles, orders of convergence, ladders of settings."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.analysis.pareto import pareto_mask
+from trackroller.parameters import ACCURACIES
+from trackroller.roller.accuracy import FORCE_QUANTITIES, preset_rungs, read_ladders
+from validation.tradeoff.errors import QUANTITIES, observed_order, percentiles, tolerance_bound
+from validation.tradeoff.settings import REFERENCE_ELEMENTS
+
+MOST_RUNGS = 10
+LADDERS = {("equilibrium", "sliding"): "forces", ("peak", "sliding"): "peak", ("elements", "fastsim"): "fastsim",
+           ("elements", "kalker"): "kalker"}  # fmt: skip
+_JUDGED_BY = {
+    "forces": (FORCE_QUANTITIES,),
+    "peak": (("peak_stress",),),
+    "fastsim": (FORCE_QUANTITIES, ("peak_stress",)),
+    "kalker": (FORCE_QUANTITIES, ("peak_stress",)),
+}
+REFERENCE_ORDER = 1.8  # ASSUME: of element models towards their reference, as observed
+_FLOOR = 1e-15  # rounding: no bound is promised below
+Record = dict[str, Any]
+
+
+def summary(ds: xr.Dataset) -> dict[str, Any]:
+    """Everything that page, figures and ladders are made of, ready for JSON."""
+    records = [_record(ds.isel(setting=i)) for i in range(ds.sizes["setting"])]
+    whole = {k: ds.attrs[k] for k in sorted(ds.attrs) if k.startswith(("designs_", "reference_cost_"))}
+    chosen = {name: ladder(records, *key) for key, name in LADDERS.items()}
+    return {
+        "sample": {"seed": int(ds.attrs["seed"]), **{k: _plain(v) for k, v in whole.items()}},
+        "versions": json.loads(ds.attrs["versions"]),
+        "settings": records,
+        "orders": orders(records),
+        "life": life_against_peak(ds),
+        "paper_table": json.loads(ds.attrs["paper_table"]),
+        "ladders": chosen,
+        "presets": presets(chosen),
+    }
+
+
+def presets(chosen: dict[str, list[Record]]) -> dict[str, Record]:
+    """Settings of the rungs that each preset takes from the ladders: `forces`, `peak` and `elements`."""
+    if not all(chosen.values()):
+        return {}
+    measured = read_ladders(chosen)
+    return {name: {part: dict(rung.settings) for part, rung in zip(("forces", "peak", "elements"),
+                                                                   preset_rungs(name, measured), strict=True) if rung}
+            for name in ACCURACIES}  # fmt: skip
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _record(one: xr.Dataset) -> Record:
+    out: Record = {name: str(one[name].values) for name in ("stage", "model", "method", "label")}
+    out["points"] = _number(float(one["points"]))
+    out["cost"] = float(f"{float(one['cost']):.4g}")
+    out["ladder"] = json.loads(str(one["ladder"].values))
+    out["errors"] = {}
+    finest = REFERENCE_ELEMENTS.get(out["model"]) if out["stage"] == "elements" else None
+    # the reference errs in the same direction: its own share, by the order that is seen, is added
+    scale = 1.0 / (1.0 - (out["points"] / finest) ** REFERENCE_ORDER) if finest else 1.0
+    for name in QUANTITIES:
+        errors = scale * one["error"].sel(quantity=name).values.astype(float)
+        if not np.isnan(errors).all():
+            known = errors[~np.isnan(errors)]
+            levels = [*percentiles(errors), tolerance_bound(errors), known.max()]
+            out["errors"][name] = [_number(float(f"{v:.3g}")) for v in levels]
+            out["designs"], out["other"] = int(known.size), int(np.isinf(known).sum())
+    return out
+
+
+def _number(value: float) -> float | None:
+    """The number, None where JSON has no word for it."""
+    return value if math.isfinite(value) else None
+
+
+def levels(record: Record, quantity: str) -> tuple[float, float, float, float]:
+    """Median, 95th and 99th percentile and bound of a record; inf where the regime is another."""
+    return tuple(math.inf if v is None else v for v in record["errors"][quantity][:4])  # type: ignore[return-value]
+
+
+def orders(records: list[Record]) -> list[Record]:
+    """Observed order of convergence of each refinement and quantity, by the median over the designs.
+
+    Those with points per length; searches for the peak have none, their effort is no length.
+    """
+    groups: dict[tuple[str, str, str], list[Record]] = {}
+    for record in records:
+        if record["points"] is not None and record["method"] not in ("search",):
+            groups.setdefault((record["stage"], record["model"], record["method"]), []).append(record)
+    out = []
+    for (stage, model, method), group in groups.items():
+        for quantity in QUANTITIES:
+            found = [r for r in group if quantity in r["errors"]]
+            if len(found) < 3:
+                continue
+            points = np.array([r["points"] for r in found])
+            median = np.array([levels(r, quantity)[0] for r in found])
+            order, fit = observed_order(points, median)
+            if math.isfinite(order):
+                out.append({"stage": stage, "model": model, "method": method, "quantity": quantity,
+                            "from": float(points.min()), "to": float(points.max()), "order": round(order, 2),
+                            "fit": round(fit, 3), "coarsest": float(median[np.argmin(points)]),
+                            "finest": float(median[np.argmax(points)])})  # fmt: skip
+    return out
+
+
+def ladder(records: list[Record], stage: str, model: str) -> list[Record]:
+    """The settings that no other beats in cost and in what 99 % of the cases keep; at most ten, evenly spread."""
+    name = LADDERS[stage, model]
+    judged_by = {q for group in _JUDGED_BY[name] for q in group}
+    found = [r for r in records if (r["stage"], r["model"]) == (stage, model) and r["ladder"]
+             and judged_by <= set(r["errors"])]  # fmt: skip
+    if not found:
+        return []
+    judged = [[r["cost"], *(max(levels(r, q)[3] for q in group) for group in _JUDGED_BY[name])] for r in found]
+    table = np.array(judged, float)
+    usable = np.isfinite(table).all(axis=1)
+    keep = pareto_mask(np.where(np.isfinite(table), table, 1e9), ("min",) * table.shape[1], usable)
+    rows = sorted(np.flatnonzero(keep), key=lambda i: table[i, 0])
+    return [{"settings": found[i]["ladder"], "cost": found[i]["cost"],
+             "errors": {q: [max(v, _FLOOR) for v in levels(found[i], q)] for q in found[i]["errors"]}}
+            for i in _thinned(rows, table)]  # fmt: skip
+
+
+def _thinned(rows: list[Any], table: np.ndarray) -> list[Any]:
+    """At most MOST_RUNGS of the rows: the one that gains least on its neighbours goes, the ends stay."""
+    rows = list(rows)
+    while len(rows) > MOST_RUNGS:
+        error = np.log(np.maximum(table[rows, 1], _FLOOR))
+        gap = np.minimum(np.abs(np.diff(error))[:-1], np.abs(np.diff(error))[1:])
+        rows.pop(int(np.argmin(gap)) + 1)
+    return rows
+
+
+def life_against_peak(ds: xr.Dataset) -> dict[str, float]:
+    """Ratio of the errors of life and of the peak in the searches: the Woehler exponent, for small errors."""
+    search = ds.where((ds["stage"] == "peak") & (ds["method"] == "search"), drop=True)
+    peak = search["error"].sel(quantity="peak_stress").values
+    life = search["error"].sel(quantity="life").values
+    small = np.isfinite(peak) & np.isfinite(life) & (peak > 1e-6) & (peak < 1e-2)
+    if not small.any():
+        return {}
+    low, middle, high = np.percentile(life[small] / peak[small], (5, 50, 95))
+    return {"low": round(float(low), 2), "median": round(float(middle), 2), "high": round(float(high), 2)}
