@@ -16,27 +16,76 @@ Names, units and bounds of a case, options and results stand in [parameters.md](
 cases or patches.
 """
 PARTS: tuple[tuple[str, tuple[tuple[str, tuple[str, ...]], ...]], ...] = (
-    ("Cases and solutions", (("trackroller", ("Case", "solve", "InputError")),
-                             ("trackroller.roller.stop", ("parse_condition",)), ("trackroller.study.explain", ("explain",)))),
-    ("Studies", (("trackroller", ("load_study",)), ("trackroller.study.config", ("Study.design", "Study.options")),
-                 ("trackroller.study.run", ("run_study",)), ("trackroller.study.gather", ("gather",)),
-                 ("trackroller.study.repeat", ("repeat_case",)))),
-    ("Analyses", (("trackroller.analysis.sensitivity", ("analyse", "analyse_dataset")),
-                  ("trackroller.analysis.robustness", ("robustness",)), ("trackroller.analysis.pareto", ("pareto",)),
-                  ("trackroller.study.spectrum.solve", ("load_spectrum", "solve_spectrum")))),
+    (
+        "Cases and solutions",
+        (
+            ("trackroller", ("Case", "solve", "InputError")),
+            ("trackroller.roller.stop", ("parse_condition",)),
+            ("trackroller.study.explain", ("explain",)),
+        ),
+    ),
+    (
+        "Studies",
+        (
+            ("trackroller", ("load_study",)),
+            ("trackroller.study.config", ("Study.design", "Study.options")),
+            ("trackroller.study.run", ("run_study",)),
+            ("trackroller.study.gather", ("gather",)),
+            ("trackroller.study.repeat", ("repeat_case",)),
+        ),
+    ),
+    (
+        "Analyses",
+        (
+            ("trackroller.analysis.sensitivity", ("analyse", "analyse_dataset")),
+            ("trackroller.analysis.robustness", ("robustness",)),
+            ("trackroller.analysis.pareto", ("pareto",)),
+            ("trackroller.study.spectrum.solve", ("load_spectrum", "solve_spectrum")),
+        ),
+    ),
     ("Materials", (("trackroller", ("load_database",)), ("trackroller.materials", ("add_material",)))),
-    ("Fatigue", (("trackroller.damage.fatigue", ("life_cycles", "allowable_stress", "woehler_exponent", "line_at_probability",
-                                          "roller_hours", "guide_hours", "damage_sum")),)),
-    ("Stresses below any tractions", (("trackroller", ("stress_from_tractions", "stress_on_grid", "von_mises",
-                                                       "principal_stresses", "max_shear")),)),
-    ("Contact", (("trackroller.contact.hertz", ("shape", "contact_modulus")),
-                 ("trackroller.contact.normal", ("solve_normal",)),
-                 ("trackroller.contact.kalker", ("solve_patch",)), ("trackroller.contact.fastsim", ("solve_patch",)),
-                 ("trackroller.contact.linear", ("creepage_coefficients",)),
-                 ("trackroller.contact.friction_laws", ("law_of",)), ("trackroller.contact.profiles", ("canonical",)))),
-    ("Figures and report", (("trackroller.report.figures.contact", ("plot_case",)), ("trackroller.report.figures.study", ("draw_all",)),
-                            ("trackroller.report", ("write_report",)))),
-)  # fmt: skip
+    (
+        "Fatigue",
+        (
+            (
+                "trackroller.damage.fatigue",
+                (
+                    "life_cycles",
+                    "allowable_stress",
+                    "woehler_exponent",
+                    "line_at_probability",
+                    "roller_hours",
+                    "guide_hours",
+                    "damage_sum",
+                ),
+            ),
+        ),
+    ),
+    (
+        "Stresses below any tractions",
+        (("trackroller", ("stress_from_tractions", "stress_on_grid", "von_mises", "principal_stresses", "max_shear")),),
+    ),
+    (
+        "Contact",
+        (
+            ("trackroller.contact.hertz", ("shape", "contact_modulus")),
+            ("trackroller.contact.normal", ("solve_normal",)),
+            ("trackroller.contact.kalker", ("solve_patch",)),
+            ("trackroller.contact.fastsim", ("solve_patch",)),
+            ("trackroller.contact.linear", ("creepage_coefficients",)),
+            ("trackroller.contact.friction_laws", ("law_of",)),
+            ("trackroller.contact.profiles", ("canonical",)),
+        ),
+    ),
+    (
+        "Figures and report",
+        (
+            ("trackroller.report.figures.contact", ("plot_case",)),
+            ("trackroller.report.figures.study", ("draw_all",)),
+            ("trackroller.report", ("write_report",)),
+        ),
+    ),
+)
 
 
 def entry(module: str, name: str) -> str:

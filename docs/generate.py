@@ -67,9 +67,18 @@ def render() -> str:
     lines = [HEAD, "## Parameters of a case\n"]
     lines += _table(
         ("name", "symbol", "unit", "default", "allowed", "meaning"),
-        [(f"`{v.name}`", v.symbol, v.unit, "not given" if math.isnan(v.default) else f"{v.default:g}", _range(v),
-          v.meaning) for v in p.PARAMETERS.values()],
-    )  # fmt: skip
+        [
+            (
+                f"`{v.name}`",
+                v.symbol,
+                v.unit,
+                "not given" if math.isnan(v.default) else f"{v.default:g}",
+                _range(v),
+                v.meaning,
+            )
+            for v in p.PARAMETERS.values()
+        ],
+    )
     lines += [
         "`roller_material` and `guide_material` take a name of the material database, or a mapping of material values;",
         "the default is `1.7225-normalised`. Both relative curvatures must be positive, else the input is refused.\n",
@@ -78,23 +87,30 @@ def render() -> str:
     ]
     lines += _table(
         ("name", "values", "default", "meaning"),
-        [(f"`{name}`", ", ".join(f"`{v}`" if " " not in v else v for v in values), default, meaning)
-         for name, values, default, meaning in OPTIONS],
-    )  # fmt: skip
+        [
+            (f"`{name}`", ", ".join(f"`{v}`" if " " not in v else v for v in values), default, meaning)
+            for name, values, default, meaning in OPTIONS
+        ],
+    )
     lines.append("## Results\n")
     for group in dict.fromkeys(v.group for v in VARIABLES.values()):
         always = ", always there or with the peak" if group == "status" else ""
         lines.append(f"### {group}{always}\n")
         lines += _table(
             ("name", "dimensions behind `case`", "unit", "symbol", "meaning"),
-            [(f"`{v.name}`", ", ".join(v.dims) or "-", v.units, v.symbol or "-", v.long_name)
-             for v in VARIABLES.values() if v.group == group],
-        )  # fmt: skip
+            [
+                (f"`{v.name}`", ", ".join(v.dims) or "-", v.units, v.symbol or "-", v.long_name)
+                for v in VARIABLES.values()
+                if v.group == group
+            ],
+        )
     lines += ["### regime\n", "`regime` is an integer; each row has one.\n"]
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
-    lines += ["### contact_model_used, stopped\n",
-              "`contact_model_used`, as `auto` chose it or as asked for: 0 sliding, 1 fastsim, 2 kalker.",
-              "`stopped` (with `stop_if`): 1 where the condition holds.\n"]
+    lines += [
+        "### contact_model_used, stopped\n",
+        "`contact_model_used`, as `auto` chose it or as asked for: 0 sliding, 1 fastsim, 2 kalker.",
+        "`stopped` (with `stop_if`): 1 where the condition holds.\n",
+    ]
     lines += ["### validity\n", "`validity` is a sum of bits; 0 means that nothing is to be said.\n"]
     bits = [(1 << i, f"`{name}`", meaning) for i, (name, meaning) in enumerate(VALIDITY_BITS.items())]
     lines += _table(("bit", "name", "meaning"), bits)
@@ -103,9 +119,15 @@ def render() -> str:
 
 def presets() -> str:
     """The table of presets."""
-    heads = ("preset", "tolerance of the peak", "Gauss points per smooth piece of the slip integrals",
-             "quadrature of scan / climb / polish / summit", "floor of the error estimate",
-             "elements across a patch (`kalker`)", "use")  # fmt: skip
+    heads = (
+        "preset",
+        "tolerance of the peak",
+        "Gauss points per smooth piece of the slip integrals",
+        "quadrature of scan / climb / polish / summit",
+        "floor of the error estimate",
+        "elements across a patch (`kalker`)",
+        "use",
+    )
     rows: list[tuple[object, ...]] = []
     for name, v in PRESETS.items():
         orders = f"{v.peak.scan} / {v.peak.climb} / {v.peak.polish} / {v.peak.summit}"
@@ -125,16 +147,17 @@ def pages() -> dict[Path, str]:
 
 def tradeoff() -> str:
     """The measured trade-off, from the data that validation/adopt/tradeoff.py took over."""
-    summary, figures = (json.loads((FOLDER / "data" / name).read_text(encoding="utf-8"))
-                        for name in ("tradeoff.json", "tradeoff_figures.json"))  # fmt: skip
+    summary, figures = (
+        json.loads((FOLDER / "data" / name).read_text(encoding="utf-8"))
+        for name in ("tradeoff.json", "tradeoff_figures.json")
+    )
     made_by = "made by docs/generate.py from docs/data/tradeoff.json"
     return markdown(tradeoff_page.blocks(summary, figures), made_by)
 
 
 def main(check: bool) -> int:
     """Write the pages, or tell which are not up to date."""
-    stale = [page for page, text in pages().items()
-             if not page.is_file() or page.read_text(encoding="utf-8") != text]  # fmt: skip
+    stale = [page for page, text in pages().items() if not page.is_file() or page.read_text(encoding="utf-8") != text]
     for page in stale:
         if check:
             print(f"{page} is not up to date", file=sys.stderr)

@@ -11,13 +11,32 @@ import numpy as np
 import xarray as xr
 import yaml
 
-PAIRS = ("1.7225-normalised / 1.7225-normalised", "1.7225-quenched-tempered / 1.7225-normalised",
-         "EN AW-7075 / 1.7225-normalised", "PA6 / 1.7225-normalised", "POM / POM")  # fmt: skip
-STRENGTH = {"1.7225-normalised": (210e3, 720, 0.5), "1.7225-quenched-tempered": (210e3, 1200, 0.5),
-            "EN AW-7075": (70e3, 540, 0.5), "PA6": (5e3, 60, 0.3), "POM": (3e3, 80, 0.4)}  # fmt: skip
-BASE = {"roller_profile_radius": -7.0, "guide_profile_radius": 6.0, "guide_curve_radius": 220.0,
-        "friction_coefficient": 0.3, "motor_force": -30.0, "axial_force": 30.0, "radial_force": -200.0,
-        "contact_angle": 30.0, "axis_distance": 21.75, "velocity": 60.0}  # fmt: skip
+PAIRS = (
+    "1.7225-normalised / 1.7225-normalised",
+    "1.7225-quenched-tempered / 1.7225-normalised",
+    "EN AW-7075 / 1.7225-normalised",
+    "PA6 / 1.7225-normalised",
+    "POM / POM",
+)
+STRENGTH = {
+    "1.7225-normalised": (210e3, 720, 0.5),
+    "1.7225-quenched-tempered": (210e3, 1200, 0.5),
+    "EN AW-7075": (70e3, 540, 0.5),
+    "PA6": (5e3, 60, 0.3),
+    "POM": (3e3, 80, 0.4),
+}
+BASE = {
+    "roller_profile_radius": -7.0,
+    "guide_profile_radius": 6.0,
+    "guide_curve_radius": 220.0,
+    "friction_coefficient": 0.3,
+    "motor_force": -30.0,
+    "axial_force": 30.0,
+    "radial_force": -200.0,
+    "contact_angle": 30.0,
+    "axis_distance": 21.75,
+    "velocity": 60.0,
+}
 DEFAULT_FACTORS = {
     "friction_coefficient": [0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4],
     "roller_profile_radius": [-10.0, -8.0, -7.0, -6.6, -6.4],
@@ -26,8 +45,16 @@ DEFAULT_FACTORS = {
     "guide_curve_radius": [220.0, float("inf"), -100.0],
     "axial_force": [0.0, 30.0, 130.0],
 }
-UNITS = {"friction_coefficient": "1", "roller_profile_radius": "mm", "guide_curve_radius": "mm", "axial_force": "N",
-         "motor_force": "N", "radial_force": "N", "contact_angle": "degree", "guide_profile_radius": "mm"}  # fmt: skip
+UNITS = {
+    "friction_coefficient": "1",
+    "roller_profile_radius": "mm",
+    "guide_curve_radius": "mm",
+    "axial_force": "N",
+    "motor_force": "N",
+    "radial_force": "N",
+    "contact_angle": "degree",
+    "guide_profile_radius": "mm",
+}
 
 
 def results(columns: dict[str, np.ndarray], unlimited: bool = False) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
@@ -66,31 +93,61 @@ def results(columns: dict[str, np.ndarray], unlimited: bool = False) -> dict[str
         "normal_force": (per_contact, shown),
         "lateral_force": (per_contact, shown * mu[:, None] * np.array([0.4, -0.3])),
         "driving_force": (per_contact, np.where(np.isnan(shown), np.nan, -get["motor_force"][:, None] / 2)),
-        "semi_axis_lateral": (per_contact, 1.6 * axis), "semi_axis_rolling": (per_contact, axis),
-        "peak_stress": (per_body, peak), "peak_z": (per_body, depth), "life_cycles": (per_body, life),
-        "roller_life_hours": ((), hours), "guide_life_hours": ((), np.full(n, np.nan)),
+        "semi_axis_lateral": (per_contact, 1.6 * axis),
+        "semi_axis_rolling": (per_contact, axis),
+        "peak_stress": (per_body, peak),
+        "peak_z": (per_body, depth),
+        "life_cycles": (per_body, life),
+        "roller_life_hours": ((), hours),
+        "guide_life_hours": ((), np.full(n, np.nan)),
         "regime": ((), np.where(lift, 2, np.where(slip, 1, 0)).astype(np.int8)),
         "converged": ((), np.ones(n, np.int8)),
         "validity": ((), ((peak.max((1, 2)) > values[:, 0, 1]) * 4 + (k_x < 0.015) * 8).astype(np.int32)),
-    }  # fmt: skip
+    }
 
 
 def _finish(ds: xr.Dataset, factors: dict, design: str) -> xr.Dataset:
     ds = ds.assign_coords(contact=[1, 2], body=["roller", "guide"])
-    units = {"normal_force": "N", "lateral_force": "N", "driving_force": "N", "peak_stress": "MPa", "peak_z": "mm",
-             "life_cycles": "1", "roller_life_hours": "h", "guide_life_hours": "h", **UNITS}  # fmt: skip
+    units = {
+        "normal_force": "N",
+        "lateral_force": "N",
+        "driving_force": "N",
+        "peak_stress": "MPa",
+        "peak_z": "mm",
+        "life_cycles": "1",
+        "roller_life_hours": "h",
+        "guide_life_hours": "h",
+        **UNITS,
+    }
     for name, unit in units.items():
         if name in ds.variables:
             ds[name].attrs["units"] = unit
-    ds["regime"].attrs |= {"flag_values": np.arange(4, dtype=np.int8),
-                           "flag_meanings": "rolling full_slip lift_off failed"}  # fmt: skip
-    ds["validity"].attrs |= {"flag_masks": np.array([1, 2, 4, 8], np.int32),
-                             "flag_meanings": "half_space yield static conformal"}  # fmt: skip
-    study = {"name": "friction-and-fit", "description": "Life of a steel roller over friction & fit <five pairs>.",
-             "base": BASE, "factors": factors, "design": design, "seed": 1, "accuracy": "standard",
-             "outputs": ["forces", "contact", "peak_stress", "life"]}  # fmt: skip
-    ds.attrs |= {"study": yaml.safe_dump(study), "trackroller_version": "0.1.0", "commit": "abcdef0", "seed": 1,
-                 "accuracy": "standard", "date": "2026-01-02T03:04:05+00:00"}  # fmt: skip
+    ds["regime"].attrs |= {
+        "flag_values": np.arange(4, dtype=np.int8),
+        "flag_meanings": "rolling full_slip lift_off failed",
+    }
+    ds["validity"].attrs |= {
+        "flag_masks": np.array([1, 2, 4, 8], np.int32),
+        "flag_meanings": "half_space yield static conformal",
+    }
+    study = {
+        "name": "friction-and-fit",
+        "description": "Life of a steel roller over friction & fit <five pairs>.",
+        "base": BASE,
+        "factors": factors,
+        "design": design,
+        "seed": 1,
+        "accuracy": "standard",
+        "outputs": ["forces", "contact", "peak_stress", "life"],
+    }
+    ds.attrs |= {
+        "study": yaml.safe_dump(study),
+        "trackroller_version": "0.1.0",
+        "commit": "abcdef0",
+        "seed": 1,
+        "accuracy": "standard",
+        "date": "2026-01-02T03:04:05+00:00",
+    }
     return ds
 
 
@@ -98,12 +155,16 @@ def grid_study(factors: dict | None = None, only: tuple[str, ...] = (), **option
     """A gathered grid study; `only` keeps just these result variables (and the regime)."""
     factors = DEFAULT_FACTORS if factors is None else factors
     rows = list(itertools.product(*factors.values()))
-    columns = {n: np.array([r[i] for r in rows], dtype=object if n == "material_pair" else float)
-               for i, n in enumerate(factors)}  # fmt: skip
+    columns = {
+        n: np.array([r[i] for r in rows], dtype=object if n == "material_pair" else float)
+        for i, n in enumerate(factors)
+    }
     sizes = [len(v) for v in factors.values()]
-    variables = {n: ((*factors, *dims), v.reshape(*sizes, *v.shape[1:]))
-                 for n, (dims, v) in results(columns, **options).items()
-                 if not only or n in (*only, "regime", "validity", "converged")}  # fmt: skip
+    variables = {
+        n: ((*factors, *dims), v.reshape(*sizes, *v.shape[1:]))
+        for n, (dims, v) in results(columns, **options).items()
+        if not only or n in (*only, "regime", "validity", "converged")
+    }
     ds = xr.Dataset(variables, coords={n: (n, list(v)) for n, v in factors.items()})
     return _finish(
         ds, {n: {"values": [x if isinstance(x, str) else float(x) for x in v]} for n, v in factors.items()}, "grid"
@@ -113,13 +174,21 @@ def grid_study(factors: dict | None = None, only: tuple[str, ...] = (), **option
 def sampled_study(n: int = 400, seed: int = 3, **options) -> xr.Dataset:
     """A gathered Latin hypercube study over four numbers and the material pair."""
     rng = np.random.default_rng(seed)
-    columns = {"friction_coefficient": rng.uniform(0.02, 0.4, n), "roller_profile_radius": rng.uniform(-9, -6.3, n),
-               "axial_force": rng.uniform(0, 140, n), "motor_force": rng.choice([-30.0, 0.0], n),
-               "material_pair": rng.choice(np.array(PAIRS[:3], dtype=object), n)}  # fmt: skip
+    columns = {
+        "friction_coefficient": rng.uniform(0.02, 0.4, n),
+        "roller_profile_radius": rng.uniform(-9, -6.3, n),
+        "axial_force": rng.uniform(0, 140, n),
+        "motor_force": rng.choice([-30.0, 0.0], n),
+        "material_pair": rng.choice(np.array(PAIRS[:3], dtype=object), n),
+    }
     ds = xr.Dataset({k: (("case", *dims), v) for k, (dims, v) in results(columns, **options).items()})
     ds = ds.assign_coords({k: ("case", v.astype(str) if k == "material_pair" else v) for k, v in columns.items()})
     ds = ds.assign_coords(case=np.arange(n))
-    factors = {"friction_coefficient": {"uniform": [0.02, 0.4]}, "roller_profile_radius": {"uniform": [-9, -6.3]},
-               "axial_force": {"uniform": [0, 140]}, "motor_force": {"values": [-30.0, 0.0]},
-               "material_pair": {"values": [p.split(" / ") for p in PAIRS[:3]]}}  # fmt: skip
+    factors = {
+        "friction_coefficient": {"uniform": [0.02, 0.4]},
+        "roller_profile_radius": {"uniform": [-9, -6.3]},
+        "axial_force": {"uniform": [0, 140]},
+        "motor_force": {"values": [-30.0, 0.0]},
+        "material_pair": {"values": [p.split(" / ") for p in PAIRS[:3]]},
+    }
     return _finish(ds, factors, "lhs")

@@ -65,32 +65,104 @@ class Parameter:
 
 
 _ALL = (
-    Parameter("axis_distance", "A_T", "mm", 21.75, "axis distance",
-              "roller axis to the centre of the guide contour", 0.0, open_lower=True),
-    Parameter("guide_profile_radius", "r_C,G", "mm", 6.0, "guide profile radius",
-              "radius of the convex guide contour", 0.0, open_lower=True),
-    Parameter("roller_profile_radius", "r_C,TR", "mm", -7.0, "roller profile radius",
-              "< 0 concave groove, > 0 convex, inf straight", allow_infinite=True, nonzero=True),
-    Parameter("guide_curve_radius", "r_Curve", "mm", 220.0, "guide curve radius",
-              "curvature of the track: inf straight, > 0 convex towards the roller (outer wheel), "
-              "< 0 concave (inner wheel)", allow_infinite=True, nonzero=True),
-    Parameter("contact_angle", "alpha", "deg", 30.0, "contact angle",
-              "inclination of the contact normals", 0.0, 90.0, open_lower=True, open_upper=True),
-    Parameter("radial_force", "F_rad", "N", -200.0, "radial force",
-              "< 0 presses the roller on the guide", upper=0.0, open_upper=True),
+    Parameter(
+        "axis_distance",
+        "A_T",
+        "mm",
+        21.75,
+        "axis distance",
+        "roller axis to the centre of the guide contour",
+        0.0,
+        open_lower=True,
+    ),
+    Parameter(
+        "guide_profile_radius",
+        "r_C,G",
+        "mm",
+        6.0,
+        "guide profile radius",
+        "radius of the convex guide contour",
+        0.0,
+        open_lower=True,
+    ),
+    Parameter(
+        "roller_profile_radius",
+        "r_C,TR",
+        "mm",
+        -7.0,
+        "roller profile radius",
+        "< 0 concave groove, > 0 convex, inf straight",
+        allow_infinite=True,
+        nonzero=True,
+    ),
+    Parameter(
+        "guide_curve_radius",
+        "r_Curve",
+        "mm",
+        220.0,
+        "guide curve radius",
+        "curvature of the track: inf straight, > 0 convex towards the roller (outer wheel), < 0 concave (inner wheel)",
+        allow_infinite=True,
+        nonzero=True,
+    ),
+    Parameter(
+        "contact_angle",
+        "alpha",
+        "deg",
+        30.0,
+        "contact angle",
+        "inclination of the contact normals",
+        0.0,
+        90.0,
+        open_lower=True,
+        open_upper=True,
+    ),
+    Parameter(
+        "radial_force",
+        "F_rad",
+        "N",
+        -200.0,
+        "radial force",
+        "< 0 presses the roller on the guide",
+        upper=0.0,
+        open_upper=True,
+    ),
     Parameter("axial_force", "F_ax", "N", 30.0, "axial force", "along +x_R"),
-    Parameter("motor_force", "F_Motor", "N", -30.0, "motor force",
-              "< 0 driving, 0 free rolling, > 0 braking"),
-    Parameter("friction_coefficient", "mu", "-", 0.3, "friction coefficient",
-              "Coulomb coefficient of both contacts, at rest; null: from the friction database; left out beside a "
-              "friction_law of kind table: the first of the table", 0.0, 2.0,
-              allow_missing=True),
-    Parameter("velocity", "v", "m/min", 60.0, "mean travel speed",
-              "for friction power and life in hours only", 0.0, open_lower=True),
-    Parameter("guide_overrollings_per_hour", "n_G", "1/h", math.nan, "overrollings of a guide point per hour",
-              "decides the life of the guide in hours; not given: hours are NaN", 0.0, open_lower=True,
-              allow_missing=True),
-)  # fmt: skip
+    Parameter("motor_force", "F_Motor", "N", -30.0, "motor force", "< 0 driving, 0 free rolling, > 0 braking"),
+    Parameter(
+        "friction_coefficient",
+        "mu",
+        "-",
+        0.3,
+        "friction coefficient",
+        "Coulomb coefficient of both contacts, at rest; null: from the friction database; left out beside a "
+        "friction_law of kind table: the first of the table",
+        0.0,
+        2.0,
+        allow_missing=True,
+    ),
+    Parameter(
+        "velocity",
+        "v",
+        "m/min",
+        60.0,
+        "mean travel speed",
+        "for friction power and life in hours only",
+        0.0,
+        open_lower=True,
+    ),
+    Parameter(
+        "guide_overrollings_per_hour",
+        "n_G",
+        "1/h",
+        math.nan,
+        "overrollings of a guide point per hour",
+        "decides the life of the guide in hours; not given: hours are NaN",
+        0.0,
+        open_lower=True,
+        allow_missing=True,
+    ),
+)
 
 PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL}
 
@@ -109,8 +181,20 @@ LIFE_RULES = ("elementary", "haibach", "unlimited")
 OUTPUT_GROUPS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 DEFAULT_OUTPUTS = ("forces", "contact", "peak_stress", "life")
 # what `solve` and `Options` take beside cases and materials; a test holds these to the same names
-SOLVE_OPTIONS = ("outputs", "contact_model", "spin_model", "accuracy", "hertz", "stress_bodies", "life_rule", "normal",
-                 "contact_tolerance", "stop_if", "shortcuts", "slip_terms")  # fmt: skip
+SOLVE_OPTIONS = (
+    "outputs",
+    "contact_model",
+    "spin_model",
+    "accuracy",
+    "hertz",
+    "stress_bodies",
+    "life_rule",
+    "normal",
+    "contact_tolerance",
+    "stop_if",
+    "shortcuts",
+    "slip_terms",
+)
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
 MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none

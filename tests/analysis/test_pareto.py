@@ -9,9 +9,11 @@ from trackroller.report import sentences as words
 from trackroller.study.config import parse_study
 
 LHS = {
-    "name": "p", "design": "lhs", "samples": 400,
+    "name": "p",
+    "design": "lhs",
+    "samples": 400,
     "factors": {"velocity": {"uniform": [1.0, 2.0]}, "axial_force": {"uniform": [0.0, 1.0]}},
-}  # fmt: skip
+}
 
 
 def brute(costs):
@@ -62,8 +64,9 @@ def test_study_set_respects_regimes_and_constraints():
 
 def test_sentence_tells_the_size_and_the_ends():
     """Counts and ends come from the data."""
-    front = pareto(trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b),
-                   {"roller_life_hours": "max", "friction_power": "min"})  # fmt: skip
+    front = pareto(
+        trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b), {"roller_life_hours": "max", "friction_power": "min"}
+    )
     text = words.pareto(front)
     assert text.startswith(f"{int(front['optimal'].sum())} of 400 allowed designs are beaten by no other")
     assert "life of the roller from" in text and "friction power of both contacts from" in text

@@ -13,10 +13,15 @@ from trackroller.report import sentences as words
 from trackroller.study.config import parse_study
 
 NESTED = {
-    "name": "nested", "design": "nested", "samples": 2000,
-    "factors": {"velocity": {"values": [30.0, 60.0]}, "friction_coefficient": {"uniform": [0.1, 0.3]},
-                "axial_force": {"normal": [0.0, 1.0]}},
-}  # fmt: skip
+    "name": "nested",
+    "design": "nested",
+    "samples": 2000,
+    "factors": {
+        "velocity": {"values": [30.0, 60.0]},
+        "friction_coefficient": {"uniform": [0.1, 0.3]},
+        "axial_force": {"normal": [0.0, 1.0]},
+    },
+}
 
 
 def solved(fake, path=None, data=NESTED):
@@ -65,6 +70,7 @@ def test_sentence_names_the_best_design_point():
 
 def test_unlimited_lives_are_ranked_and_not_dropped():
     """Half of the lives unlimited: the median is the longest finite or unlimited, B10 stays finite."""
+
     def fake(ds):
         life = 10 ** (3 + 0.2 * ds["axial_force"].values)
         return {"roller_life_hours": np.where(ds["axial_force"].values > 0, np.inf, life)}
@@ -78,6 +84,7 @@ def test_unlimited_lives_are_ranked_and_not_dropped():
 
 def test_failed_rows_never_lengthen_the_safe_life():
     """Rows without a result and rows not rolling count as life 0 in b10_safe."""
+
     def fake(ds):
         regime = np.where(ds["friction_coefficient"].values > 0.25, 3, 0).astype(np.int8)  # a quarter failed
         life = 10 ** (3 + 0.2 * ds["axial_force"].values)

@@ -110,8 +110,9 @@ def test_sobol_error_falls_with_sample_size():
     first, total, _ = ishigami_indices()
 
     def error(n):
-        found = [sobol(ishigami(*sample(X3, "saltelli", n, s).columns.values()), 3, True, resamples=2)
-                 for s in range(8)]  # fmt: skip
+        found = [
+            sobol(ishigami(*sample(X3, "saltelli", n, s).columns.values()), 3, True, resamples=2) for s in range(8)
+        ]
         return np.mean([np.abs(np.r_[f["S1"] - first, f["ST"] - total]) for f in found])
 
     assert error(512) < 0.25 * error(32)
@@ -124,8 +125,9 @@ def run_chain(data, folder, function):
     def solver(design, **_):
         y = function(design)
         rows = np.zeros(y.size, dtype=np.int8)
-        return xr.Dataset({"friction_power": ("case", y, {"units": "W"}), "regime": ("case", rows),
-                           "converged": ("case", rows + 1)})  # fmt: skip
+        return xr.Dataset(
+            {"friction_power": ("case", y, {"units": "W"}), "regime": ("case", rows), "converged": ("case", rows + 1)}
+        )
 
     run_study(parse_study(data), folder, solver=solver)
     return analyse(folder / data["name"] / "study.nc", folder / "sensitivity.nc")
@@ -150,12 +152,16 @@ def test_ishigami_through_the_study_runner_with_a_case_that_raises(tmp_path):
 
 def test_categorical_grid_through_the_study_runner(tmp_path):
     """A grid unstacked by the gather, with a material pair, a derived factor and an infinite radius."""
-    data = {"name": "grid", "outputs": ["forces"], "factors": {
-        "velocity": {"values": [10.0, 20.0, 40.0]},
-        "material_pair": {"values": [["PA6", "PA6"], ["POM", "PA6"]]},
-        "guide_curve_radius": {"values": [float("inf"), 220.0]},
-        "motor_force": {"expression": "-velocity / 2"},
-    }}  # fmt: skip
+    data = {
+        "name": "grid",
+        "outputs": ["forces"],
+        "factors": {
+            "velocity": {"values": [10.0, 20.0, 40.0]},
+            "material_pair": {"values": [["PA6", "PA6"], ["POM", "PA6"]]},
+            "guide_curve_radius": {"values": [float("inf"), 220.0]},
+            "motor_force": {"expression": "-velocity / 2"},
+        },
+    }
 
     def function(design):
         bonus = 100.0 * (design["roller_material"].values == "POM") * np.isinf(design["guide_curve_radius"].values)
@@ -172,12 +178,18 @@ def test_categorical_grid_through_the_study_runner(tmp_path):
 def test_table_of_own_cases_is_analysed_from_given_data(tmp_path):
     """A CSV of random cases through the runner: the factors are its columns, a pair of materials is one factor."""
     rng = np.random.default_rng(5)
-    rows = [f"{10 + 50 * rng.random():.6f},{30 * rng.random():.6f},{rng.choice(['PA6', 'POM'])} / PA6"
-            for _ in range(300)]  # fmt: skip
+    rows = [
+        f"{10 + 50 * rng.random():.6f},{30 * rng.random():.6f},{rng.choice(['PA6', 'POM'])} / PA6" for _ in range(300)
+    ]
     table = tmp_path / "cases.csv"
     table.write_text("velocity,axial_force,material_pair\n" + "\n".join(rows) + "\n", encoding="utf-8")
-    data = {"name": "own", "design": "table", "table": str(table), "outputs": ["forces"],
-            "factors": {"motor_force": {"expression": "-axial_force / 2"}}}  # fmt: skip
+    data = {
+        "name": "own",
+        "design": "table",
+        "table": str(table),
+        "outputs": ["forces"],
+        "factors": {"motor_force": {"expression": "-axial_force / 2"}},
+    }
 
     def function(design):
         return design["velocity"].values + 30.0 * (design["roller_material"].values == "POM")
@@ -234,8 +246,13 @@ def test_grid_shares_of_a_product_are_exact():
 
 def test_unstacked_grid_file_gives_the_same_shares(tmp_path):
     """A grid unstacked into its factors, dimensions in another order, through a file."""
-    data = {"name": "g", "factors": {"velocity": {"values": [10.0, 20.0, 40.0]},
-            "material_pair": {"values": [["PA6", "PA6"], ["POM", "PA6"]]}}}  # fmt: skip
+    data = {
+        "name": "g",
+        "factors": {
+            "velocity": {"values": [10.0, 20.0, 40.0]},
+            "material_pair": {"values": [["PA6", "PA6"], ["POM", "PA6"]]},
+        },
+    }
     ds = solved(data, lambda d: {"y": d["velocity"].values + 100.0 * (d["roller_material"].values == "POM")})
     y = ds["y"].values.reshape(3, 2)
     coords = {"velocity": [10.0, 20.0, 40.0], "material_pair": ["PA6 / PA6", "POM / PA6"]}
@@ -263,6 +280,7 @@ def test_one_failed_row_costs_a_block_and_no_index_goes_to_zero():
 
 def test_full_slip_rows_are_left_out_counted_and_analysed_on_their_own():
     """Rows in full slip carry another mechanism's numbers: they must not move the indices of the others."""
+
     def fake(design):
         x, mu = design["axial_force"].values, design["velocity"].values
         slip = mu > 6.5
@@ -391,11 +409,13 @@ def test_outputs_of_a_solved_case_join_contacts_and_bodies():
     rng = np.random.default_rng(0)
     stress = rng.random((rows, 2, 2)) + 1
     ds = xr.Dataset(
-        {"peak_stress": (("case", "contact", "body"), stress, {"units": "MPa"}),
-         "life_cycles": (("case", "contact", "body"), 1e6 / stress),
-         "roller_life_hours": ("case", (1 / stress[:, :, 0]).min(axis=1), {"units": "h"})},
+        {
+            "peak_stress": (("case", "contact", "body"), stress, {"units": "MPa"}),
+            "life_cycles": (("case", "contact", "body"), 1e6 / stress),
+            "roller_life_hours": ("case", (1 / stress[:, :, 0]).min(axis=1), {"units": "h"}),
+        },
         {"contact": [1, 2], "body": ["roller", "guide"]},
-    )  # fmt: skip
+    )
     found = {o.name: o for o in outputs(ds, ["velocity"])}
     assert set(found) == {"roller_life_hours", "guide_life_cycles", "roller_peak_stress", "guide_peak_stress"}
     np.testing.assert_allclose(found["guide_life_cycles"].values, np.log10(1e6 / stress[:, :, 1]).min(axis=1))
@@ -420,9 +440,15 @@ def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
     analyse(tmp_path / "study.nc", tmp_path / "sensitivity.nc")
     infos = draw_all(tmp_path / "study.nc", tmp_path / "sensitivity.nc", tmp_path / "figures")
     said = {i.name: i.sentence for i in infos}
-    assert {"tornado-roller_life_hours", "convergence-roller_life_hours", "interactions-roller_life_hours",
-            "bands-roller_life_hours", "pareto-front", "pareto-parallel",
-            "influence-overview"} <= set(said)  # fmt: skip
+    assert {
+        "tornado-roller_life_hours",
+        "convergence-roller_life_hours",
+        "interactions-roller_life_hours",
+        "bands-roller_life_hours",
+        "pareto-front",
+        "pareto-parallel",
+        "influence-overview",
+    } <= set(said)
     assert said["tornado-roller_life_hours"].startswith("Axial force explains 9")
     assert "± " in said["tornado-roller_life_hours"] and "converged" in said["tornado-roller_life_hours"]
     assert "falls from" in said["bands-roller_life_hours"]

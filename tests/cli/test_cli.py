@@ -21,8 +21,13 @@ outputs: [forces]
 
 
 def trackroller(*words, cwd, code=0):
-    done = subprocess.run([sys.executable, "-c", "from trackroller.cli.main import main; main()", *map(str, words)],
-                          cwd=cwd, capture_output=True, text=True, timeout=120)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", "from trackroller.cli.main import main; main()", *map(str, words)],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert done.returncode == code, done.stderr
     assert "Traceback" not in done.stderr
     return done
@@ -57,25 +62,28 @@ def test_study_from_plan_to_repeat(tmp_path):
     assert told["normal_force"]["value"] == stored
 
 
-@pytest.mark.parametrize(("words", "named"), [
-    (["solve", "nowhere.yaml"], "nowhere.yaml"),
-    (["solve", "--set", "frction=0.1"], "friction_coefficient"),
-    (["solve", "--set", "friction_coefficient=-1"], "friction_coefficient"),
-    (["solve", "--set", "roller_profile_radius=-5"], "conform"),
-    (["solve", "--set", "roller_material=PA7"], "PA6"),
-    (["solve", "--set", "accuracy=fine"], "accuracy"),
-    (["solve", "--set", "nothing"], "key=value"),
-    (["solve", "-o", "no/where.nc"], "--out"),
-    (["plan", "bad.yaml"], "not YAML"),
-    (["run", "bad.yaml"], "not YAML"),
-    (["run", "blocked.yaml"], "cannot be a folder"),
-    (["run", "good.yaml", "--scheduler", "nonsense"], "--scheduler"),
-    (["status", "../etc"], "../etc"),
-    (["repeat", "good.yaml", "99"], "99"),
-    (["materials", "show", "PA7"], "PA6"),
-    (["plot", "nowhere.yaml"], "nowhere.yaml"),
-    (["solv"], "solv"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (["solve", "nowhere.yaml"], "nowhere.yaml"),
+        (["solve", "--set", "frction=0.1"], "friction_coefficient"),
+        (["solve", "--set", "friction_coefficient=-1"], "friction_coefficient"),
+        (["solve", "--set", "roller_profile_radius=-5"], "conform"),
+        (["solve", "--set", "roller_material=PA7"], "PA6"),
+        (["solve", "--set", "accuracy=fine"], "accuracy"),
+        (["solve", "--set", "nothing"], "key=value"),
+        (["solve", "-o", "no/where.nc"], "--out"),
+        (["plan", "bad.yaml"], "not YAML"),
+        (["run", "bad.yaml"], "not YAML"),
+        (["run", "blocked.yaml"], "cannot be a folder"),
+        (["run", "good.yaml", "--scheduler", "nonsense"], "--scheduler"),
+        (["status", "../etc"], "../etc"),
+        (["repeat", "good.yaml", "99"], "99"),
+        (["materials", "show", "PA7"], "PA6"),
+        (["plot", "nowhere.yaml"], "nowhere.yaml"),
+        (["solv"], "solv"),
+    ],
+)
 def test_bad_input_ends_with_exit_2_and_names_it(tmp_path, words, named):
     (tmp_path / "bad.yaml").write_text("name: x\nfactors: [\n")
     (tmp_path / "good.yaml").write_text(STUDY)
@@ -90,8 +98,18 @@ def test_bad_input_ends_with_exit_2_and_names_it(tmp_path, words, named):
 def test_materials_are_listed_shown_and_added(tmp_path):
     assert "PA6" in trackroller("materials", "list", cwd=tmp_path).stdout
     assert "placeholder" in trackroller("materials", "show", "PA6", cwd=tmp_path).stdout.lower()
-    trackroller("materials", "add", "mine", "--set", "like=PA6", "--set", "tensile_strength=75",
-                "--file", "config/materials.yaml", cwd=tmp_path)  # fmt: skip
+    trackroller(
+        "materials",
+        "add",
+        "mine",
+        "--set",
+        "like=PA6",
+        "--set",
+        "tensile_strength=75",
+        "--file",
+        "config/materials.yaml",
+        cwd=tmp_path,
+    )
     assert "mine" in trackroller("materials", "list", cwd=tmp_path).stdout
 
 
@@ -109,16 +127,46 @@ def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
     (tmp_path / "tiny.yaml").write_text(study.replace("outputs: [forces]", "outputs: [forces, peak_stress]"))
     dask = [sys.executable, "-m", "dask"]
     quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    helpers = [subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
-                                 "--scheduler-file", "s.json"], **quiet)]  # fmt: skip
+    helpers = [
+        subprocess.Popen(
+            [*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", "s.json"],
+            **quiet,
+        )
+    ]
     try:
         for _ in range(2):
-            helpers.append(subprocess.Popen([*dask, "worker", "--scheduler-file", "s.json", "--nworkers", "1",
-                                             "--nthreads", "1", "--no-dashboard", "--no-nanny"], **quiet))  # fmt: skip
+            helpers.append(
+                subprocess.Popen(
+                    [
+                        *dask,
+                        "worker",
+                        "--scheduler-file",
+                        "s.json",
+                        "--nworkers",
+                        "1",
+                        "--nthreads",
+                        "1",
+                        "--no-dashboard",
+                        "--no-nanny",
+                    ],
+                    **quiet,
+                )
+            )
         wait_until(lambda: (tmp_path / "s.json").is_file())
         address = json.loads((tmp_path / "s.json").read_text())["address"]
-        run = subprocess.Popen([sys.executable, "-c", "from trackroller.cli.main import main; main()", "run", "tiny.yaml",
-                                "-q", "--scheduler", address], **quiet)  # fmt: skip
+        run = subprocess.Popen(
+            [
+                sys.executable,
+                "-c",
+                "from trackroller.cli.main import main; main()",
+                "run",
+                "tiny.yaml",
+                "-q",
+                "--scheduler",
+                address,
+            ],
+            **quiet,
+        )
         store = tmp_path / "results" / "tiny" / "store"
         wait_until(lambda: any(store.glob("*.parts/*.nc")) or any(store.glob("*.nc")))
         helpers[1].kill()

@@ -22,13 +22,51 @@ MATERIALS = yaml.safe_load((ROOT / "config" / "materials.yaml").read_text()) or 
 MOST = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 odd = st.one_of(
-    st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=20), st.binary(max_size=5), st.dates(),
-    st.sampled_from([10**400, -1, 0, 1e308, float("nan"), float("inf"), "..", "/etc/passwd", "inf", "<b>", "\u202e",
-                     "1e5", "__import__('os')", "axial_force", "PA6", [], {}, [[]], {"uniform": [0, 1]}]),
-)  # fmt: skip
-anything = st.recursive(odd, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(
-    st.one_of(st.text(max_size=8), st.integers(), st.none(), st.sampled_from(["values", "name", "base", "uniform"])),
-    inner, max_size=4), max_leaves=8)  # fmt: skip
+    st.none(),
+    st.booleans(),
+    st.integers(),
+    st.floats(),
+    st.text(max_size=20),
+    st.binary(max_size=5),
+    st.dates(),
+    st.sampled_from(
+        [
+            10**400,
+            -1,
+            0,
+            1e308,
+            float("nan"),
+            float("inf"),
+            "..",
+            "/etc/passwd",
+            "inf",
+            "<b>",
+            "\u202e",
+            "1e5",
+            "__import__('os')",
+            "axial_force",
+            "PA6",
+            [],
+            {},
+            [[]],
+            {"uniform": [0, 1]},
+        ]
+    ),
+)
+anything = st.recursive(
+    odd,
+    lambda inner: (
+        st.lists(inner, max_size=4)
+        | st.dictionaries(
+            st.one_of(
+                st.text(max_size=8), st.integers(), st.none(), st.sampled_from(["values", "name", "base", "uniform"])
+            ),
+            inner,
+            max_size=4,
+        )
+    ),
+    max_leaves=8,
+)
 
 
 @st.composite
@@ -57,8 +95,9 @@ def broken(draw, wholes):
 
 def written(path, data):
     """The data as YAML (python's own tags where YAML has no word for it), or as it is when it is text."""
-    path.write_text(data if isinstance(data, str) else yaml.dump(data, allow_unicode=True), encoding="utf-8",
-                    errors="replace")  # fmt: skip
+    path.write_text(
+        data if isinstance(data, str) else yaml.dump(data, allow_unicode=True), encoding="utf-8", errors="replace"
+    )
     return path
 
 
@@ -101,9 +140,21 @@ def test_materials_files(tmp_path_factory, data):
 
 
 @MOST
-@given(st.lists(st.lists(st.one_of(st.text(max_size=6), st.sampled_from(
-    ["axial_force", "material_pair", "PA6 / POM", "nan", "inf", "1e400", "-", "1", "\"", "typical", "-7"])),
-    max_size=4), max_size=5), st.sampled_from([",", ";", "\t", ",\r"]))  # fmt: skip
+@given(
+    st.lists(
+        st.lists(
+            st.one_of(
+                st.text(max_size=6),
+                st.sampled_from(
+                    ["axial_force", "material_pair", "PA6 / POM", "nan", "inf", "1e400", "-", "1", '"', "typical", "-7"]
+                ),
+            ),
+            max_size=4,
+        ),
+        max_size=5,
+    ),
+    st.sampled_from([",", ";", "\t", ",\r"]),
+)
 def test_tables(tmp_path_factory, rows, mark):
     folder = tmp_path_factory.mktemp("f")
     text = "\n".join(mark.join(row) for row in rows)
@@ -112,8 +163,22 @@ def test_tables(tmp_path_factory, rows, mark):
     read_cleanly(lambda p: load_study(p).design(), path)
 
 
-@pytest.mark.parametrize("raw", [b"\xff\xfe", b"\x00", b"a" * 100_000, b"[" * 5_000, b"{a: " * 5_000, b"- " * 5_000,
-                                 b"&a [*a]", b"%YAML 9.9\n---\n", b"a: !!binary x", b"? ", b"!!set {a}"])  # fmt: skip
+@pytest.mark.parametrize(
+    "raw",
+    [
+        b"\xff\xfe",
+        b"\x00",
+        b"a" * 100_000,
+        b"[" * 5_000,
+        b"{a: " * 5_000,
+        b"- " * 5_000,
+        b"&a [*a]",
+        b"%YAML 9.9\n---\n",
+        b"a: !!binary x",
+        b"? ",
+        b"!!set {a}",
+    ],
+)
 def test_raw_bytes(tmp_path, raw):
     path = tmp_path / "x.yaml"
     path.write_bytes(raw)

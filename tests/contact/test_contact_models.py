@@ -99,8 +99,13 @@ def test_gridded_tractions_give_the_stress_of_the_formula():
 def test_no_number_depends_on_its_neighbours(model):
     """Cases solved together and each alone agree to the last bit, friction laws included."""
     falling = {"kind": "linear", "speed": 40.0, "lowest": 0.5}
-    cases = [tr.Case(), tr.Case(motor_force=0, friction_coefficient=0.1, friction_law=falling), tr.Case(axial_force=5),
-             tr.Case(friction_law=falling, motor_force=-10), tr.Case(contact_angle=40)]  # fmt: skip
+    cases = [
+        tr.Case(),
+        tr.Case(motor_force=0, friction_coefficient=0.1, friction_law=falling),
+        tr.Case(axial_force=5),
+        tr.Case(friction_law=falling, motor_force=-10),
+        tr.Case(contact_angle=40),
+    ]
     names = ("lateral_force", "spin_moment", "rolling_radius_shift", "friction_energy_per_distance", "residual")
     together = tr.solve(cases, outputs=("forces", "friction_work"), contact_model=model)
     for i, case in enumerate(cases):
@@ -109,9 +114,11 @@ def test_no_number_depends_on_its_neighbours(model):
             assert np.array_equal(together[name][i].values, alone[name].values), (name, i)
 
 
-UNLIKE = [{"roller_material": "PA6", "guide_curve_radius": 39.5, "motor_force": -20.0},
-          {"guide_material": "PA6", "motor_force": -20.0, "friction_coefficient": 0.3},
-          {"roller_material": "EN AW-7075", "friction_coefficient": 0.2}]  # fmt: skip
+UNLIKE = [
+    {"roller_material": "PA6", "guide_curve_radius": 39.5, "motor_force": -20.0},
+    {"guide_material": "PA6", "motor_force": -20.0, "friction_coefficient": 0.3},
+    {"roller_material": "EN AW-7075", "friction_coefficient": 0.2},
+]
 
 
 @pytest.mark.parametrize("normal", ["hertz", "halfspace"])

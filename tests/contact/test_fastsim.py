@@ -109,8 +109,15 @@ def test_work_of_the_slip_is_that_of_the_creepages():
 
 
 def test_falling_friction_lowers_the_forces():
-    s = fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.3, STEEL,
-                            FastsimSettings(law=exponential_falling(30.0, 0.4), travel_speed=2000.0))  # fmt: skip
+    s = fastsim.solve_patch(
+        patch(),
+        -0.0035,
+        0.0,
+        0.03,
+        0.3,
+        STEEL,
+        FastsimSettings(law=exponential_falling(30.0, 0.4), travel_speed=2000.0),
+    )
     assert s.friction_change[0] < 0.02
     constant = fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.3, STEEL)
     assert abs(s.resultants.spin_moment[0]) < abs(constant.resultants.spin_moment[0])

@@ -22,16 +22,36 @@ def hertz_patch(n, k_x, k_y, load=115.0):
     one = np.ones(1)
     e = exact_shape(k_x * one, k_y * one, 117e3 * one).at(load * one)
     height = unit_cells(n, n)[0] * e.max_pressure[0]
-    return e, GridPatch(e.semi_axis_lateral, e.semi_axis_rolling, e.max_pressure, load * one, 0 * one, height[None],
-                        0 * one, 0 * one, np.zeros(1, bool), 0 * one)  # fmt: skip
+    return e, GridPatch(
+        e.semi_axis_lateral,
+        e.semi_axis_rolling,
+        e.max_pressure,
+        load * one,
+        0 * one,
+        height[None],
+        0 * one,
+        0 * one,
+        np.zeros(1, bool),
+        0 * one,
+    )
 
 
 def drawn_patch(pressure, half_width=0.3, half_length=0.2, centre=0.0):
     """A patch whose elements (N, M) carry any pressures."""
     one = np.ones(1)
     cell = 4 * half_width * half_length / pressure.size
-    return GridPatch(half_width * one, half_length * one, pressure.max() * one, pressure.sum() * cell * one,
-                     centre * one, pressure[None], 0 * one, 0 * one, np.zeros(1, bool), 0 * one)  # fmt: skip
+    return GridPatch(
+        half_width * one,
+        half_length * one,
+        pressure.max() * one,
+        pressure.sum() * cell * one,
+        centre * one,
+        pressure[None],
+        0 * one,
+        0 * one,
+        np.zeros(1, bool),
+        0 * one,
+    )
 
 
 def slip_of(shift):
@@ -122,9 +142,13 @@ def worn_points():
 
 @pytest.mark.parametrize(
     ("profile", "forces", "peak"),
-    [({"parabola": -7.0}, 0.035, 0.02), ({"arcs": [{"radius": -7, "to": 0.1}, {"radius": -6.4}]}, 0.035, 0.02),
-     ({"arc": -7, "edge": {"outer": 0.15}}, 0.035, 0.03), ({"points": worn_points(), "frame": "contact"}, 0.06, 0.05)],
-)  # fmt: skip
+    [
+        ({"parabola": -7.0}, 0.035, 0.02),
+        ({"arcs": [{"radius": -7, "to": 0.1}, {"radius": -6.4}]}, 0.035, 0.02),
+        ({"arc": -7, "edge": {"outer": 0.15}}, 0.035, 0.03),
+        ({"points": worn_points(), "frame": "contact"}, 0.06, 0.05),
+    ],
+)
 def test_beside_the_exact_theory_on_drawn_profiles(profile, forces, peak):
     """Forces over mu F_N; sliding errs by up to 30 % on the same patches."""
     case = tr.Case(roller_profile=profile, friction_coefficient=0.2, motor_force=-10.0)
@@ -157,8 +181,12 @@ def test_hertz_is_the_special_case_of_the_chain():
 def test_batches_give_the_same_bits_however_they_are_cut():
     profiles = [None, {"arc": -7, "edge": {"outer": 0.3}}]
     cases = [tr.Case(roller_profile=p, axial_force=a, motor_force=0.0) for p in profiles for a in (0.0, 25.0)]
-    options = {"outputs": ("forces", "contact"), "contact_model": "fastsim", "normal": "halfspace",
-               "accuracy": "preview"}  # fmt: skip
+    options = {
+        "outputs": ("forces", "contact"),
+        "contact_model": "fastsim",
+        "normal": "halfspace",
+        "accuracy": "preview",
+    }
     together = tr.solve(cases, **options)
     for i in (3, 1):
         alone = tr.solve([cases[i]], **options)

@@ -162,8 +162,10 @@ def test_a_law_that_hardly_falls_is_nearly_constant():
 def test_the_deeper_friction_falls_the_smaller_the_spin_moment():
     slip = slip_of(0.5, -0.03)
     for kind in ("sliding", "fastsim", "kalker"):
-        moments = [abs(resultants_of(models(exponential_falling(20.0, low), (kind,))[kind], slip)[2])
-                   for low in (1.0, 0.8, 0.5, 0.2)]  # fmt: skip
+        moments = [
+            abs(resultants_of(models(exponential_falling(20.0, low), (kind,))[kind], slip)[2])
+            for low in (1.0, 0.8, 0.5, 0.2)
+        ]
         assert np.all(np.diff(moments) < 0), (kind, moments)
 
 
@@ -188,16 +190,23 @@ def test_the_largest_shear_is_that_of_the_solution(kind, normal):
     assert np.all(ds.max_shear < 0.95 * 0.3 * ds.max_pressure)
 
 
-@pytest.mark.parametrize("law", [
-    {"kind": "linear", "speed": 3.5, "lowest": 0.5}, {"kind": "linear", "speed": 2.7, "lowest": 0.5},
-    {"kind": "linear", "speed": 1.8, "lowest": 0.5}, {"kind": "exponential", "speed": 0.5, "lowest": 0.4},
-    {"kind": "table", "speed": [0, 2, 20, 200], "friction": [0.3, 0.15, 0.1, 0.25]},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"kind": "linear", "speed": 3.5, "lowest": 0.5},
+        {"kind": "linear", "speed": 2.7, "lowest": 0.5},
+        {"kind": "linear", "speed": 1.8, "lowest": 0.5},
+        {"kind": "exponential", "speed": 0.5, "lowest": 0.4},
+        {"kind": "table", "speed": [0, 2, 20, 200], "friction": [0.3, 0.15, 0.1, 0.25]},
+    ],
+)
 def test_friction_that_falls_steeply_is_solved_and_keeps_its_forces_on_finer_grids(law):
     """Slips of neighbours would swing against each other, if friction saw that of its own element alone."""
     case = tr.Case(motor_force=0, friction_law=law)
-    rough, fine = (tr.solve(case, contact_model="kalker", accuracy=accuracy, outputs=("forces", "friction_work"))
-                   for accuracy in ("preview", "standard"))  # fmt: skip
+    rough, fine = (
+        tr.solve(case, contact_model="kalker", accuracy=accuracy, outputs=("forces", "friction_work"))
+        for accuracy in ("preview", "standard")
+    )
     assert bool(fine.converged) and float(fine.energy_residual) < 1e-3
     scale = float(fine.normal_force.max()) * 0.3
     np.testing.assert_allclose(rough.lateral_force, fine.lateral_force, atol=0.005 * scale)
@@ -209,8 +218,13 @@ OUTPUTS = ("forces", "contact", "friction_work", "peak_stress")
 @pytest.fixture(scope="module")
 def roller():
     falling = {"kind": "exponential", "speed": 20, "lowest": 0.4}
-    cases = [tr.Case(), tr.Case(friction_law={"kind": "constant"}), tr.Case(friction_law=falling),
-             tr.Case(friction_law=falling, velocity=1e-3), tr.Case(friction_law=falling, motor_force=-60)]  # fmt: skip
+    cases = [
+        tr.Case(),
+        tr.Case(friction_law={"kind": "constant"}),
+        tr.Case(friction_law=falling),
+        tr.Case(friction_law=falling, velocity=1e-3),
+        tr.Case(friction_law=falling, motor_force=-60),
+    ]
     return {kind: tr.solve(cases, outputs=OUTPUTS, contact_model=kind) for kind in ("sliding", "kalker")}
 
 
@@ -243,9 +257,16 @@ def test_complete_slip_has_the_friction_of_high_speed(roller):
 
 
 NEAR_THE_MOST = dict(
-    radial_force=-150, axis_distance=20, velocity=120, contact_angle=35, friction_coefficient=0.202, axial_force=29.1,
-    roller_profile_radius=-7.366, motor_force=-14.5, friction_law={"kind": "exponential", "speed": 20},
-)  # fmt: skip
+    radial_force=-150,
+    axis_distance=20,
+    velocity=120,
+    contact_angle=35,
+    friction_coefficient=0.202,
+    axial_force=29.1,
+    roller_profile_radius=-7.366,
+    motor_force=-14.5,
+    friction_law={"kind": "exponential", "speed": 20},
+)
 
 
 @pytest.mark.parametrize("kind", ["sliding", "fastsim", "kalker"])
@@ -265,9 +286,16 @@ def test_most_falling_laws_of_a_sample_are_solved():
     for _ in range(40):
         force, mu = rng.uniform(80, 250), rng.uniform(0.1, 0.35)
         law = {"kind": "exponential", "speed": np.exp(rng.uniform(0, 5.3)), "lowest": rng.uniform(0.2, 0.8)}
-        cases.append(tr.Case(radial_force=-force, friction_coefficient=mu, velocity=np.exp(rng.uniform(4, 8)),
-                             motor_force=rng.uniform(-0.6, 0.6) * mu * force, friction_law=law,
-                             axial_force=rng.uniform(-0.25, 0.25) * force))  # fmt: skip
+        cases.append(
+            tr.Case(
+                radial_force=-force,
+                friction_coefficient=mu,
+                velocity=np.exp(rng.uniform(4, 8)),
+                motor_force=rng.uniform(-0.6, 0.6) * mu * force,
+                friction_law=law,
+                axial_force=rng.uniform(-0.25, 0.25) * force,
+            )
+        )
     ds = tr.solve(cases, accuracy="preview", outputs=("forces",))
     assert np.all(ds.regime != 3) and np.all(ds.converged == 1)
 
@@ -278,8 +306,12 @@ def limits_of(kind: str, accuracy: str = "preview"):
     one = {"kind": "table", "speed": [0.0, 5.0, 50.0], "friction": [0.3, 0.3, 0.3]}
     half = 0.5 * tr.Case().friction_coefficient
     drives = [{"motor_force": 0.0}, {"motor_force": -8.0}]
-    kinds = [{}, {"friction_law": one}, *({"friction_law": falls, "velocity": v} for v in (1e-4, 1e7)),
-             {"friction_coefficient": half}]  # fmt: skip
+    kinds = [
+        {},
+        {"friction_law": one},
+        *({"friction_law": falls, "velocity": v} for v in (1e-4, 1e7)),
+        {"friction_coefficient": half},
+    ]
     cases = [tr.Case(**drive, **law) for drive in drives for law in kinds]
     ds = tr.solve(cases, contact_model=kind, accuracy=accuracy, outputs=("forces", "friction_work"))
     assert np.all(ds.regime == 0) and np.all(ds.converged == 1)
@@ -330,8 +362,20 @@ class ContactJump:
     def __init__(self) -> None:
         angle = np.full(1, 0.7)
         shape = HertzShape(*(np.full(1, v) for v in (0.05, 0.03, 1.5 / (np.pi * 0.05 * 0.03))))
-        self.loads = Loads(np.full(1, -200.0), np.zeros(1), np.full(1, -12.0), np.full(1, 0.3), angle, np.full(1, 6.0),
-                           np.full(1, 16.0), shape, 1e-3, 1e-7, falling=True, at_high_speed=0.5)  # fmt: skip
+        self.loads = Loads(
+            np.full(1, -200.0),
+            np.zeros(1),
+            np.full(1, -12.0),
+            np.full(1, 0.3),
+            angle,
+            np.full(1, 6.0),
+            np.full(1, 16.0),
+            shape,
+            1e-3,
+            1e-7,
+            falling=True,
+            at_high_speed=0.5,
+        )
 
     def __call__(self, ellipse, slip, friction, rows, fine):
         share = -slip.shift / np.hypot(slip.shift, 0.05)
@@ -359,12 +403,20 @@ def test_a_roller_without_balance_for_steep_friction_says_so():
     """Its pressures are unknown; the bit judges by those without friction."""
     steel = "1.7225-normalised"
     lost = tr.Case(
-        axis_distance=14.031, guide_profile_radius=6.0791, roller_profile_radius=-7.4587, guide_curve_radius=math.inf,
-        contact_angle=65.116, radial_force=-150.15, axial_force=15.834, motor_force=69.865, friction_coefficient=0.732,
-        velocity=1344.0, friction_law={"kind": "linear", "lowest": 0.3, "speed": 100.0},
+        axis_distance=14.031,
+        guide_profile_radius=6.0791,
+        roller_profile_radius=-7.4587,
+        guide_curve_radius=math.inf,
+        contact_angle=65.116,
+        radial_force=-150.15,
+        axial_force=15.834,
+        motor_force=69.865,
+        friction_coefficient=0.732,
+        velocity=1344.0,
+        friction_law={"kind": "linear", "lowest": 0.3, "speed": 100.0},
         roller_material={"like": steel, "youngs_modulus": 150978.0, "poisson_ratio": 0.13595},
         guide_material={"like": steel, "youngs_modulus": 13178.6, "poisson_ratio": 0.24861},
-    )  # fmt: skip
+    )
     found = tr.solve(lost, contact_model="kalker", outputs="forces")
     assert int(found.regime) == 3 and np.isnan(found.normal_force).all()
     assert int(found.validity) & validity_bit("steep_friction")

@@ -61,11 +61,16 @@ def equilibrium(case, settings):
     def balance(z):
         t, d, m = contacts(z)
         n, s = z[:2] * load, sine[0]
-        return np.array([
-            np.cos(alpha) * t.sum() + s * (n[0] - n[1]) + c["axial_force"],
-            s * (t[1] - t[0]) + np.cos(alpha) * n.sum() + c["radial_force"],
-            10 * ((m[0] - m[1]) * s / r_a + d.sum() + c["motor_force"]),
-        ]) / load  # fmt: skip
+        return (
+            np.array(
+                [
+                    np.cos(alpha) * t.sum() + s * (n[0] - n[1]) + c["axial_force"],
+                    s * (t[1] - t[0]) + np.cos(alpha) * n.sum() + c["radial_force"],
+                    10 * ((m[0] - m[1]) * s / r_a + d.sum() + c["motor_force"]),
+                ]
+            )
+            / load
+        )
 
     found = root(balance, [0.3, 0.6, -0.8 * (c["motor_force"] < 0)], tol=1e-7, options={"eps": 1e-4})
     assert np.max(np.abs(found.fun)) < 1e-5
@@ -73,9 +78,7 @@ def equilibrium(case, settings):
 
 
 def compare_with_contact(case, settings=None):
-    normal, shift, (lateral, driving, moment) = equilibrium(
-        case["case"], settings or KalkerSettings(tolerance=1e-7)
-    )
+    normal, shift, (lateral, driving, moment) = equilibrium(case["case"], settings or KalkerSettings(tolerance=1e-7))
     fine, coarse = case["grid_60x60"], case["grid_40x40"]
     exact = {k: np.array(v) + 2 * (np.array(v) - np.array(coarse[k])) for k, v in fine.items()}
     np.testing.assert_allclose(normal, exact["normal_force"], rtol=2.5e-3)
@@ -105,6 +108,7 @@ def test_all_equilibria_agree_with_contact(case):
 
 def test_stick_and_dissipation_of_all_patches_agree_with_contact():
     """At CONTACT's own loads and slips: stick within two points (all stick little), dissipation within 1 %."""
+
     def both(name, weight=2.0):
         fine, coarse = (np.array([c[grid][name] for c in CONTACT], float) for grid in ("grid_60x60", "grid_40x40"))
         value = fine + weight * (fine - coarse)
@@ -177,8 +181,11 @@ def test_traction_never_exceeds_the_bound_and_opposes_the_slip(wide):
     power = t.shear_lateral * t.slip_lateral + t.shear_rolling * t.slip_rolling
     speed = np.hypot(t.slip_lateral, t.slip_rolling)
     creep, e = WIDE["creep"], WIDE["ellipse"]
-    rigid = np.abs(creep.longitudinal) + np.abs(creep.lateral) + np.abs(creep.spin) * np.maximum(
-        e.semi_axis_lateral, e.semi_axis_rolling)  # fmt: skip
+    rigid = (
+        np.abs(creep.longitudinal)
+        + np.abs(creep.lateral)
+        + np.abs(creep.spin) * np.maximum(e.semi_axis_lateral, e.semi_axis_rolling)
+    )
     rigid = rigid[:, None, None] + 1e-5 * top / STEEL.shear_modulus  # the stopping rule allows this much slip
     assert np.all(power <= 1e-3 * top * rigid)
     slides = (speed > 1e-2 * rigid) & ~t.stick & (bound > 0.05 * top)
@@ -192,8 +199,10 @@ def test_mirrored_creepage_mirrors_forces():
 
 
 def test_scaling_of_lengths_leaves_the_problem_the_same():
-    one, ten = (values(solve_patch(patch(0.3 * k, 0.18 * k), creepage(-0.002, 0.0, 0.03 / k), 0.3, STEEL))[0]
-                for k in (1.0, 10.0))  # fmt: skip
+    one, ten = (
+        values(solve_patch(patch(0.3 * k, 0.18 * k), creepage(-0.002, 0.0, 0.03 / k), 0.3, STEEL))[0]
+        for k in (1.0, 10.0)
+    )
     np.testing.assert_allclose(ten, one * [100, 100, 1000], rtol=1e-4)
 
 
@@ -278,10 +287,16 @@ def test_profile_slip_differs_little_on_a_small_patch():
 
 @pytest.mark.parametrize(
     ("name", "profile", "curve"),
-    [("papercase_profile_slip", 1, 0), ("papercase_spin_curve", 0, 220.0),
-     ("papercase_profile_slip_spin_curve", 1, 220.0), ("free_profile_slip", 1, 0), ("free_spin_curve", 0, 220.0),
-     ("rC39.5_FM-30_spin_curve", 0, 39.5), ("papercase_n90", 0, 0)],
-)  # fmt: skip
+    [
+        ("papercase_profile_slip", 1, 0),
+        ("papercase_spin_curve", 0, 220.0),
+        ("papercase_profile_slip_spin_curve", 1, 220.0),
+        ("free_profile_slip", 1, 0),
+        ("free_spin_curve", 0, 220.0),
+        ("rC39.5_FM-30_spin_curve", 0, 39.5),
+        ("papercase_n90", 0, 0),
+    ],
+)
 def test_profile_and_curve_in_the_slip_agree_with_contact(name, profile, curve):
     """At CONTACT's own loads and slips: forces within 1.5 %, moments within 1 % with either term and with both."""
     record = VARIANTS[f"sens_{name}"]
@@ -290,8 +305,13 @@ def test_profile_and_curve_in_the_slip_agree_with_contact(name, profile, curve):
     hertz = shape(k_x * np.ones(2), k_y * np.ones(2), contact_modulus(210e3, 0.33, 210e3, 0.33) * np.ones(2))
     ellipse = hertz.at(np.array(record["normal_force"]))
     pair = np.ones(2)
-    slip = Slip(np.sin(alpha) * np.array([1.0, -1.0]), np.cos(alpha) * pair, 6.0 * pair, radius * pair,
-                record["rolling_radius_shift"] * pair)  # fmt: skip
+    slip = Slip(
+        np.sin(alpha) * np.array([1.0, -1.0]),
+        np.cos(alpha) * pair,
+        6.0 * pair,
+        radius * pair,
+        record["rolling_radius_shift"] * pair,
+    )
     creep = Creepage.of_slip(slip, bool(profile), curve * pair if curve else None)
     found = values(solve_patch(ellipse, creep, 0.3, STEEL, KalkerSettings(tolerance=1e-8)))
     np.testing.assert_allclose(found[:, 0], record["lateral_force"], rtol=1.5e-2)
@@ -302,9 +322,14 @@ def test_profile_and_curve_in_the_slip_agree_with_contact(name, profile, curve):
 
 @pytest.mark.parametrize(
     ("ratio", "creep", "spin", "friction"),
-    [(14.0, -1.48e-4, 1.9e-4, 0.262), (11.6, -1.51e-4, 1.3e-4, 0.133), (4.06, -3.64e-5, 5.08e-4, 0.155),
-     (2.43, -3.73e-5, 2.74e-3, 0.566), (5.66, -2.33e-5, 4.85e-5, 0.053)],
-)  # fmt: skip
+    [
+        (14.0, -1.48e-4, 1.9e-4, 0.262),
+        (11.6, -1.51e-4, 1.3e-4, 0.133),
+        (4.06, -3.64e-5, 5.08e-4, 0.155),
+        (2.43, -3.73e-5, 2.74e-3, 0.566),
+        (5.66, -2.33e-5, 4.85e-5, 0.053),
+    ],
+)
 def test_partly_sticking_slender_patches_take_few_products(ratio, creep, spin, friction):
     """b/a to 14, stick 0.5-0.9: Newton's method alone frees one element a step and takes 600 to 1,300 products."""
     b = np.sqrt(0.08 * ratio) * np.ones(1)
@@ -347,13 +372,20 @@ def test_dissipation_in_the_elements_meets_the_work_put_in_with_second_order():
     np.testing.assert_allclose(found.works.dissipated, fine.friction_energy_per_distance, rtol=2e-3)
 
 
-@pytest.mark.parametrize("case", [
-    dict(friction_coefficient=0.2, roller_profile_radius=1.5), dict(friction_coefficient=0.4, roller_profile_radius=20),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "case",
+    [
+        dict(friction_coefficient=0.2, roller_profile_radius=1.5),
+        dict(friction_coefficient=0.4, roller_profile_radius=20),
+    ],
+)
 def test_energy_balances_where_most_of_a_patch_sticks(case):
     """Four fifths of the patch stick, and elements lose much energy; the extrapolation finds most of it again."""
-    ds = tr.solve(tr.Case(contact_angle=10, motor_force=0, axial_force=0, **case), contact_model="kalker",
-                  outputs=("contact", "friction_work"))  # fmt: skip
+    ds = tr.solve(
+        tr.Case(contact_angle=10, motor_force=0, axial_force=0, **case),
+        contact_model="kalker",
+        outputs=("contact", "friction_work"),
+    )
     assert float(ds.stick_area_fraction.min()) > 0.75 and float(ds.energy_residual) < 1e-2
 
 

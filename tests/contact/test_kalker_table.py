@@ -46,8 +46,11 @@ def test_large_creepages_give_complete_sliding():
     found = table.solve_patch(ellipse, xi, phi, mu, elastic)
     np.testing.assert_allclose(_forces(found).T / mu[:, None], table_build.complete_sliding(g, angle), atol=6e-3)
     assert np.all(found.stick_fraction < 1e-6)
-    np.testing.assert_allclose(found.friction_energy_per_distance, -(xi * found.resultants.driving_force
-                               + phi * found.resultants.spin_moment), rtol=1e-12)  # fmt: skip
+    np.testing.assert_allclose(
+        found.friction_energy_per_distance,
+        -(xi * found.resultants.driving_force + phi * found.resultants.spin_moment),
+        rtol=1e-12,
+    )
 
 
 def test_turning_the_creepages_round_turns_the_forces_round_to_the_last_digit():
@@ -72,10 +75,14 @@ def test_outside_its_range_the_table_says_nothing_and_the_exact_solver_answers()
     np.testing.assert_allclose(ds.normal_force, exact.normal_force, rtol=2e-2)
 
 
-@pytest.mark.parametrize("change", [
-    {}, {"motor_force": 0, "friction_coefficient": 0.05},
-    {"roller_material": "PA6", "motor_force": 0, "friction_coefficient": 0.3},
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"motor_force": 0, "friction_coefficient": 0.05},
+        {"roller_material": "PA6", "motor_force": 0, "friction_coefficient": 0.3},
+    ],
+)
 def test_preview_by_the_table_keeps_near_the_exact_theory(change):
     case = tr.Case(**change)
     outputs = ("forces", "contact", "friction_work", "peak_stress")

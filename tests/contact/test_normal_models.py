@@ -33,8 +33,18 @@ def hertz_patch(n=40, k_x=0.0238, k_y=0.0587, load=115.0, centre=0.0):
     one = np.ones(1)
     e = exact_shape(k_x * one, k_y * one, 117e3 * one).at(load * one)
     height = unit_cells(n, n)[0] * e.max_pressure[0]
-    grid = GridPatch(e.semi_axis_lateral, e.semi_axis_rolling, e.max_pressure, load * one, centre * one, height[None],
-                     0 * one, 0 * one, np.zeros(1, bool), 0 * one)  # fmt: skip
+    grid = GridPatch(
+        e.semi_axis_lateral,
+        e.semi_axis_rolling,
+        e.max_pressure,
+        load * one,
+        centre * one,
+        height[None],
+        0 * one,
+        0 * one,
+        np.zeros(1, bool),
+        0 * one,
+    )
     return e, grid
 
 
@@ -91,10 +101,12 @@ def test_a_patch_beside_the_nominal_point_feels_the_slip_of_its_place():
     mu, spin = np.array([0.3]), -math.sin(math.radians(30)) / 16.55
     steel = Elastic(np.array([79e3]), np.array([0.33]), np.array([0.0]))
     settings = kalker.KalkerSettings(elements=20)
-    at_0 = kalker.solve_patch(here, kalker.Creepage(np.array([-1e-3 + 0.2 * spin]), np.zeros(1), np.array([spin])), mu,
-                              steel, settings)  # fmt: skip
-    at_2 = kalker.solve_patch(there, kalker.Creepage(np.array([-1e-3]), np.zeros(1), np.array([spin])), mu, steel,
-                              settings)  # fmt: skip
+    at_0 = kalker.solve_patch(
+        here, kalker.Creepage(np.array([-1e-3 + 0.2 * spin]), np.zeros(1), np.array([spin])), mu, steel, settings
+    )
+    at_2 = kalker.solve_patch(
+        there, kalker.Creepage(np.array([-1e-3]), np.zeros(1), np.array([spin])), mu, steel, settings
+    )
     moved = numbers(at_0.resultants) + np.array([0, 0, 0.2 * at_0.resultants.driving_force[0]])
     np.testing.assert_allclose(numbers(at_2.resultants), moved, rtol=1e-6)
 
@@ -197,8 +209,9 @@ def test_a_drawn_circle_gives_what_the_circle_gives_through_every_entrance(tmp_p
     cases = [tr.Case(guide_profile={"points": points}, **LOADS), {"guide_profile": {"file": "guide.csv"}, **LOADS}]
     drawn = tr.solve(cases, "contact", normal="halfspace")
     text = json.dumps({"points": points, "frame": "section"})
-    design = xr.Dataset({"guide_profile": ("case", np.array([text], object)),
-                         **{k: ("case", [v]) for k, v in LOADS.items()}})  # fmt: skip
+    design = xr.Dataset(
+        {"guide_profile": ("case", np.array([text], object)), **{k: ("case", [v]) for k, v in LOADS.items()}}
+    )
     by_design = tr.solve(design, "contact", normal="halfspace")
     for name in ("max_pressure", "patch_area", "semi_axis_lateral"):
         np.testing.assert_allclose(drawn[name][0], circle[name], rtol=2e-3, err_msg=name)
@@ -219,7 +232,8 @@ def test_batches_give_the_same_bits_however_they_are_cut():
 
 def test_profiles_work_as_factors_of_a_study(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "study.yaml").write_text("""
+    (tmp_path / "study.yaml").write_text(
+        """
 name: grooves
 base: {motor_force: 0, friction_coefficient: 0.2}
 factors:
@@ -228,7 +242,9 @@ design: grid
 outputs: [forces, contact, peak_stress, life]
 normal: halfspace
 accuracy: preview
-""", encoding="utf-8")
+""",
+        encoding="utf-8",
+    )
     study = tr.load_study("study.yaml")
     ds = tr.solve(study.design(), **study.options)
     assert ds.sizes["case"] == 2 and ds.attrs["normal"] == "halfspace"
@@ -262,8 +278,13 @@ def test_a_sticking_patch_feels_the_rim_as_on_the_ellipse():
 def test_peaks_of_slender_sliding_patches_keep_within_one_per_cent(guide, roller, curve, alpha):
     """The slip turns within an element where its pole lies in a slender patch: finer tractions are taken there."""
     loads = {"radial_force": -40.0, "axial_force": 5.0, "motor_force": 0.0, "friction_coefficient": 0.7}
-    shape = {"guide_profile_radius": guide, "roller_profile_radius": roller, "guide_curve_radius": curve,
-             "contact_angle": alpha, "axis_distance": 40.0}  # fmt: skip
+    shape = {
+        "guide_profile_radius": guide,
+        "roller_profile_radius": roller,
+        "guide_curve_radius": curve,
+        "contact_angle": alpha,
+        "axis_distance": 40.0,
+    }
     drawn = {"guide_profile": {"parabola": guide}, "roller_profile": {"parabola": roller}}
     hertz = tr.solve(tr.Case(**loads, **shape), ("contact", "peak_stress"), accuracy="reference")
     grid = tr.solve(tr.Case(**loads, **shape, **drawn), ("contact", "peak_stress"), normal="halfspace")
@@ -354,8 +375,10 @@ def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
     waves = np.sqrt(36.0 - x * x) + 5e-4 * np.cos(20.0 * np.pi * (np.abs(x) - 3.0))
     drawn = {"points": np.column_stack([x, waves]).tolist()}
     case = tr.Case(motor_force=0, friction_coefficient=0.1, guide_profile=drawn)
-    rough, fine = (tr.solve(case, normal="halfspace", accuracy=a, outputs=("contact", "peak_stress", "tractions"))
-                   for a in ("standard", "reference"))  # fmt: skip
+    rough, fine = (
+        tr.solve(case, normal="halfspace", accuracy=a, outputs=("contact", "peak_stress", "tractions"))
+        for a in ("standard", "reference")
+    )
     np.testing.assert_allclose(rough.pressure.max(("y", "x")), rough.max_pressure, rtol=0.05)
     off = np.abs(rough.peak_stress / fine.peak_stress - 1.0)
     assert np.all(off < 0.1) and np.all(off < rough.error_estimate)

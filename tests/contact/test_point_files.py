@@ -16,9 +16,19 @@ def written(separator: str, comma: bool) -> str:
     return "\n".join([separator.join(["x", "z"]), *lines])
 
 
-@pytest.mark.parametrize(("separator", "comma"), [
-    (";", True), ("; ", True), ("\t", True), ("   ", True), (";", False), (",", False), (", ", False), ("\t", False),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("separator", "comma"),
+    [
+        (";", True),
+        ("; ", True),
+        ("\t", True),
+        ("   ", True),
+        (";", False),
+        (",", False),
+        (", ", False),
+        ("\t", False),
+    ],
+)
 def test_decimal_commas_are_read_where_they_are_unambiguous(tmp_path, monkeypatch, separator, comma):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "c.csv").write_text(written(separator, comma), encoding="utf-8")

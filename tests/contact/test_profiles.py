@@ -173,8 +173,12 @@ def test_a_curve_without_the_contacts_inclination_is_refused():
     flat = [[float(x), 5.0 - 0.001 * x * x] for x in np.linspace(-4, 4, 41)]
     with pytest.raises(tr.InputError, match=r"guide_profile.*30 deg"):
         tr.solve(tr.Case(guide_profile={"points": flat}), normal="halfspace", outputs="forces")
-    rows = tr.solve([tr.Case(contact_angle=a, guide_profile={"points": circle_points(6.0, high=3.5)})
-                     for a in (50.0, 30.0)], normal="halfspace", outputs="forces", accuracy="preview")  # fmt: skip
+    rows = tr.solve(
+        [tr.Case(contact_angle=a, guide_profile={"points": circle_points(6.0, high=3.5)}) for a in (50.0, 30.0)],
+        normal="halfspace",
+        outputs="forces",
+        accuracy="preview",
+    )
     assert rows.regime.values.tolist() == [3, 0] and np.isnan(rows.normal_force[0]).all()  # one of many: a failed row
     with pytest.raises(tr.InputError, match="distance of the contacts"):
         tr.solve(tr.Case(roller_profile={"arc": -7, "width": 5}), normal="halfspace", outputs="forces")
@@ -197,8 +201,16 @@ def test_files_are_read_into_points(tmp_path, monkeypatch):
 
 def test_steep_flanks_take_no_part_and_interlocking_shapes_are_refused():
     """A groove that closes on the guide far from the contact does not carry; one that closes on it beside it cannot."""
-    mixed = gap(text({"parabola": 6}), text({"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.3}]}, "roller_profile"),
-                6.0, -7.0, ALPHA, 16.55, 220.0, 1)  # fmt: skip
+    mixed = gap(
+        text({"parabola": 6}),
+        text({"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.3}]}, "roller_profile"),
+        6.0,
+        -7.0,
+        ALPHA,
+        16.55,
+        220.0,
+        1,
+    )
     assert mixed.limits[1] < 3.0
     both = gap("", text({"parabola": -7}, "roller_profile"), 6.0, -7.0, ALPHA, 16.55, 220.0, 1)
     assert both.guide.parabolic and both.roller.parabolic
@@ -253,9 +265,11 @@ def test_a_curve_upside_down_or_on_one_side_only_says_so():
 
 def test_order_duplicates_and_gaps_are_named_by_row(tmp_path, monkeypatch):
     points = circle_points(6.0, n=21)
-    broken = {"increases": (points[::-1], [*points[:5], *points[4:]], [points[3], *points]),
-              "finite": ([*points[:4], [points[4][0], math.nan], *points[5:]],), "rows": ([], None, points[:3], "1 2"),
-              }  # fmt: skip
+    broken = {
+        "increases": (points[::-1], [*points[:5], *points[4:]], [points[3], *points]),
+        "finite": ([*points[:4], [points[4][0], math.nan], *points[5:]],),
+        "rows": ([], None, points[:3], "1 2"),
+    }
     for words, lists in broken.items():
         for rows in lists:
             with pytest.raises(tr.InputError, match=rf"roller_profile\.points.*{words}"):
@@ -281,8 +295,13 @@ def test_a_groove_worn_hollow_carries_in_two_patches():
     hollow = [[float(u), float(-u * u / 14 + 0.02 * math.exp(-((u / 0.3) ** 2)))] for u in np.linspace(-2, 2, 201)]
     case = tr.Case(roller_profile={"points": hollow, "frame": "contact"}, motor_force=0.0)
     for model in ("sliding", "fastsim", "kalker"):
-        ds = tr.solve(case, ("forces", "contact", "peak_stress", "life", "tractions"), contact_model=model,
-                      normal="halfspace", accuracy="preview")  # fmt: skip
+        ds = tr.solve(
+            case,
+            ("forces", "contact", "peak_stress", "life", "tractions"),
+            contact_model=model,
+            normal="halfspace",
+            accuracy="preview",
+        )
         assert int(ds.regime) == 0 and np.all(np.isfinite(ds.life_cycles))
         for contact in ds.pressure.values:
             loaded = (contact.sum(axis=0) > 0).astype(int)

@@ -35,8 +35,10 @@ def brute_force(ellipse, slip, spin_model):
 
     pole = np.clip(slip.pole_lateral[0] / a, -1, 1)
     points = [np.arcsin(pole)]
-    return [quad(column, -np.pi / 2, np.pi / 2, args=(k,), points=points, epsabs=1e-8, epsrel=1e-5, limit=60)[0]
-            for k in range(4)]  # fmt: skip
+    return [
+        quad(column, -np.pi / 2, np.pi / 2, args=(k,), points=points, epsabs=1e-8, epsrel=1e-5, limit=60)[0]
+        for k in range(4)
+    ]
 
 
 @pytest.mark.parametrize("spin_model", ["concentric", "edge", "skewed"])
@@ -46,8 +48,12 @@ def test_resultants_and_power_match_adaptive_quadrature(a, b, alpha, shift, spin
     ellipse, slip = patch(a, b, alpha, shift)
     exact = brute_force(ellipse, slip, spin_model)
     r = resultants(ellipse, slip, np.ones(1), spin_model=spin_model, nodes=16)
-    found = [r.lateral_force[0], r.driving_force[0], r.spin_moment[0],
-             friction_power(ellipse, slip, np.ones(1), spin_model=spin_model)[0]]  # fmt: skip
+    found = [
+        r.lateral_force[0],
+        r.driving_force[0],
+        r.spin_moment[0],
+        friction_power(ellipse, slip, np.ones(1), spin_model=spin_model)[0],
+    ]
     scale = np.array([1, 1, max(a, b), max(a, b)]) * ellipse.normal_force[0]
     np.testing.assert_allclose(np.array(found) / scale, np.array(exact) / scale, atol=1e-5)
 

@@ -32,11 +32,18 @@ def roller(ds, name):
 
 @pytest.mark.parametrize(
     ("name", "change", "terms"),
-    [("papercase_n90", PAPER, ()), ("papercase_profile_slip", PAPER, ("profile",)),
-     ("papercase_spin_curve", PAPER, ("curve",)), ("papercase_profile_slip_spin_curve", PAPER, BOTH),
-     ("free_n90", FREE, ()), ("free_profile_slip", FREE, ("profile",)), ("free_spin_curve", FREE, ("curve",)),
-     ("rC39.5_FM-30_spin_curve", TIGHT, ("curve",)), ("rC39.5_FM0_spin_curve", TIGHT | FREE, ("curve",))],
-)  # fmt: skip
+    [
+        ("papercase_n90", PAPER, ()),
+        ("papercase_profile_slip", PAPER, ("profile",)),
+        ("papercase_spin_curve", PAPER, ("curve",)),
+        ("papercase_profile_slip_spin_curve", PAPER, BOTH),
+        ("free_n90", FREE, ()),
+        ("free_profile_slip", FREE, ("profile",)),
+        ("free_spin_curve", FREE, ("curve",)),
+        ("rC39.5_FM-30_spin_curve", TIGHT, ("curve",)),
+        ("rC39.5_FM0_spin_curve", TIGHT | FREE, ("curve",)),
+    ],
+)
 def test_whole_equilibria_agree_with_contact(name, change, terms):
     """Normal forces within 0.1 %, lateral forces and spin moments within 0.3 %, the rest within 1 %."""
     record = VARIANTS[f"sens_{name}"]
@@ -88,8 +95,9 @@ def test_a_contact_beyond_the_axis_of_the_curve_is_a_failed_row():
     assert ds.regime.values.tolist() == [3, 0]
 
 
-@pytest.mark.parametrize(("terms", "least", "apart"), [(("profile",), 0.01, 0.002), (("curve",), 0.1, 0.04),
-                                                     (BOTH, 0.1, 0.04)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("terms", "least", "apart"), [(("profile",), 0.01, 0.002), (("curve",), 0.1, 0.04), (BOTH, 0.1, 0.04)]
+)
 def test_fastsim_follows_kalker(terms, least, apart):
     """The terms change its lateral forces nearly as they do the exact ones."""
     change = {}
@@ -105,8 +113,7 @@ def test_fastsim_tractions_have_the_slip_of_the_profile():
     """The profile changes the sums over the grid of tractions as it changes the forces, by 2 %."""
     ratio = []
     for terms in ((), ("profile",)):
-        ds = tr.solve(tr.Case(), outputs=("forces", "contact", "tractions"), contact_model="fastsim",
-                      slip_terms=terms)  # fmt: skip
+        ds = tr.solve(tr.Case(), outputs=("forces", "contact", "tractions"), contact_model="fastsim", slip_terms=terms)
         area = ds.semi_axis_lateral * ds.semi_axis_rolling
         ratio.append((ds.shear_lateral.values.sum(axis=(1, 2)) * area / ds.lateral_force).values)
     np.testing.assert_allclose(ratio[1], ratio[0], rtol=2e-3)
@@ -118,12 +125,15 @@ def test_preview_serves_the_curve_by_table_and_the_profile_by_elements():
     from trackroller.roller.stages import mechanics as stages
 
     for terms, kind in ((("curve",), TableModel), (("profile",), KalkerModel)):
-        scene = stages.prepare(to_table([tr.Case()]), Options(contact_model="kalker", accuracy="preview",
-                                                              slip_terms=terms))  # fmt: skip
+        scene = stages.prepare(
+            to_table([tr.Case()]), Options(contact_model="kalker", accuracy="preview", slip_terms=terms)
+        )
         assert isinstance(scene.model, kind)
     for terms in (("curve",), BOTH):
-        fine, rough = (tr.solve(tr.Case(**TIGHT), outputs=OUTPUTS, contact_model="kalker", accuracy=a, slip_terms=terms)
-                       for a in ("standard", "preview"))  # fmt: skip
+        fine, rough = (
+            tr.solve(tr.Case(**TIGHT), outputs=OUTPUTS, contact_model="kalker", accuracy=a, slip_terms=terms)
+            for a in ("standard", "preview")
+        )
         np.testing.assert_allclose(rough.lateral_force, fine.lateral_force, rtol=0.03)
         assert float(rough.energy_residual) < 1e-2
 
@@ -160,10 +170,12 @@ def test_contour_of_a_drawn_circle_is_eq_20(degrees):
 
 @pytest.mark.parametrize(
     ("options", "words"),
-    [({"slip_terms": ("profil",)}, ("slip_terms", "profil", "Did you mean 'profile'")),
-     ({"slip_terms": 3}, ("slip_terms", "profile, curve")),
-     ({"contact_model": "sliding", "slip_terms": ("curve",)}, ("slip_terms", "kalker", "leave 'curve' out"))],
-)  # fmt: skip
+    [
+        ({"slip_terms": ("profil",)}, ("slip_terms", "profil", "Did you mean 'profile'")),
+        ({"slip_terms": 3}, ("slip_terms", "profile, curve")),
+        ({"contact_model": "sliding", "slip_terms": ("curve",)}, ("slip_terms", "kalker", "leave 'curve' out")),
+    ],
+)
 def test_what_cannot_be_is_refused(options, words):
     with pytest.raises(InputError) as problem:
         tr.solve(tr.Case(), outputs="forces", **({"contact_model": "kalker"} | options))
@@ -192,9 +204,12 @@ def test_study_file_takes_them_and_the_fingerprint_tells_them_apart():
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"slip_terms": ["curv"]}, {"slip_terms": {"curve": 1}},
-     {"slip_terms": "curve", "contact_model": ["sliding", "kalker"]}],
-)  # fmt: skip
+    [
+        {"slip_terms": ["curv"]},
+        {"slip_terms": {"curve": 1}},
+        {"slip_terms": "curve", "contact_model": ["sliding", "kalker"]},
+    ],
+)
 def test_study_file_is_refused_before_it_runs(wrong):
     with pytest.raises(InputError, match="slip_terms"):
         parse_study(STUDY | wrong)
@@ -204,8 +219,9 @@ def test_a_spectrum_takes_them():
     from trackroller.study.spectrum.solve import Spectrum, solve_spectrum
 
     told = {"blocks": [{"distance": 1000.0}], "contact_model": "fastsim", "accuracy": "preview"}
-    plain, curved = (solve_spectrum(Spectrum.from_dict(told | {"base": TIGHT, "slip_terms": t}))
-                     for t in ([], ["curve"]))  # fmt: skip
+    plain, curved = (
+        solve_spectrum(Spectrum.from_dict(told | {"base": TIGHT, "slip_terms": t})) for t in ([], ["curve"])
+    )
     assert curved.attrs["slip_terms"] == "curve"
     assert np.all(curved.peak_stress != plain.peak_stress)
 
@@ -229,6 +245,11 @@ def test_figures_hold_the_most_exact_of_several_contact_models():
 
     groups = ("forces", "peak_stress", "life")
     made = [tr.solve(tr.Case(), outputs=groups, contact_model=name) for name in ("sliding", "fastsim")]
-    ds = xr.concat(made, dim=xr.Variable("contact_model", ["sliding", "fastsim"]), coords="minimal", compat="override",
-                   combine_attrs="override")  # fmt: skip
+    ds = xr.concat(
+        made,
+        dim=xr.Variable("contact_model", ["sliding", "fastsim"]),
+        coords="minimal",
+        compat="override",
+        combine_attrs="override",
+    )
     assert StudyView.of(ds).held_level("contact_model") == "fastsim"

@@ -135,8 +135,9 @@ def test_no_scatter_means_every_probability_gives_the_same_life():
     assert lives == pytest.approx(np.full(3, lives[1]), rel=1e-14)
 
 
-@pytest.mark.parametrize("scatter", [{"scatter_cycles": 4.0}, {"scatter_stress": 1.25},
-                                     {"scatter_cycles": 5.0, "scatter_stress": 1.1}])  # fmt: skip
+@pytest.mark.parametrize(
+    "scatter", [{"scatter_cycles": 4.0}, {"scatter_stress": 1.25}, {"scatter_cycles": 5.0, "scatter_stress": 1.1}]
+)
 @pytest.mark.parametrize("rule", LIFE_RULES)
 @pytest.mark.parametrize("probability", [0.01, 0.1, 0.5, 0.9])
 def test_pylife_agrees(rule, scatter, probability):

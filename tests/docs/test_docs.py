@@ -117,8 +117,12 @@ def test_errors_of_the_dimensionless_table_are_those_it_states():
 
     stated = table.stored().errors
     text = (ROOT / "docs" / "contact-models.md").read_text(encoding="utf-8")
-    rows = {"like_force": "bodies of one kind", "unlike_force": "unlike bodies, abs",
-            "like_stick": "share of stick, K = 0", "unlike_stick": "share of stick, unlike"}  # fmt: skip
+    rows = {
+        "like_force": "bodies of one kind",
+        "unlike_force": "unlike bodies, abs",
+        "like_stick": "share of stick, K = 0",
+        "unlike_stick": "share of stick, unlike",
+    }
     assert {name.rsplit("_", 1)[0] for name in stated if "_" in name} == set(rows)
     for name, start in rows.items():
         (cells,) = re.findall(rf"\| {re.escape(start)}[^|]*\|([^|]*)\|([^|]*)\|([^|]*)\|", text)

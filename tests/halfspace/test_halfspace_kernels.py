@@ -60,11 +60,16 @@ def test_double_antiderivative_gives_omega_back_numerically():
     def value(x, y, z):
         r = mp.sqrt(x * x + y * y + z * z)
         names = {
-            "x": x, "y": y, "z": z, "R": r, "Lx": mp.asinh(x / mp.sqrt(y * y + z * z)),
-            "Ly": mp.asinh(y / mp.sqrt(x * x + z * z)), "Lz": mp.log(r + z),
+            "x": x,
+            "y": y,
+            "z": z,
+            "R": r,
+            "Lx": mp.asinh(x / mp.sqrt(y * y + z * z)),
+            "Ly": mp.asinh(y / mp.sqrt(x * x + z * z)),
+            "Lz": mp.log(r + z),
             "Ax": mp.atan2(x * y * (r - z), x * x * r + y * y * z),
             "Ay": mp.atan2(x * y * (r - z), y * y * r + x * x * z),
-        }  # fmt: skip
+        }
         total = mp.mpf(0)
         for term in w.as_ordered_terms():
             factor = mp.mpf(1)
@@ -132,10 +137,16 @@ def test_uniform_rectangle_is_the_integral_of_point_kernels(point):
         corner += sign * np.array(kernels.uniform_corner(x - xi, y - eta, z)).reshape(2, 3, 6)
     for load, component in ((0, 0), (0, 3), (0, 5), (1, 1), (1, 4), (2, 0), (2, 2), (2, 3)):
         value, _ = dblquad(
-            lambda eta, xi, i=6 * load + component: (
-                lambda k: k[i] + nu * k[18 + i])(kernels.point_kernel(x - xi, y - eta, z)),
-            x1, x2, y1, y2, epsabs=1e-9, epsrel=1e-8,
-        )  # fmt: skip
+            lambda eta, xi, i=6 * load + component: (lambda k: k[i] + nu * k[18 + i])(
+                kernels.point_kernel(x - xi, y - eta, z)
+            ),
+            x1,
+            x2,
+            y1,
+            y2,
+            epsabs=1e-9,
+            epsrel=1e-8,
+        )
         assert corner[0, load, component] + nu * corner[1, load, component] == pytest.approx(value, abs=1e-8)
 
 
@@ -145,8 +156,9 @@ def test_bilinear_corner_is_the_integral_of_a_hat():
     weights = np.array([1.0, -2.0, 1.0])
     k = sum(
         weights[i] * weights[j] * np.array(kernels.bilinear_corner(x - (i - 1), y - (j - 1), z))
-        for i in range(3) for j in range(3)
-    )  # fmt: skip
+        for i in range(3)
+        for j in range(3)
+    )
     g, w = np.polynomial.legendre.leggauss(40)
     expected = np.zeros(36)
     for side_x in (-1, 1):

@@ -200,13 +200,26 @@ def test_equivalent_principal_and_shear_stresses():
 
 @pytest.mark.parametrize(
     "change",
-    [{"x": [0.0, 1.0, 3.0]}, {"pressure": np.ones((2, 2))}, {"points": [0.0, 0.0, -1e-3]}, {"points": [0.0, 0.0]},
-     {"poisson_ratio": 0.7}, {"interpolation": "cubic"}, {"shear_lateral": np.full((3, 3), np.nan)}],
-)  # fmt: skip
+    [
+        {"x": [0.0, 1.0, 3.0]},
+        {"pressure": np.ones((2, 2))},
+        {"points": [0.0, 0.0, -1e-3]},
+        {"points": [0.0, 0.0]},
+        {"poisson_ratio": 0.7},
+        {"interpolation": "cubic"},
+        {"shear_lateral": np.full((3, 3), np.nan)},
+    ],
+)
 def test_bad_input_is_named(change):
     """Each kind of bad input raises InputError naming its field."""
-    good = dict(x=[0.0, 1.0, 2.0], y=[0.0, 1.0, 2.0], pressure=np.ones((3, 3)), shear_lateral=0.0, shear_rolling=0.0,
-                points=[0.0, 0.0, 1.0])  # fmt: skip
+    good = dict(
+        x=[0.0, 1.0, 2.0],
+        y=[0.0, 1.0, 2.0],
+        pressure=np.ones((3, 3)),
+        shear_lateral=0.0,
+        shear_rolling=0.0,
+        points=[0.0, 0.0, 1.0],
+    )
     with pytest.raises(InputError) as caught:
         stress.stress_from_tractions(**{**good, **change})
     assert next(iter(change)) in str(caught.value)

@@ -81,8 +81,9 @@ def test_plane_carries_the_load():
     t, w = (t + 1) / 2, w / 2
     r, w_r = t / (1 - t), w / (1 - t) ** 2  # all of the plane
     angle = 2 * np.pi * np.arange(32) / 32
-    points = np.stack([np.outer(r, np.cos(angle)).ravel(), np.outer(r, np.sin(angle)).ravel(),
-                       np.full(r.size * 32, z)], axis=1)  # fmt: skip
+    points = np.stack(
+        [np.outer(r, np.cos(angle)).ravel(), np.outer(r, np.sin(angle)).ravel(), np.full(r.size * 32, z)], axis=1
+    )
     s = stress(row, points, nu).reshape(r.size, 32, 6)
     weights = (w_r * r)[:, None] * 2 * np.pi / 32
     load = 2 / 3 * np.pi * 0.6
@@ -151,11 +152,18 @@ def random_cases(n, seed=3):
     while len(out) < n:
         load = 10 ** rng.uniform(0, 3)
         try:
-            out.append(tr.Case(radial_force=-load, axial_force=load * rng.uniform(-0.2, 0.2),
-                               motor_force=load * rng.uniform(-0.15, 0.15), contact_angle=rng.uniform(15, 70),
-                               axis_distance=rng.uniform(10, 50), roller_profile_radius=-rng.uniform(6.05, 15),
-                               guide_curve_radius=rng.choice([np.inf, 60, 220, -300]),
-                               friction_coefficient=rng.uniform(0, 0.6)))  # fmt: skip
+            out.append(
+                tr.Case(
+                    radial_force=-load,
+                    axial_force=load * rng.uniform(-0.2, 0.2),
+                    motor_force=load * rng.uniform(-0.15, 0.15),
+                    contact_angle=rng.uniform(15, 70),
+                    axis_distance=rng.uniform(10, 50),
+                    roller_profile_radius=-rng.uniform(6.05, 15),
+                    guide_curve_radius=rng.choice([np.inf, 60, 220, -300]),
+                    friction_coefficient=rng.uniform(0, 0.6),
+                )
+            )
         except tr.InputError:
             continue
     return out

@@ -34,9 +34,10 @@ def scratch(**values):
 ORDER = {"ss": 0, "tt": 1, "zz": 2, "st": 3, "tz": 4, "zs": 5}
 
 
-@pytest.mark.parametrize("load, row, nu_row, direction", [("z", PRESSURE, PRESSURE_NU, (0.0, 0.0)),
-                                                          ("s", SHEAR, SHEAR_NU, (1.0, 0.0)),
-                                                          ("t", SHEAR, SHEAR_NU, (0.0, 1.0))])  # fmt: skip
+@pytest.mark.parametrize(
+    "load, row, nu_row, direction",
+    [("z", PRESSURE, PRESSURE_NU, (0.0, 0.0)), ("s", SHEAR, SHEAR_NU, (1.0, 0.0)), ("t", SHEAR, SHEAR_NU, (0.0, 1.0))],
+)
 def test_wave_kernel_is_the_derived_one(load, row, nu_row, direction):
     """One plane wave of the kernel equals A G - i lambda z B G' with A + B kz + nu ... as derived."""
     kz, nu = 0.37, 0.3

@@ -28,14 +28,17 @@ RNG = np.random.default_rng(1)
 WIDE = RNG.standard_normal(5000) * 10 ** RNG.uniform(-12, 3, 5000)
 
 
-@pytest.mark.parametrize("which, x, y, expected", [
-    (0, np.linspace(-60, 60, 5001), None, lambda x, y: np.exp(x)),
-    (1, np.linspace(-20, 20, 5001), None, lambda x, y: np.sin(x)),
-    (2, np.linspace(-20, 20, 5001), None, lambda x, y: np.cos(x)),
-    (3, 10 ** RNG.uniform(-300, 300, 5000), None, lambda x, y: np.log(x)),
-    (4, WIDE, 10 ** RNG.uniform(-14, 3, 5000), lambda x, y: np.arctan2(y, x)),
-    (4, np.array([0.0, 1.0, -1.0]), np.array([1.0, 1e-30, 1e-30]), lambda x, y: np.arctan2(y, x)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "which, x, y, expected",
+    [
+        (0, np.linspace(-60, 60, 5001), None, lambda x, y: np.exp(x)),
+        (1, np.linspace(-20, 20, 5001), None, lambda x, y: np.sin(x)),
+        (2, np.linspace(-20, 20, 5001), None, lambda x, y: np.cos(x)),
+        (3, 10 ** RNG.uniform(-300, 300, 5000), None, lambda x, y: np.log(x)),
+        (4, WIDE, 10 ** RNG.uniform(-14, 3, 5000), lambda x, y: np.arctan2(y, x)),
+        (4, np.array([0.0, 1.0, -1.0]), np.array([1.0, 1e-30, 1e-30]), lambda x, y: np.arctan2(y, x)),
+    ],
+)
 def test_equals_the_library(which, x, y, expected):
     """Within 2e-11 relative to the value or 1e-11 where that is near zero, over the ranges that are stated."""
     out = np.empty_like(x)

@@ -37,9 +37,15 @@ FRICTION = {  # typical, upper, lower and which of them have no source
     ("PA6", "POM"): (0.20, 0.30, 0.10, ("typical", "upper", "lower")),
     ("POM", "POM"): (0.20, 0.30, 0.06, ("typical", "upper", "lower")),
 }
-STEEL = {"family": "metal", "youngs_modulus": 206e3, "poisson_ratio": 0.3, "tensile_strength": 900,
-         "fatigue_strength_ratio": 0.45, "cycles_at_tensile_strength": 1e3,
-         "cycles_at_fatigue_limit": 2e6}  # fmt: skip
+STEEL = {
+    "family": "metal",
+    "youngs_modulus": 206e3,
+    "poisson_ratio": 0.3,
+    "tensile_strength": 900,
+    "fatigue_strength_ratio": 0.45,
+    "cycles_at_tensile_strength": 1e3,
+    "cycles_at_fatigue_limit": 2e6,
+}
 
 
 @pytest.fixture
@@ -68,8 +74,14 @@ def test_published_materials_are_all_there_with_their_values(db):
     assert db.names() == tuple(PUBLISHED)
     for name, values in PUBLISHED.items():
         m = db.material(name)
-        assert (m.youngs_modulus, m.poisson_ratio, m.tensile_strength, m.fatigue_strength_ratio,
-                m.cycles_at_tensile_strength, m.cycles_at_fatigue_limit) == values  # fmt: skip
+        assert (
+            m.youngs_modulus,
+            m.poisson_ratio,
+            m.tensile_strength,
+            m.fatigue_strength_ratio,
+            m.cycles_at_tensile_strength,
+            m.cycles_at_fatigue_limit,
+        ) == values
     assert db.material("POM").fatigue_limit == pytest.approx(32.0)
 
 
@@ -119,7 +131,8 @@ def test_materials_survive_the_way_to_another_process(db):
 
 
 def test_user_file_changes_single_values_and_adds_materials(user, db):
-    own = load_database(user("""
+    own = load_database(
+        user("""
         materials:
           PA6:
             youngs_modulus: {value: 2.8, unit: GPa, source: data sheet 12, placeholder: true}
@@ -132,7 +145,8 @@ def test_user_file_changes_single_values_and_adds_materials(user, db):
             cycles_at_tensile_strength: 1e4
             cycles_at_fatigue_limit: 5e6
             scatter_in_cycles: 4
-        """))  # fmt: skip
+        """)
+    )
     pa6 = own.material("PA6")
     assert pa6.youngs_modulus == pytest.approx(2800) and pa6.tensile_strength == 60 and pa6.family == "PA6"
     assert pa6.placeholders == ("youngs_modulus",)
@@ -155,12 +169,14 @@ def test_like_takes_the_rest_from_another_material(user):
 
 def test_user_friction_single_level_new_pair_and_pair_of_materials(user):
     """A changed level leaves the other levels; a pair that names a material stands over its family's."""
-    own = load_database(user("""
+    own = load_database(
+        user("""
         friction:
           - {pair: [PA6, metal], typical: {value: 0.18, source: own tests}}
           - {pair: [metal, PEEK], typical: 0.2}
           - {pair: [EN AW-7075, PA6], typical: 0.25}
-        """))  # fmt: skip
+        """)
+    )
     assert own.friction("metal", "PA6").value == 0.18 and own.friction("metal", "PA6").source == "own tests"
     assert own.friction("metal", "PA6", "upper").value == 0.30
     assert own.friction("PEEK", "metal").value == 0.2
@@ -248,14 +264,26 @@ def test_unknown_family_says_how_to_give_the_friction(db):
 # ---------------------------------------------------------------- bad input
 
 BAD_VALUES = [
-    ("youngs_modulus", -1), ("youngs_modulus", 0), ("youngs_modulus", 210e9), ("youngs_modulus", "stiff"),
-    ("youngs_modulus", True), ("youngs_modulus", float("nan")), ("youngs_modulus", None),
-    ("poisson_ratio", 0.51), ("poisson_ratio", -0.1), ("tensile_strength", 0),
+    ("youngs_modulus", -1),
+    ("youngs_modulus", 0),
+    ("youngs_modulus", 210e9),
+    ("youngs_modulus", "stiff"),
+    ("youngs_modulus", True),
+    ("youngs_modulus", float("nan")),
+    ("youngs_modulus", None),
+    ("poisson_ratio", 0.51),
+    ("poisson_ratio", -0.1),
+    ("tensile_strength", 0),
     ("tensile_strength", float("inf")),
-    ("fatigue_strength_ratio", 0), ("fatigue_strength_ratio", 1), ("fatigue_strength_ratio", 360),
-    ("cycles_at_tensile_strength", 0), ("cycles_at_tensile_strength", 2e6), ("cycles_at_fatigue_limit", 999),
-    ("scatter_in_cycles", 0.25), ("scatter_in_stress", 0.9),
-]  # fmt: skip
+    ("fatigue_strength_ratio", 0),
+    ("fatigue_strength_ratio", 1),
+    ("fatigue_strength_ratio", 360),
+    ("cycles_at_tensile_strength", 0),
+    ("cycles_at_tensile_strength", 2e6),
+    ("cycles_at_fatigue_limit", 999),
+    ("scatter_in_cycles", 0.25),
+    ("scatter_in_stress", 0.9),
+]
 
 
 @pytest.mark.parametrize(("field", "value"), BAD_VALUES)
@@ -370,12 +398,16 @@ def comments(text):
 @pytest.mark.parametrize(
     "text",
     [
-        COMMENTED, "", "# only a remark\n", "# no newline at the end", "materials: {}   # empty\n# end\n",
+        COMMENTED,
+        "",
+        "# only a remark\n",
+        "# no newline at the end",
+        "materials: {}   # empty\n# end\n",
         "# a\nmaterials:\n# b\n",
         "# a\nmaterials:   # c\n  # b\n\nfriction:\n  - {pair: [metal, PEEK], typical: 0.2}\n",
         "friction: # x\n  - pair: [metal, PEEK]\n    typical: 0.2  # y\n",
     ],
-)  # fmt: skip
+)
 def test_adding_keeps_comments_and_everything_else(user, text):
     path = user(text)
     before = yaml.safe_load(text) or {}
@@ -441,10 +473,16 @@ def test_an_existing_material_is_replaced_on_demand_only(user):
 
 @pytest.mark.parametrize(
     "values",
-    [{"youngs_modulus": -5, "like": "PA6"}, {"youngsmodulus": 5}, {"youngs_modulus": 5}, {},
-     {"like": "PA6", "tensile_strength": "strong"}, {"like": "PA6", "poisson_ratio": {"valu": 0.3}},
-     {"like": "PA6", "placeholder": "perhaps", "poisson_ratio": 0.3}],
-)  # fmt: skip
+    [
+        {"youngs_modulus": -5, "like": "PA6"},
+        {"youngsmodulus": 5},
+        {"youngs_modulus": 5},
+        {},
+        {"like": "PA6", "tensile_strength": "strong"},
+        {"like": "PA6", "poisson_ratio": {"valu": 0.3}},
+        {"like": "PA6", "placeholder": "perhaps", "poisson_ratio": 0.3},
+    ],
+)
 def test_a_refused_material_leaves_the_file_alone(user, tmp_path, values):
     path = user(COMMENTED)
     with pytest.raises(InputError):
@@ -492,8 +530,14 @@ def test_a_link_stays_a_link_and_the_mode_stays(user, tmp_path):
 def test_any_number_comes_back_as_it_was_given(tmp_path_factory, modulus, ratio, fatigue, first, factor):
     """Writing and reading a value changes no bit of it, whatever way YAML writes the number."""
     path = tmp_path_factory.mktemp("numbers") / "own.yaml"
-    values = dict(STEEL, youngs_modulus=modulus, poisson_ratio=ratio, fatigue_strength_ratio=fatigue,
-                  cycles_at_tensile_strength=first, cycles_at_fatigue_limit=first * factor)  # fmt: skip
+    values = dict(
+        STEEL,
+        youngs_modulus=modulus,
+        poisson_ratio=ratio,
+        fatigue_strength_ratio=fatigue,
+        cycles_at_tensile_strength=first,
+        cycles_at_fatigue_limit=first * factor,
+    )
     written = add_material(path, "any", **values)
     read = load_database(path).material("any")
     assert written == read and {key: getattr(read, key) for key in values} == values

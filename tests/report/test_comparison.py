@@ -35,8 +35,19 @@ def study(place, factors, base=None, models=MODELS, outputs=OUTPUTS, **more):
     """A study solved at preview; path of the gathered file."""
     name = f"s{len(list(place.glob('*.yaml')))}"
     path = place / f"{name}.yaml"
-    path.write_text(yaml.safe_dump({"name": name, "base": base or {}, "factors": factors, "contact_model": models,
-                                    "outputs": outputs, "accuracy": "preview", **more}))  # fmt: skip
+    path.write_text(
+        yaml.safe_dump(
+            {
+                "name": name,
+                "base": base or {},
+                "factors": factors,
+                "contact_model": models,
+                "outputs": outputs,
+                "accuracy": "preview",
+                **more,
+            }
+        )
+    )
     return run_study(load_study(path), place / "results").folder.gathered
 
 
@@ -67,8 +78,12 @@ def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(o
     driven = found.isel(design=np.flatnonzero(paired["motor_force"] == -10))
     # driven by 10 N at mu = 0.04 slips altogether and is not compared
     assert np.isnan(driven.normal_force.sel(contact_model="sliding")[0])
-    exact, sliding = (tr.solve(tr.Case(friction_coefficient=0.3, motor_force=0), contact_model=m, accuracy="preview",
-                               outputs="forces") for m in ("kalker", "sliding"))  # fmt: skip
+    exact, sliding = (
+        tr.solve(
+            tr.Case(friction_coefficient=0.3, motor_force=0), contact_model=m, accuracy="preview", outputs="forces"
+        )
+        for m in ("kalker", "sliding")
+    )
     expected = np.abs(sliding.normal_force / exact.normal_force - 1).max()
     free = found.normal_force.sel(contact_model="sliding").values[
         (paired["motor_force"].values == 0) & (paired["friction_coefficient"].values == 0.3)
@@ -120,8 +135,11 @@ def test_motor_force_in_the_base_and_another_factor(tmp_path):
 
 
 def test_a_nested_sample_has_pairs_and_a_sample_that_draws_the_model_says_why_not(tmp_path):
-    factors = {"friction_coefficient": {"uniform": [0.05, 0.4]}, "axial_force": {"uniform": [0, 30]},
-               "motor_force": {"values": [0, -10]}}  # fmt: skip
+    factors = {
+        "friction_coefficient": {"uniform": [0.05, 0.4]},
+        "axial_force": {"uniform": [0, 30]},
+        "motor_force": {"values": [0, -10]},
+    }
     gathered = study(tmp_path, factors, design="nested", samples=24, models=["sliding", "kalker"])
     drawn, text = shown(gathered, tmp_path)
     assert set(drawn) >= FIGURES and "48 designs that differ in nothing but the model" in text
@@ -151,9 +169,10 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
     mu, model = rng.uniform(0.02, 0.5, n), np.repeat(MODELS, n)
     order = rng.permutation(3 * n)
     force = np.stack([np.tile(100 * mu, 3) * np.repeat([1.1, 1.02, 1.0], n)] * 2, -1)
-    ds = xr.Dataset({"regime": ("case", np.zeros(3 * n, "i1")), "normal_force": (("case", "contact"), force)},
-                    coords={"contact_model": ("case", model), "friction_coefficient": ("case", np.tile(mu, 3)),
-                            "contact": [1, 2]}).isel(case=order)  # fmt: skip
+    ds = xr.Dataset(
+        {"regime": ("case", np.zeros(3 * n, "i1")), "normal_force": (("case", "contact"), force)},
+        coords={"contact_model": ("case", model), "friction_coefficient": ("case", np.tile(mu, 3)), "contact": [1, 2]},
+    ).isel(case=order)
     paired = ladder.pairs(ds.isel(case=slice(1, None)))
     lost = str(ds["contact_model"][0].item())
     assert paired.sizes["design"] == (n if lost != "kalker" else n - 1)
@@ -168,10 +187,12 @@ def test_the_levels_that_keep_the_tolerance_are_named():
     mu = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5]
     along = groups(xr.Dataset({"friction_coefficient": ("design", mu)}), "friction_coefficient")
     told = {
-        (0, 0, 1, 1, 1, 1): "up to a friction of 0.05", (1, 1, 0, 0, 1, 0): "at a friction of 0.1 to 0.2 and "
-        "from a friction of 0.5 on", (1,) * 6: "", (0,) * 6: "at every friction",
+        (0, 0, 1, 1, 1, 1): "up to a friction of 0.05",
+        (1, 1, 0, 0, 1, 0): "at a friction of 0.1 to 0.2 and from a friction of 0.5 on",
+        (1,) * 6: "",
+        (0,) * 6: "at every friction",
         (1, 1, 1, 1, 0, np.nan): "from a friction of 0.3 on",
-    }  # fmt: skip
+    }
     for wrong, words in told.items():
         assert levels_kept(along, np.array(wrong, float)) == words
 
@@ -179,8 +200,11 @@ def test_the_levels_that_keep_the_tolerance_are_named():
 def test_unlimited_lives_are_no_error_where_both_are():
     life = np.array([[np.inf, np.inf, 3.0, 2.0], [np.inf, 5.0, np.inf, 1.0]])
     dims = ("contact_model", "design")
-    ds = xr.Dataset({"life": (dims, life), "regime": (dims, np.zeros((2, 4)))},
-                    coords={"contact_model": ["sliding", "kalker"]}, attrs={"reference": "kalker"})  # fmt: skip
+    ds = xr.Dataset(
+        {"life": (dims, life), "regime": (dims, np.zeros((2, 4)))},
+        coords={"contact_model": ["sliding", "kalker"]},
+        attrs={"reference": "kalker"},
+    )
     assert ladder.errors(ds).life.values[0].tolist() == [0.0, np.inf, 1.0, 1.0]
 
 
@@ -198,13 +222,25 @@ def test_the_patches_are_drawn_free_and_driven():
 def test_the_shipped_study_may_be_edited(tmp_path):
     """Another roller, three drives in one file; a fixed drive and the contact angle as a factor in the other."""
     for factors, base in (
-        ({"friction_coefficient": {"values": [0.05, 0.3]}, "motor_force": {"values": [0, -5, 5]}},
-         {"roller_profile_radius": -8, "radial_force": -90, "axial_force": 0}),
+        (
+            {"friction_coefficient": {"values": [0.05, 0.3]}, "motor_force": {"values": [0, -5, 5]}},
+            {"roller_profile_radius": -8, "radial_force": -90, "axial_force": 0},
+        ),
         ({"contact_angle": {"values": [20, 50]}}, {"motor_force": -5, "friction_coefficient": 0.2}),
-    ):  # fmt: skip
+    ):
         path = tmp_path / "contact_models.yaml"
-        path.write_text(yaml.safe_dump({"name": "contact_models", "base": base, "factors": factors, "outputs": OUTPUTS,
-                                        "contact_model": MODELS, "accuracy": "preview"}))  # fmt: skip
+        path.write_text(
+            yaml.safe_dump(
+                {
+                    "name": "contact_models",
+                    "base": base,
+                    "factors": factors,
+                    "outputs": OUTPUTS,
+                    "contact_model": MODELS,
+                    "accuracy": "preview",
+                }
+            )
+        )
         compare(path, tmp_path / "results" / "contact_models")
         text = (tmp_path / "results" / "contact_models" / "report.html").read_text(encoding="utf-8")
         assert "Contact models compared" in text and "200 N radial" not in text

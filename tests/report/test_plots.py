@@ -19,10 +19,21 @@ from trackroller.report.figures.study_effects import effects
 from trackroller.report.figures.study_life import capped
 from trackroller.report.figures.study_view import StudyView
 
-ALL = {"life_against_friction", "stress_against_fit", "life_map", "forces_against_axial_force", "main_effects",
-       "regime_map"}  # fmt: skip
-SMALL = {"friction_coefficient": [0.05, 0.3], "roller_profile_radius": [-8.0, -7.0, -6.4], "motor_force": [-30.0, 0.0],
-         "material_pair": list(PAIRS[:2]), "axial_force": [0.0, 30.0, 130.0]}  # fmt: skip
+ALL = {
+    "life_against_friction",
+    "stress_against_fit",
+    "life_map",
+    "forces_against_axial_force",
+    "main_effects",
+    "regime_map",
+}
+SMALL = {
+    "friction_coefficient": [0.05, 0.3],
+    "roller_profile_radius": [-8.0, -7.0, -6.4],
+    "motor_force": [-30.0, 0.0],
+    "material_pair": list(PAIRS[:2]),
+    "axial_force": [0.0, 30.0, 130.0],
+}
 
 
 def drawn(ds: xr.Dataset, folder) -> set[str]:
@@ -77,8 +88,10 @@ def test_unlimited_lives_are_drawn_above_the_finite_ones(tmp_path):
 
 
 def test_a_loads_only_study_gets_forces_and_regimes_only(tmp_path):
-    ds = grid_study({"axial_force": [0.0, 60.0, 130.0], "radial_force": [-200.0, -100.0]},
-                    only=("normal_force", "lateral_force", "driving_force"))  # fmt: skip
+    ds = grid_study(
+        {"axial_force": [0.0, 60.0, 130.0], "radial_force": [-200.0, -100.0]},
+        only=("normal_force", "lateral_force", "driving_force"),
+    )
     assert drawn(ds, tmp_path) == {"forces_against_axial_force", "regime_map"}
 
 
@@ -133,9 +146,18 @@ def test_parameters_computed_from_factors_are_no_factors_but_can_be_drawn():
     assert view.factors == ("ratio",) and view.behind("roller_profile_radius") == ("case",)
 
 
-@pytest.mark.parametrize(("value", "text"), [
-    (0.0, "0"), (1234.5, "1234"), (12345.0, "12 300"), (2.5e9, "2.5·10⁹"), (-7.0, "−7"), (np.inf, "∞"), (np.nan, "–"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (1234.5, "1234"),
+        (12345.0, "12 300"),
+        (2.5e9, "2.5·10⁹"),
+        (-7.0, "−7"),
+        (np.inf, "∞"),
+        (np.nan, "–"),
+    ],
+)
 def test_numbers_read_as_an_engineer_writes_them(value, text):
     assert style.number(value).replace("\u00a0", " ") == text
 

@@ -20,9 +20,14 @@ from trackroller.report.page import contents, models_used
 from trackroller.report.tables import causes, regime_table, validity_table
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FACTORS = {"friction_coefficient": [0.05, 0.3, 0.4], "roller_profile_radius": [-8.0, -7.0, -6.4],
-           "material_pair": list(PAIRS), "motor_force": [-30.0, 0.0], "axial_force": [0.0, 30.0, 130.0],
-           "guide_curve_radius": [220.0, float("inf")]}  # fmt: skip
+FACTORS = {
+    "friction_coefficient": [0.05, 0.3, 0.4],
+    "roller_profile_radius": [-8.0, -7.0, -6.4],
+    "material_pair": list(PAIRS),
+    "motor_force": [-30.0, 0.0],
+    "axial_force": [0.0, 30.0, 130.0],
+    "guide_curve_radius": [220.0, float("inf")],
+}
 
 
 class _Balanced(HTMLParser):
@@ -52,8 +57,20 @@ def report(tmp_path_factory):
 
 def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
     text = report.read_text(encoding="utf-8")
-    wanted = ("friction-and-fit", "540 cases", "Roller profile radius", "full slip", "lift-off", "Best 1", "Worst 5",
-              "Papers behind the methods", "applmech3020041", "abcdef0", "Conventions", "static")  # fmt: skip
+    wanted = (
+        "friction-and-fit",
+        "540 cases",
+        "Roller profile radius",
+        "full slip",
+        "lift-off",
+        "Best 1",
+        "Worst 5",
+        "Papers behind the methods",
+        "applmech3020041",
+        "abcdef0",
+        "Conventions",
+        "static",
+    )
     assert [w for w in wanted if w not in text] == []
     assert text.count("<figure") == 6
     assert re.search(r"<figcaption><strong>[^<]+\.</strong>Figure 1\. ", text)
@@ -156,11 +173,27 @@ def test_a_browser_shows_it_whole_and_without_console_errors(report, tmp_path, w
     page = tmp_path / "probe.html"
     page.write_text(report.read_text(encoding="utf-8").replace("</body>", PROBE + "</body>"), encoding="utf-8")
     done = subprocess.run(
-        [str(CHROMIUM), "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
-         "--disable-background-networking", "--disable-component-update", "--disable-sync", "--hide-scrollbars",
-         f"--user-data-dir={tmp_path / 'profile'}", f"--window-size={width},1000", "--enable-logging=stderr",
-         "--virtual-time-budget=5000", "--dump-dom", page.as_uri()],
-        capture_output=True, text=True, timeout=60)  # fmt: skip
+        [
+            str(CHROMIUM),
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--no-first-run",
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+            "--hide-scrollbars",
+            f"--user-data-dir={tmp_path / 'profile'}",
+            f"--window-size={width},1000",
+            "--enable-logging=stderr",
+            "--virtual-time-budget=5000",
+            "--dump-dom",
+            page.as_uri(),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert "CONSOLE" not in done.stderr
     title = re.search(r"<title>(\{.*?\})</title>", done.stdout)
     assert title, done.stdout[:500] + done.stderr[-500:]

@@ -69,16 +69,20 @@ def test_where_all_models_are_one_the_cheapest_is_taken():
 
 def test_the_probe_measures_the_force_error_against_the_exact_theory():
     """Unseen designs within the table: its difference of forces is the error against the grid solver."""
-    cases = [tr.Case(friction_coefficient=mu, motor_force=0, contact_angle=angle)
-             for mu, angle in ((0.05, 30), (0.2, 45), (0.5, 60))]  # fmt: skip
+    cases = [
+        tr.Case(friction_coefficient=mu, motor_force=0, contact_angle=angle)
+        for mu, angle in ((0.05, 30), (0.2, 45), (0.5, 60))
+    ]
     options = Options(contact_model="auto")
     table = to_table(cases, None)
     found = choice.force_error(table, options, "sliding", choice.probe(table, options))
     own, exact = (tr.solve(cases, outputs=("forces", "contact"), contact_model=m) for m in ("sliding", "kalker"))
     arm = np.sqrt(exact.semi_axis_lateral * exact.semi_axis_rolling)
     parts = [abs(own.normal_force / exact.normal_force - 1)]
-    parts += [abs(own[n] - exact[n]) / exact.normal_force / (arm if n == "spin_moment" else 1)
-              for n in ("lateral_force", "driving_force", "spin_moment")]  # fmt: skip
+    parts += [
+        abs(own[n] - exact[n]) / exact.normal_force / (arm if n == "spin_moment" else 1)
+        for n in ("lateral_force", "driving_force", "spin_moment")
+    ]
     worst = np.max([p.values for p in parts], axis=(0, 2))
     np.testing.assert_allclose(found, worst, rtol=0.05, atol=2e-3)
 
@@ -96,10 +100,18 @@ def test_auto_does_not_keep_what_says_itself_that_it_is_in_doubt():
     """The sliding model's forces are within the tolerance here, but its stress is infinite where the slip turns."""
     inf = float("inf")
     doubtful = tr.Case(
-        axis_distance=20.161324, guide_profile_radius=10.071315, roller_profile_radius=inf, guide_curve_radius=1708.16,
-        contact_angle=37.24502, radial_force=-540.4773, axial_force=18.69199, motor_force=-190.34137,
-        friction_coefficient=0.41400733, roller_material="EN AW-7075", guide_material="EN AW-7075",
-    )  # fmt: skip
+        axis_distance=20.161324,
+        guide_profile_radius=10.071315,
+        roller_profile_radius=inf,
+        guide_curve_radius=1708.16,
+        contact_angle=37.24502,
+        radial_force=-540.4773,
+        axial_force=18.69199,
+        motor_force=-190.34137,
+        friction_coefficient=0.41400733,
+        roller_material="EN AW-7075",
+        guide_material="EN AW-7075",
+    )
     cases = [tr.Case(friction_coefficient=0.02, motor_force=0, axial_force=0), doubtful]
     assert list(_chosen(cases, 0.05)) == ["sliding", "sliding"]
     found, exact = (tr.solve(cases, outputs=("forces", "peak_stress"), contact_model=m) for m in ("auto", "kalker"))

@@ -69,16 +69,25 @@ def imbalance(case: tr.Case, ds) -> float:
     s, c = np.sin(alpha), np.cos(alpha)
     r_a = case.axis_distance - case.guide_profile_radius * c
     n, t, a, m = (ds[k].values for k in ("normal_force", "lateral_force", "driving_force", "spin_moment"))
-    eqs = (c * t.sum() + s * (n[0] - n[1]) + case.axial_force, s * (t[1] - t[0]) + c * n.sum() + case.radial_force,
-           (m[0] - m[1]) * s / r_a + a.sum() + case.motor_force)  # fmt: skip
+    eqs = (
+        c * t.sum() + s * (n[0] - n[1]) + case.axial_force,
+        s * (t[1] - t[0]) + c * n.sum() + case.radial_force,
+        (m[0] - m[1]) * s / r_a + a.sum() + case.motor_force,
+    )
     return max(map(abs, eqs)) / (abs(case.radial_force) + abs(case.axial_force))
 
 
 cases = st.builds(
-    dict, radial_force=st.floats(-1e4, -1e-2), ax=st.floats(-0.3, 0.3), motor=st.floats(-0.2, 0.2),
-    friction_coefficient=st.floats(0, 1), contact_angle=st.floats(5, 85), axis_distance=st.floats(8, 60),
-    roller_profile_radius=st.floats(-20, -6.05), guide_curve_radius=st.sampled_from([np.inf, 60.0, 220.0, -300.0]),
-)  # fmt: skip
+    dict,
+    radial_force=st.floats(-1e4, -1e-2),
+    ax=st.floats(-0.3, 0.3),
+    motor=st.floats(-0.2, 0.2),
+    friction_coefficient=st.floats(0, 1),
+    contact_angle=st.floats(5, 85),
+    axis_distance=st.floats(8, 60),
+    roller_profile_radius=st.floats(-20, -6.05),
+    guide_curve_radius=st.sampled_from([np.inf, 60.0, 220.0, -300.0]),
+)
 
 
 def build(draw: dict) -> tr.Case:
@@ -100,8 +109,9 @@ def test_every_case_balances_or_says_why(draw):
         assert imbalance(case, ds) < 1e-9
         assert np.all(ds.normal_force > 0)
         np.testing.assert_allclose(ds.normal_force, other.normal_force[::-1], rtol=1e-6)
-        np.testing.assert_allclose(ds.lateral_force, -other.lateral_force[::-1], rtol=1e-5,
-                                   atol=1e-7 * abs(case.radial_force))  # fmt: skip
+        np.testing.assert_allclose(
+            ds.lateral_force, -other.lateral_force[::-1], rtol=1e-5, atol=1e-7 * abs(case.radial_force)
+        )
     else:
         assert np.isnan(ds.rolling_radius_shift)
 

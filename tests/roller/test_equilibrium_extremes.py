@@ -29,9 +29,15 @@ def test_a_nearly_flat_wedge_needs_great_normal_forces_and_gets_them():
 
 def test_drilling_friction_that_nearly_stops_a_small_roller_is_balanced():
     # the patch is as large as the rolling radius: the slip is many patch lengths
-    soft = {"name": "soft", "youngs_modulus": 3, "poisson_ratio": 0.5, "tensile_strength": 10,
-            "fatigue_strength_ratio": 0.3, "cycles_at_tensile_strength": 1e4,
-            "cycles_at_fatigue_limit": 5e6}  # fmt: skip
+    soft = {
+        "name": "soft",
+        "youngs_modulus": 3,
+        "poisson_ratio": 0.5,
+        "tensile_strength": 10,
+        "fatigue_strength_ratio": 0.3,
+        "cycles_at_tensile_strength": 1e4,
+        "cycles_at_fatigue_limit": 5e6,
+    }
     case = tr.Case(contact_angle=85, axis_distance=1.0, axial_force=0, motor_force=0, roller_material=soft)
     ds = solved(case)
     assert ds.regime == ROLLING and ds.converged == 1
@@ -40,8 +46,10 @@ def test_drilling_friction_that_nearly_stops_a_small_roller_is_balanced():
 
 def test_the_lateral_load_rests_on_the_contact_that_faces_it():
     # beyond self-locking stands a branch on which it rests on the other one
-    cases = [tr.Case(contact_angle=11, friction_coefficient=0.49, radial_force=-200, axial_force=a, motor_force=0)
-             for a in (-5.0, 5.0, -0.1, 0.1)]  # fmt: skip
+    cases = [
+        tr.Case(contact_angle=11, friction_coefficient=0.49, radial_force=-200, axial_force=a, motor_force=0)
+        for a in (-5.0, 5.0, -0.1, 0.1)
+    ]
     ds = solved(*cases)
     for i, sign in enumerate((-1, 1, -1, 1)):
         one, two = ds.normal_force.values[i]
@@ -65,8 +73,12 @@ def test_little_friction_rolls_at_the_slip_of_the_limit(friction):
 
 def test_fastsim_draws_patches_too_slender_for_it_in_full_slip_and_fails_those_that_roll():
     slender = {"guide_profile_radius": 6, "roller_profile_radius": -6.0001, "friction_coefficient": 0.1}
-    ds = tr.solve([tr.Case(**slender, motor_force=m) for m in (0, -190)], ("contact", "tractions"),
-                  contact_model="fastsim", accuracy="preview")  # fmt: skip
+    ds = tr.solve(
+        [tr.Case(**slender, motor_force=m) for m in (0, -190)],
+        ("contact", "tractions"),
+        contact_model="fastsim",
+        accuracy="preview",
+    )
     assert ds.regime.values.tolist() == [FAILED, FULL_SLIP]
     assert np.isfinite(ds.shear_rolling.values[1]).all() and np.isnan(ds.slip_rolling.values[1]).all()
     assert ds.patch_x.values[1].max() < ds.semi_axis_lateral.values[1].max()

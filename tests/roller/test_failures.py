@@ -23,8 +23,9 @@ POINTS = [[x, 0.5 * (x * x) / -7] for x in np.linspace(-1, 1, 21).tolist()]
 
 def said(case: dict, *, failed: bool = True, bits: int = 0, **options) -> str:
     """The reason of a case that fails (or just misses its tolerance), without solving it."""
-    ds = xr.Dataset({"regime": ((), 3 if failed else 0), "converged": ((), 0), "residual": ((), 3.21e-4),
-                     "validity": ((), bits)})  # fmt: skip
+    ds = xr.Dataset(
+        {"regime": ((), 3 if failed else 0), "converged": ((), 0), "residual": ((), 3.21e-4), "validity": ((), bits)}
+    )
     return str(with_reasons(ds, to_table(tr.Case(**case)), Options(**options))["reason"].item())
 
 
@@ -64,9 +65,14 @@ def test_a_failed_case_ends_with_exit_1_and_its_reason(tmp_path):
 
 
 def test_a_study_keeps_the_reasons(tmp_path):
-    study = parse_study({
-        "name": "slender", "contact_model": "fastsim", "outputs": ["forces"],
-        "factors": {"roller_profile_radius": {"values": [-6.001, -7]}}})  # fmt: skip
+    study = parse_study(
+        {
+            "name": "slender",
+            "contact_model": "fastsim",
+            "outputs": ["forces"],
+            "factors": {"roller_profile_radius": {"values": [-6.001, -7]}},
+        }
+    )
     plan = run_study(study, tmp_path)
     with xr.open_dataset(plan.folder.gathered) as ds:
         assert "slender" in ds["reason"].values[0] and ds["reason"].values[1] == ""

@@ -26,10 +26,16 @@ def searched_patches(monkeypatch):
 def scenes(n=10, seed=3):
     """Symmetric, frictionless, repeated and plain scenes, some of them slipping fully or lifting off."""
     rng = np.random.default_rng(seed)
-    found = [{"axial_force": float(rng.choice([0.0, 0.0, 20.0, -35.0])),
-              "motor_force": float(rng.choice([0, -25, 300])),
-              "friction_coefficient": float(rng.choice([0.0, 0.1, 0.35])), "contact_angle": float(rng.uniform(20, 60)),
-              "velocity": float(rng.uniform(5, 90))} for _ in range(n)]  # fmt: skip
+    found = [
+        {
+            "axial_force": float(rng.choice([0.0, 0.0, 20.0, -35.0])),
+            "motor_force": float(rng.choice([0, -25, 300])),
+            "friction_coefficient": float(rng.choice([0.0, 0.1, 0.35])),
+            "contact_angle": float(rng.uniform(20, 60)),
+            "velocity": float(rng.uniform(5, 90)),
+        }
+        for _ in range(n)
+    ]
     return [*found, {"velocity": 10.0}, {"velocity": 80.0}, {"axial_force": 800.0}, {"axial_force": -0.0}]
 
 
@@ -74,8 +80,10 @@ def test_symmetric_and_repeated_scenes_are_solved_once(monkeypatch):
 def test_frictionless_loads_share_one_search(monkeypatch):
     """Without friction the stress over p_max depends on ellipticity and material alone, whatever the load."""
     seen = searched_patches(monkeypatch)
-    cases = [{"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.01 * f, "radial_force": -float(f)}
-             for f in (50, 200, 900)]  # fmt: skip
+    cases = [
+        {"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.01 * f, "radial_force": -float(f)}
+        for f in (50, 200, 900)
+    ]
     found = tr.solve(cases, outputs=("contact", "peak_stress"))
     assert seen == [1]
     ratio = found.peak_stress / found.max_pressure
@@ -104,8 +112,14 @@ def test_stopped_cases_would_have_failed_and_the_others_are_untouched():
 @pytest.mark.parametrize("model", ["sliding", "fastsim"])
 def test_the_bound_that_stops_is_below_the_peak(model):
     rng = np.random.default_rng(8)
-    cases = [{"friction_coefficient": float(rng.uniform(0, 0.9)), "contact_angle": float(rng.uniform(15, 70)),
-              "roller_profile_radius": float(rng.choice([-6.3, -8.0, 40.0]))} for _ in range(12)]  # fmt: skip
+    cases = [
+        {
+            "friction_coefficient": float(rng.uniform(0, 0.9)),
+            "contact_angle": float(rng.uniform(15, 70)),
+            "roller_profile_radius": float(rng.choice([-6.3, -8.0, 40.0])),
+        }
+        for _ in range(12)
+    ]
     options = Options(contact_model=model)
     scene = stages.prepare(to_table(cases), options)
     results = Results.start(scene, stages.eq.solve_equilibrium(scene.loads, scene.model.law))
@@ -118,15 +132,25 @@ def test_the_bound_that_stops_is_below_the_peak(model):
 
 
 def test_stop_before_stresses_by_pressure_or_regime():
-    found = tr.solve([{}, {"motor_force": 500.0}, {"radial_force": -5000.0}],
-                     stop_if="regime == full_slip or max_pressure > 1500")  # fmt: skip
+    found = tr.solve(
+        [{}, {"motor_force": 500.0}, {"radial_force": -5000.0}], stop_if="regime == full_slip or max_pressure > 1500"
+    )
     assert found.stopped.values.tolist() == [0, 1, 1]
 
 
-@pytest.mark.parametrize("text, told", [
-    ("peak_stress < R_m", "lower bound"), ("peak > R_m", "peak_stress"), ("peak_stress > R_n", "R_m"), ("1 > 2", "1"),
-    ("import os", "or"), ("regime == slipping", "full_slip"), ("__import__('os') > 1", "stop_if"), ("", "comparison"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "text, told",
+    [
+        ("peak_stress < R_m", "lower bound"),
+        ("peak > R_m", "peak_stress"),
+        ("peak_stress > R_n", "R_m"),
+        ("1 > 2", "1"),
+        ("import os", "or"),
+        ("regime == slipping", "full_slip"),
+        ("__import__('os') > 1", "stop_if"),
+        ("", "comparison"),
+    ],
+)
 def test_bad_conditions_are_refused_by_name(text, told):
     with pytest.raises(tr.InputError, match="stop_if") as caught:
         tr.solve(tr.Case(), stop_if=text)

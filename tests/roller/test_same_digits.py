@@ -19,7 +19,9 @@ print(hashlib.sha256(b"".join(found[n].values.tobytes() for n in sorted(found.da
 
 def test_first_process_of_a_fresh_place_finds_the_digits_of_later_ones(tmp_path):
     env = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "NUMBA_NUM_THREADS": "1"}
-    told = [subprocess.run([sys.executable, "-c", CODE], env=env, capture_output=True, text=True, timeout=300)
-            for _ in range(2)]  # fmt: skip
+    told = [
+        subprocess.run([sys.executable, "-c", CODE], env=env, capture_output=True, text=True, timeout=300)
+        for _ in range(2)
+    ]
     assert told[0].returncode == told[1].returncode == 0, told[0].stderr + told[1].stderr
     assert told[0].stdout == told[1].stdout

@@ -99,9 +99,17 @@ def test_bad_values_are_named_with_the_remedy(values, words):
 
 @pytest.mark.parametrize(
     "option, value",
-    [("outputs", "force"), ("contact_model", "slidng"), ("spin_model", "skew"), ("hertz", "exakt"),
-     ("accuracy", "high"), ("accuracy", 0.0), ("life_rule", "miner"), ("stress_bodies", "one")],
-)  # fmt: skip
+    [
+        ("outputs", "force"),
+        ("contact_model", "slidng"),
+        ("spin_model", "skew"),
+        ("hertz", "exakt"),
+        ("accuracy", "high"),
+        ("accuracy", 0.0),
+        ("life_rule", "miner"),
+        ("stress_bodies", "one"),
+    ],
+)
 def test_bad_options_are_refused(option, value):
     """Unknown options are refused with the known ones named."""
     with pytest.raises(tr.InputError, match=option):

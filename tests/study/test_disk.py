@@ -36,8 +36,11 @@ def disk(tmp_path):
 
     def change(options):
         known = place.is_mount()
-        words = ["mount", "-o", f"remount,{options}", str(place)] if known else [
-            "mount", "-t", "tmpfs", "-o", options, "tmpfs", str(place)]  # fmt: skip
+        words = (
+            ["mount", "-o", f"remount,{options}", str(place)]
+            if known
+            else ["mount", "-t", "tmpfs", "-o", options, "tmpfs", str(place)]
+        )
         if subprocess.run(words, capture_output=True, check=False).returncode:
             pytest.skip("no right to mount a disk here")
         return place

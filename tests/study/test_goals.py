@@ -22,12 +22,27 @@ from trackroller.report.figures.study_view import StudyView
 from trackroller.report.figures.woehler import curve, woehler
 from trackroller.study.config import parse_study
 
-LHS = {"name": "a", "design": "lhs", "samples": 400, "outputs": ["forces", "contact", "friction_work", "life"],
-       "factors": {"axial_force": {"uniform": [0.0, 1.0]}, "velocity": {"uniform": [1.0, 2.0]},
-                   "roller_material": {"values": ["PA6", "POM"]}}}  # fmt: skip
+LHS = {
+    "name": "a",
+    "design": "lhs",
+    "samples": 400,
+    "outputs": ["forces", "contact", "friction_work", "life"],
+    "factors": {
+        "axial_force": {"uniform": [0.0, 1.0]},
+        "velocity": {"uniform": [1.0, 2.0]},
+        "roller_material": {"values": ["PA6", "POM"]},
+    },
+}
 GOALS = {"pareto": {"roller_life_hours": "max", "friction_power": "min", "axis_distance": "min"}}
-STEEL = {"name": "steel", "tensile_strength": 720.0, "fatigue_strength_ratio": 0.5, "cycles_at_tensile_strength": 1e4,
-         "cycles_at_fatigue_limit": 5e6, "youngs_modulus": 2.1e5, "poisson_ratio": 0.3}  # fmt: skip
+STEEL = {
+    "name": "steel",
+    "tensile_strength": 720.0,
+    "fatigue_strength_ratio": 0.5,
+    "cycles_at_tensile_strength": 1e4,
+    "cycles_at_fatigue_limit": 5e6,
+    "youngs_modulus": 2.1e5,
+    "poisson_ratio": 0.3,
+}
 
 
 def solved(data=LHS, regime=None, **fake):
@@ -42,28 +57,31 @@ def solved(data=LHS, regime=None, **fake):
     return ds
 
 
-@pytest.mark.parametrize(("data", "parts"), [
-    ({"analysis": {"outputs": ["roller_life_hour"]}}, ["analysis.outputs", "roller_life_hours"]),
-    ({"analysis": {"outputs": ["roller_peak_stress"]}}, ["analysis.outputs", "Add peak_stress"]),
-    ({"analysis": {"outputs": ["normal_force"]}}, ["one number a case", "normal_force[1]"]),
-    ({"analysis": {"outputs": []}}, ["analysis.outputs"]),
-    ({"analysis": {"resample": 100}}, ["resample", "resamples"]),
-    ({"analysis": {"resamples": 5}}, ["analysis.resamples", "50"]),
-    ({"analysis": {"scale": {"friction_power": "log"}}}, ["analysis.scale.friction_power", "log10"]),
-    ({"analysis": {"measures": ["detla"]}}, ["analysis.measures", "delta"]),
-    ({"analysis": {"keep": ["full_slip"]}}, ["analysis.keep", "rolling"]),
-    ({"analysis": {"material_scatter": True}}, ["material_scatter", "nested"]),
-    ({"analysis": 3}, ["analysis"]),
-    ({"pareto": {"friction_power": "min"}}, ["pareto", "two or more"]),
-    ({"pareto": {"friction_power": "min", "roller_life_hours": "up"}}, ["pareto.roller_life_hours", "max"]),
-    ({"pareto": {"friction_power": "min", "roller_material": "max"}}, ["pareto", "number"]),
-    (GOALS | {"constraints": ["regime != full_slp"]}, ["constraints", "full_slip"]),
-    (GOALS | {"constraints": ["regime < 2"]}, ["constraints", "regime < 2"]),
-    (GOALS | {"constraints": ["max_pressure + 2"]}, ["constraints", "comparison"]),
-    (GOALS | {"constraints": "slip < 1"}, ["constraints", "list"]),
-    (GOALS | {"constraints": ["().__class__ == 1"]}, ["constraints", "not allowed"]),
-    ({"constraints": ["slip < 1"]}, ["constraints", "pareto"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("data", "parts"),
+    [
+        ({"analysis": {"outputs": ["roller_life_hour"]}}, ["analysis.outputs", "roller_life_hours"]),
+        ({"analysis": {"outputs": ["roller_peak_stress"]}}, ["analysis.outputs", "Add peak_stress"]),
+        ({"analysis": {"outputs": ["normal_force"]}}, ["one number a case", "normal_force[1]"]),
+        ({"analysis": {"outputs": []}}, ["analysis.outputs"]),
+        ({"analysis": {"resample": 100}}, ["resample", "resamples"]),
+        ({"analysis": {"resamples": 5}}, ["analysis.resamples", "50"]),
+        ({"analysis": {"scale": {"friction_power": "log"}}}, ["analysis.scale.friction_power", "log10"]),
+        ({"analysis": {"measures": ["detla"]}}, ["analysis.measures", "delta"]),
+        ({"analysis": {"keep": ["full_slip"]}}, ["analysis.keep", "rolling"]),
+        ({"analysis": {"material_scatter": True}}, ["material_scatter", "nested"]),
+        ({"analysis": 3}, ["analysis"]),
+        ({"pareto": {"friction_power": "min"}}, ["pareto", "two or more"]),
+        ({"pareto": {"friction_power": "min", "roller_life_hours": "up"}}, ["pareto.roller_life_hours", "max"]),
+        ({"pareto": {"friction_power": "min", "roller_material": "max"}}, ["pareto", "number"]),
+        (GOALS | {"constraints": ["regime != full_slp"]}, ["constraints", "full_slip"]),
+        (GOALS | {"constraints": ["regime < 2"]}, ["constraints", "regime < 2"]),
+        (GOALS | {"constraints": ["max_pressure + 2"]}, ["constraints", "comparison"]),
+        (GOALS | {"constraints": "slip < 1"}, ["constraints", "list"]),
+        (GOALS | {"constraints": ["().__class__ == 1"]}, ["constraints", "not allowed"]),
+        ({"constraints": ["slip < 1"]}, ["constraints", "pareto"]),
+    ],
+)
 def test_wrong_goals_of_a_study_are_refused_with_field_and_remedy(data, parts):
     with pytest.raises(InputError) as error:
         parse_study(LHS | data)
@@ -80,18 +98,30 @@ def test_material_scatter_needs_materials_that_have_some():
 
 def test_conditions_compare_join_and_treat_what_is_not_a_number_as_not_met():
     values = {"a": np.array([1.0, 2.0, np.nan]), "kind": np.array(["x", "y", "x"], dtype=object), "x": "x"}
-    cases = {"a < 2": [1, 0, 0], "a != 1": [0, 1, 0], "0 < a <= 2 and kind != x": [0, 1, 0], "not a > 1": [1, 0, 0],
-             "a > 1 or kind == 'x'": [1, 1, 0], "kind == x": [1, 0, 1]}  # fmt: skip
+    cases = {
+        "a < 2": [1, 0, 0],
+        "a != 1": [0, 1, 0],
+        "0 < a <= 2 and kind != x": [0, 1, 0],
+        "not a > 1": [1, 0, 0],
+        "a > 1 or kind == 'x'": [1, 1, 0],
+        "kind == x": [1, 0, 1],
+    }
     for text, meets in cases.items():
         np.testing.assert_array_equal(expressions.condition(text, values), np.array(meets, dtype=bool), err_msg=text)
 
 
 def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_path):
     """Three goals, a regime and a limit, from the stored study alone; the table follows the first goal."""
-    ds = solved(LHS | {"pareto": {"roller_life_hours": "max", "friction_power": "min", "axial_force": "max"},
-                       "constraints": ["regime != full_slip", "friction_power < 15", "roller_material == 'PA6'"]},
-                lambda x, v: x > 0.9, roller_life_hours=lambda x, v: 100 * v,
-                friction_power=lambda x, v: 10 * v)  # fmt: skip
+    ds = solved(
+        LHS
+        | {
+            "pareto": {"roller_life_hours": "max", "friction_power": "min", "axial_force": "max"},
+            "constraints": ["regime != full_slip", "friction_power < 15", "roller_material == 'PA6'"],
+        },
+        lambda x, v: x > 0.9,
+        roller_life_hours=lambda x, v: 100 * v,
+        friction_power=lambda x, v: 10 * v,
+    )
     front = study_pareto(ds)
     kept = ds.isel(case=front["row"].values)
     assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
@@ -103,8 +133,11 @@ def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_pat
 
 
 def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
-    ds = solved(LHS | {"analysis": {"outputs": ["friction_power"], "scale": "log10", "measures": ["delta"]}},
-                roller_life_hours=lambda x, v: v, friction_power=lambda x, v: 10 ** (3 * x))  # fmt: skip
+    ds = solved(
+        LHS | {"analysis": {"outputs": ["friction_power"], "scale": "log10", "measures": ["delta"]}},
+        roller_life_hours=lambda x, v: v,
+        friction_power=lambda x, v: 10 ** (3 * x),
+    )
     ds.to_netcdf(tmp_path / "study.nc")
     sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
@@ -118,8 +151,12 @@ def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
 
 def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
     """The rolling half alone decides the index; what drives the slip has an output of its own."""
-    ds = solved(LHS, lambda x, v: x > 0.5, roller_life_hours=lambda x, v: np.where(x > 0.5, 1e-9, 10**v),
-                friction_power=lambda x, v: 0 * x + 7.0)  # fmt: skip
+    ds = solved(
+        LHS,
+        lambda x, v: x > 0.5,
+        roller_life_hours=lambda x, v: np.where(x > 0.5, 1e-9, 10**v),
+        friction_power=lambda x, v: 0 * x + 7.0,
+    )
     sens = analyse_dataset(ds)
     life = sens.sel(output="roller_life_hours")
     assert float(life["first"].sel(factor="velocity")) > 0.9 and not int(life["reliable"])
@@ -167,8 +204,17 @@ def test_pawn_interval_is_as_wide_as_the_index_scatters_from_sample_to_sample():
 def test_every_measure_has_an_interval_and_only_the_wanted_are_there():
     x = np.random.default_rng(3).random((300, 2))
     found = given_data(x[:, 0], x, np.array([True, True]), measures=("delta", "pawn"), resamples=50)
-    assert set(found) == {"delta", "delta_low", "delta_high", "delta_noise", "pawn", "pawn_low", "pawn_high",
-                          "pawn_noise", "rows_used"}  # fmt: skip
+    assert set(found) == {
+        "delta",
+        "delta_low",
+        "delta_high",
+        "delta_noise",
+        "pawn",
+        "pawn_low",
+        "pawn_high",
+        "pawn_noise",
+        "rows_used",
+    }
     assert found["delta"][0] > 0.6 > found["delta_noise"][0]
 
 
@@ -196,8 +242,12 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
 
     ds["life_cycles"] = (("case", "contact", "body"), life_cycles(stress, 720.0, 360.0, 1e4, 5e6, rule))
     ds["regime"] = ("case", (np.arange(40) % 4 == 0).astype(np.int8))
-    study = {"name": "a", "factors": {"axial_force": {"values": list(range(40))}}, "life_rule": rule,
-             "base": {"roller_material": "steel", "guide_material": "steel"}}  # fmt: skip
+    study = {
+        "name": "a",
+        "factors": {"axial_force": {"values": list(range(40))}},
+        "life_rule": rule,
+        "base": {"roller_material": "steel", "guide_material": "steel"},
+    }
     ds.attrs = {"study": json.dumps(study), "materials": json.dumps({"steel": STEEL | {"scatter_in_cycles": 4.0}})}
     _, info = woehler(StudyView.of(ds))
     assert "Half of the cases load the roller" in info.sentence and "0.5 times the life" in info.sentence
@@ -209,8 +259,13 @@ def test_scatter_of_each_material_widens_its_own_cases():
     """s = lg(T_N) / 2.563 by material and body; T_S counts by its power k."""
     ds = solved()
     k = np.log(500) / np.log(2)
-    ds.attrs["materials"] = json.dumps({"PA6": STEEL | {"scatter_in_cycles": 4.0}, "1.7225-normalised": STEEL,
-                                        "POM": STEEL | {"scatter_in_stress": 4.0 ** (1 / k)}})  # fmt: skip
+    ds.attrs["materials"] = json.dumps(
+        {
+            "PA6": STEEL | {"scatter_in_cycles": 4.0},
+            "1.7225-normalised": STEEL,
+            "POM": STEEL | {"scatter_in_stress": 4.0 ** (1 / k)},
+        }
+    )
     found = material_deviations(ds, True)
     np.testing.assert_allclose(found["roller"], np.log10(4) / 2.5631, rtol=1e-4)
     assert (found["guide"] == 0).all() and material_deviations(ds, False) == {}
@@ -222,13 +277,24 @@ def test_scatter_of_each_material_widens_its_own_cases():
 
 
 def test_nested_study_with_material_scatter_reaches_the_report(tmp_path):
-    data = {"name": "n", "design": "nested", "samples": 200, "outputs": ["forces", "life"],
-            "factors": {"contact_angle": {"values": [30, 36]}, "axial_force": {"normal": [0.0, 1.0]},
-                        "velocity": {"uniform": [1.0, 2.0]}}}  # fmt: skip
+    data = {
+        "name": "n",
+        "design": "nested",
+        "samples": 200,
+        "outputs": ["forces", "life"],
+        "factors": {
+            "contact_angle": {"values": [30, 36]},
+            "axial_force": {"normal": [0.0, 1.0]},
+            "velocity": {"uniform": [1.0, 2.0]},
+        },
+    }
     lives = {}
     for scatter in (False, 9):
-        ds = solved(data | {"analysis": {"material_scatter": scatter}}, lambda x, v: v > 1.95,
-                    roller_life_hours=lambda x, v: 10 ** (3 + 0.1 * x))  # fmt: skip
+        ds = solved(
+            data | {"analysis": {"material_scatter": scatter}},
+            lambda x, v: v > 1.95,
+            roller_life_hours=lambda x, v: 10 ** (3 + 0.1 * x),
+        )
         ds.to_netcdf(tmp_path / "study.nc")
         sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
         lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])

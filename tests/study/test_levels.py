@@ -13,24 +13,50 @@ from trackroller.study.status import status_of
 POINTS = [[float(x), -0.01 * x * x] for x in range(-5, 6)]
 
 
-@pytest.mark.parametrize(("name", "levels"), [
-    ("roller_profile", [
-        {"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.3}]},
-        {"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.5}]},
-        {"arcs": [{"radius": -7, "to": 0.3}, {"radius": -6.3}]}, {"arcs": [{"radius": -7}]},
-        {"arcs": [{"radius": -7, "to": 0.1}, {"radius": -9, "to": 0.2}, {"radius": -6.3}]},
-        {"arcs": [{"radius": -7, "to": 0.1}, {"radius": -8, "to": 0.2}, {"radius": -6.3}]}]),
-    ("roller_profile", [{"arc": -7, "edge": edge} for edge in (
-        {"outer": 0.1}, {"outer": 0.2}, {"inner": 0.1}, {"outer": 0.1, "chamfer": 1.0}, {"outer": 0.1, "chamfer": 2.0},
-        {"inner": 0.1, "outer": 0.1})]),
-    ("roller_profile", [{"arc": -7}, {"arc": -7.0000002}, {"arc": -7, "width": 9}, {"parabola": -7}]),
-    ("guide_profile", [{"points": POINTS, "smooth": s} for s in (0, 0.001, "auto")] + [
-        {"points": POINTS, "frame": "contact"}]),
-    ("friction_law", [{"kind": "table", "speed": [0, 50], "friction": [0.3, 0.1]},
-                      {"kind": "table", "speed": [0, 50], "friction": [0.2, 0.1]},
-                      {"kind": "table", "speed": [0, 20, 50], "friction": [0.3, 0.2, 0.1]},
-                      {"kind": "table", "speed": [0, 20, 50], "friction": [0.3, 0.15, 0.1]}]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "levels"),
+    [
+        (
+            "roller_profile",
+            [
+                {"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.3}]},
+                {"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.5}]},
+                {"arcs": [{"radius": -7, "to": 0.3}, {"radius": -6.3}]},
+                {"arcs": [{"radius": -7}]},
+                {"arcs": [{"radius": -7, "to": 0.1}, {"radius": -9, "to": 0.2}, {"radius": -6.3}]},
+                {"arcs": [{"radius": -7, "to": 0.1}, {"radius": -8, "to": 0.2}, {"radius": -6.3}]},
+            ],
+        ),
+        (
+            "roller_profile",
+            [
+                {"arc": -7, "edge": edge}
+                for edge in (
+                    {"outer": 0.1},
+                    {"outer": 0.2},
+                    {"inner": 0.1},
+                    {"outer": 0.1, "chamfer": 1.0},
+                    {"outer": 0.1, "chamfer": 2.0},
+                    {"inner": 0.1, "outer": 0.1},
+                )
+            ],
+        ),
+        ("roller_profile", [{"arc": -7}, {"arc": -7.0000002}, {"arc": -7, "width": 9}, {"parabola": -7}]),
+        (
+            "guide_profile",
+            [{"points": POINTS, "smooth": s} for s in (0, 0.001, "auto")] + [{"points": POINTS, "frame": "contact"}],
+        ),
+        (
+            "friction_law",
+            [
+                {"kind": "table", "speed": [0, 50], "friction": [0.3, 0.1]},
+                {"kind": "table", "speed": [0, 50], "friction": [0.2, 0.1]},
+                {"kind": "table", "speed": [0, 20, 50], "friction": [0.3, 0.2, 0.1]},
+                {"kind": "table", "speed": [0, 20, 50], "friction": [0.3, 0.15, 0.1]},
+            ],
+        ),
+    ],
+)
 def test_levels_of_a_factor_read_differently(name, levels):
     texts = [mapping_text(name, level) for level in levels]
     words = [short(name, text) for text in texts]
@@ -40,8 +66,16 @@ def test_levels_of_a_factor_read_differently(name, levels):
 
 def test_status_tells_failed_profiles_in_words(tmp_path):
     flat = [{"points": [[float(x), z] for x in range(-180, 181)], "frame": "section"} for z in (0.0, 1.0)]
-    study = parse_study({"name": "p", "outputs": ["forces"], "normal": "halfspace", "accuracy": "preview",
-                         "design": "grid", "factors": {"roller_profile": {"values": flat}}})  # fmt: skip
+    study = parse_study(
+        {
+            "name": "p",
+            "outputs": ["forces"],
+            "normal": "halfspace",
+            "accuracy": "preview",
+            "design": "grid",
+            "factors": {"roller_profile": {"values": flat}},
+        }
+    )
     run_study(study, tmp_path)
     levels = [level for _, level in status_of(study, tmp_path).by_level]
     assert len(levels) == 2 and all(t.startswith("drawn") and t.endswith("361 points") for t in levels)

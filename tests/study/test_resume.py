@@ -24,8 +24,12 @@ from trackroller.study.status import status_of
 
 HERE = Path(__file__).parents[1]
 LOADS = [float(v) for v in range(20, 50)]
-DATA = {"name": "s", "outputs": ["forces"], "chunk_size": 20,
-        "factors": {"axial_force": {"values": LOADS}, "friction_coefficient": {"values": [0.1, 0.2]}}}  # fmt: skip
+DATA = {
+    "name": "s",
+    "outputs": ["forces"],
+    "chunk_size": 20,
+    "factors": {"axial_force": {"values": LOADS}, "friction_coefficient": {"values": [0.1, 0.2]}},
+}
 
 
 def changed(**factors):
@@ -62,8 +66,12 @@ def test_gathered_grid_has_its_factors_as_labelled_dimensions(tmp_path):
     assert list(ds["material_pair"].values) == ["PA6 / POM", "POM / PA6"]
     assert list(ds["roller_material"].values) == ["PA6", "POM"]
     expected = np.sin(ds["axial_force"]) + ds["friction_coefficient"] * xr.DataArray([1.0, 2.0], dims="contact")
-    xr.testing.assert_allclose(ds["normal_force"].drop_vars(ds.coords), expected.broadcast_like(
-        ds["normal_force"]).transpose(*ds["normal_force"].dims).drop_vars(ds.coords, errors="ignore"))  # fmt: skip
+    xr.testing.assert_allclose(
+        ds["normal_force"].drop_vars(ds.coords),
+        expected.broadcast_like(ds["normal_force"])
+        .transpose(*ds["normal_force"].dims)
+        .drop_vars(ds.coords, errors="ignore"),
+    )
     for name in ("study", "versions", "git_commit", "seed", "accuracy", "date_created", "materials"):
         assert name in ds.attrs
     assert all("units" in ds[name].attrs for name in ("normal_force", "axial_force", "radial_force"))
@@ -87,10 +95,16 @@ def test_second_run_solves_nothing(tmp_path, solved):
     assert max(solved().values()) == 1
 
 
-@pytest.mark.parametrize("more", [
-    {"axial_force": [*LOADS, 50.0, 51.0]}, {"friction_coefficient": [0.05, 0.1, 0.15, 0.2]},
-    {"motor_force": [-30.0, 0.0]}, {"axial_force": LOADS[5:]},
-], ids=["level", "levels between", "factor", "fewer"])  # fmt: skip
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"axial_force": [*LOADS, 50.0, 51.0]},
+        {"friction_coefficient": [0.05, 0.1, 0.15, 0.2]},
+        {"motor_force": [-30.0, 0.0]},
+        {"axial_force": LOADS[5:]},
+    ],
+    ids=["level", "levels between", "factor", "fewer"],
+)
 def test_growing_a_study_solves_new_cases_only(tmp_path, solved, more):
     run(DATA, tmp_path)
     first = sum(solved().values())
@@ -200,15 +214,24 @@ def test_two_models_as_a_factor_stand_side_by_side(tmp_path):
 
 
 def test_sampled_study_has_the_dimension_case(tmp_path):
-    _, ds, _ = run({"name": "l", "design": "lhs", "samples": 50, "outputs": ["forces"],
-                    "factors": {"axial_force": {"uniform": [20, 50]}}}, tmp_path)  # fmt: skip
+    _, ds, _ = run(
+        {
+            "name": "l",
+            "design": "lhs",
+            "samples": 50,
+            "outputs": ["forces"],
+            "factors": {"axial_force": {"uniform": [20, 50]}},
+        },
+        tmp_path,
+    )
     assert ds.sizes["case"] == 50 and ds["axial_force"].dims == ("case",)
 
 
 def test_table_of_cases(tmp_path):
     (tmp_path / "cases.csv").write_text("axial_force,roller_material\n20,PA6\n30,POM\n")
-    study = parse_study({"name": "t", "design": "table", "table": "cases.csv", "outputs": ["forces"]},
-                        tmp_path / "t.yaml")  # fmt: skip
+    study = parse_study(
+        {"name": "t", "design": "table", "table": "cases.csv", "outputs": ["forces"]}, tmp_path / "t.yaml"
+    )
     plan = run_study(study, tmp_path, solver=fake_solver.solve)
     with xr.open_dataset(plan.folder.gathered) as ds:
         assert list(ds["roller_material"].values) == ["PA6", "POM"]
@@ -283,14 +306,26 @@ def test_numbers_of_a_case_do_not_depend_on_its_neighbours():
                 np.testing.assert_array_equal(part[name].values, whole[name].values[start : start + size], err_msg=name)
 
 
-SAMPLED = {"a": {"uniform": [0.01, 0.5]}, "axial_force": {"expression": "20 + 40 * a"},
-           "friction_coefficient": {"uniform": [0.05, 0.3]},
-           "radial_force": {"values": [-200.0, -150.0, -100.0]}, "motor_force": {"values": [0.0, -10.0]}}  # fmt: skip
+SAMPLED = {
+    "a": {"uniform": [0.01, 0.5]},
+    "axial_force": {"expression": "20 + 40 * a"},
+    "friction_coefficient": {"uniform": [0.05, 0.3]},
+    "radial_force": {"values": [-200.0, -150.0, -100.0]},
+    "motor_force": {"values": [0.0, -10.0]},
+}
 
 
-@pytest.mark.parametrize(("design", "small", "large"), [
-    ("lhs", 30, 60), ("lhs", 30, 47), ("sobol", 30, 50), ("saltelli", 8, 16), ("morris", 5, 9), ("nested", 10, 15),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("design", "small", "large"),
+    [
+        ("lhs", 30, 60),
+        ("lhs", 30, 47),
+        ("sobol", 30, 50),
+        ("saltelli", 8, 16),
+        ("morris", 5, 9),
+        ("nested", 10, 15),
+    ],
+)
 def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, solved, design, small, large):
     data = {"name": "g", "design": design, "outputs": ["forces"], "factors": SAMPLED, "chunk_size": 20}
     run(data | {"samples": small}, tmp_path)

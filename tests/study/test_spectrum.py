@@ -36,10 +36,12 @@ def stand_in(regimes=None, stress=None):
         force = np.array([-case.radial_force for case in cases])
         peaks = force[:, None, None] * np.array([2.0, 3.0])[None, :, None] * np.ones((1, 1, 2))
         return xr.Dataset(
-            {"peak_stress": (("case", "contact", "body"), peaks if stress is None else np.array(stress)),
-             "regime": ("case", np.zeros(len(cases), np.int8) if regimes is None else np.array(regimes))},
+            {
+                "peak_stress": (("case", "contact", "body"), peaks if stress is None else np.array(stress)),
+                "regime": ("case", np.zeros(len(cases), np.int8) if regimes is None else np.array(regimes)),
+            },
             coords={"contact": [1, 2], "body": ["roller", "guide"]},
-        )  # fmt: skip
+        )
 
     return solve
 
@@ -173,8 +175,9 @@ def test_blocks_from_a_table_are_those_of_the_list(tmp_path):
     same = spectrum(
         {"name": "a", "distance": 100, "radial_force": -50, "friction_coefficient": 0.2, "guide_overrollings": 10},
         {"name": "b", "distance": 1000, "radial_force": -80, "friction_coefficient": "upper"},
-        name="spec", base={"guide_overrollings_per_hour": 60},
-    )  # fmt: skip
+        name="spec",
+        base={"guide_overrollings_per_hour": 60},
+    )
     assert spec.name == "spec"
     assert [b.distance for b in spec.blocks] == [b.distance for b in same.blocks]
     assert np.array_equal(overrollings_per_shift(spec), overrollings_per_shift(same))

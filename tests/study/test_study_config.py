@@ -33,8 +33,12 @@ def test_default_study_is_the_full_grid_of_5400_cases():
 
 
 def test_grid_has_one_row_a_combination_the_last_factor_fastest():
-    study = parse_study({"name": "g", "factors": {"axial_force": {"values": [1, 2]},
-                                                   "friction_coefficient": {"linspace": [0.1, 0.3, 3]}}})  # fmt: skip
+    study = parse_study(
+        {
+            "name": "g",
+            "factors": {"axial_force": {"values": [1, 2]}, "friction_coefficient": {"linspace": [0.1, 0.3, 3]}},
+        }
+    )
     design = study.design()
     np.testing.assert_allclose(design["axial_force"], [1, 1, 1, 2, 2, 2])
     np.testing.assert_allclose(design["friction_coefficient"], [0.1, 0.2, 0.3] * 2)
@@ -49,53 +53,71 @@ def test_design_is_what_solve_takes_and_keeps_infinity():
 
 
 def test_material_pairs_and_friction_by_pair_are_resolved():
-    study = parse_study({"name": "g", "base": {"friction_coefficient": None},
-                         "factors": {"material_pair": {"values": [PAIR, [PAIR[0], PAIR[0]]]}}})  # fmt: skip
+    study = parse_study(
+        {
+            "name": "g",
+            "base": {"friction_coefficient": None},
+            "factors": {"material_pair": {"values": [PAIR, [PAIR[0], PAIR[0]]]}},
+        }
+    )
     design = study.design()
     assert list(design["guide_material"].values) == ["PA6", PAIR[0]]
     np.testing.assert_allclose(design["friction_coefficient"], [0.22, 0.19])
 
 
-@pytest.mark.parametrize(("data", "words"), [
-    ({"nam": "x"}, ["nam", "name"]),
-    ({}, ["name"]),
-    ({"name": "../up"}, ["name", "../up"]),
-    ({"name": "a/b"}, ["name"]),
-    ({"name": "a", "bas": {}}, ["bas", "base"]),
-    ({"name": "a", "base": {"friction_coeficient": 0.1}}, ["friction_coeficient", "friction_coefficient"]),
-    ({"name": "a", "factors": {"axial_forc": {"values": [1]}}}, ["axial_forc", "axial_force"]),
-    ({"name": "a", "factors": {"axial_force": {"values": []}}}, ["factors.axial_force", "not empty"]),
-    ({"name": "a", "factors": {"axial_force": {"values": [1, 1]}}}, ["axial_force", "once"]),
-    ({"name": "a", "factors": {"axial_force": {"linspce": [1, 2, 3]}}}, ["linspce", "linspace"]),
-    ({"name": "a", "factors": {"axial_force": {"uniform": [1, 2]}}}, ["axial_force", "grid"]),
-    ({"name": "a", "factors": {"friction_coefficient": {"values": [0.1, -0.1]}}}, ["friction_coefficient", "-0.1"]),
-    ({"name": "a", "base": {"friction_coefficient": math.nan}}, ["friction_coefficient", "nan"]),
-    ({"name": "a", "base": {"radial_force": 10}}, ["radial_force", "10"]),
-    ({"name": "a", "hertz": "published", "normal": "halfspace"}, ["hertz", "published", "normal: halfspace"]),
-    ({"name": "a", "hertz": "published", "normal": ["hertz", "halfspace"]}, ["hertz", "normal: halfspace"]),
-    ({"name": "a", "base": {"roller_profile_radius": -5}}, ["base.roller_profile_radius", "conform"]),
-    ({"name": "a", "factors": {"roller_profile_radius": {"values": [-7, -5]}}},
-     ["factors.roller_profile_radius", "-5", "conform"]),
-    ({"name": "a", "design": "lhs", "factors": {"roller_profile_radius": {"uniform": [-7, -5]}}}, ["-5"]),
-    ({"name": "a", "base": {"contact_angle": 90}}, ["contact_angle", "90"]),
-    ({"name": "a", "base": {"roller_material": "PA7"}}, ["PA7", "PA6"]),
-    ({"name": "a", "factors": {"material_pair": {"values": [["PA6"]]}}}, ["material_pair", "pair"]),
-    ({"name": "a", "factors": {"material_pair": {"values": [PAIR]}}, "base": {"roller_material": "PA6"}}, ["not both"]),
-    ({"name": "a", "base": {"axial_force": 1}, "factors": {"axial_force": {"values": [1, 2]}}}, ["axial_force"]),
-    ({"name": "a", "contact_model": "slidng"}, ["slidng", "sliding"]),
-    ({"name": "a", "contact_model": []}, ["contact_model"]),
-    ({"name": "a", "outputs": ["force"]}, ["force", "forces"]),
-    ({"name": "a", "outputs": []}, ["outputs"]),
-    ({"name": "a", "accuracy": 2}, ["accuracy", "2"]),
-    ({"name": "a", "accuracy": "standart"}, ["standart", "standard"]),
-    ({"name": "a", "design": "gird"}, ["gird", "grid"]),
-    ({"name": "a", "design": "table"}, ["table", "CSV"]),
-    ({"name": "a", "chunk_size": 0}, ["chunk_size", "0"]),
-    ({"name": "a", "seed": -1}, ["seed", "-1"]),
-    ({"name": "a", "factors": [1]}, ["factors"]),
-    ({"name": "a", "factors": {"axial_force": {"linspace": [0, 1, 10**8]}, "velocity": {"linspace": [1, 2, 10**8]}}},
-     ["linspace"]),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        ({"nam": "x"}, ["nam", "name"]),
+        ({}, ["name"]),
+        ({"name": "../up"}, ["name", "../up"]),
+        ({"name": "a/b"}, ["name"]),
+        ({"name": "a", "bas": {}}, ["bas", "base"]),
+        ({"name": "a", "base": {"friction_coeficient": 0.1}}, ["friction_coeficient", "friction_coefficient"]),
+        ({"name": "a", "factors": {"axial_forc": {"values": [1]}}}, ["axial_forc", "axial_force"]),
+        ({"name": "a", "factors": {"axial_force": {"values": []}}}, ["factors.axial_force", "not empty"]),
+        ({"name": "a", "factors": {"axial_force": {"values": [1, 1]}}}, ["axial_force", "once"]),
+        ({"name": "a", "factors": {"axial_force": {"linspce": [1, 2, 3]}}}, ["linspce", "linspace"]),
+        ({"name": "a", "factors": {"axial_force": {"uniform": [1, 2]}}}, ["axial_force", "grid"]),
+        ({"name": "a", "factors": {"friction_coefficient": {"values": [0.1, -0.1]}}}, ["friction_coefficient", "-0.1"]),
+        ({"name": "a", "base": {"friction_coefficient": math.nan}}, ["friction_coefficient", "nan"]),
+        ({"name": "a", "base": {"radial_force": 10}}, ["radial_force", "10"]),
+        ({"name": "a", "hertz": "published", "normal": "halfspace"}, ["hertz", "published", "normal: halfspace"]),
+        ({"name": "a", "hertz": "published", "normal": ["hertz", "halfspace"]}, ["hertz", "normal: halfspace"]),
+        ({"name": "a", "base": {"roller_profile_radius": -5}}, ["base.roller_profile_radius", "conform"]),
+        (
+            {"name": "a", "factors": {"roller_profile_radius": {"values": [-7, -5]}}},
+            ["factors.roller_profile_radius", "-5", "conform"],
+        ),
+        ({"name": "a", "design": "lhs", "factors": {"roller_profile_radius": {"uniform": [-7, -5]}}}, ["-5"]),
+        ({"name": "a", "base": {"contact_angle": 90}}, ["contact_angle", "90"]),
+        ({"name": "a", "base": {"roller_material": "PA7"}}, ["PA7", "PA6"]),
+        ({"name": "a", "factors": {"material_pair": {"values": [["PA6"]]}}}, ["material_pair", "pair"]),
+        (
+            {"name": "a", "factors": {"material_pair": {"values": [PAIR]}}, "base": {"roller_material": "PA6"}},
+            ["not both"],
+        ),
+        ({"name": "a", "base": {"axial_force": 1}, "factors": {"axial_force": {"values": [1, 2]}}}, ["axial_force"]),
+        ({"name": "a", "contact_model": "slidng"}, ["slidng", "sliding"]),
+        ({"name": "a", "contact_model": []}, ["contact_model"]),
+        ({"name": "a", "outputs": ["force"]}, ["force", "forces"]),
+        ({"name": "a", "outputs": []}, ["outputs"]),
+        ({"name": "a", "accuracy": 2}, ["accuracy", "2"]),
+        ({"name": "a", "accuracy": "standart"}, ["standart", "standard"]),
+        ({"name": "a", "design": "gird"}, ["gird", "grid"]),
+        ({"name": "a", "design": "table"}, ["table", "CSV"]),
+        ({"name": "a", "chunk_size": 0}, ["chunk_size", "0"]),
+        ({"name": "a", "seed": -1}, ["seed", "-1"]),
+        ({"name": "a", "factors": [1]}, ["factors"]),
+        (
+            {
+                "name": "a",
+                "factors": {"axial_force": {"linspace": [0, 1, 10**8]}, "velocity": {"linspace": [1, 2, 10**8]}},
+            },
+            ["linspace"],
+        ),
+    ],
+)
 def test_wrong_study_is_refused_with_field_value_and_remedy(data, words):
     with pytest.raises(InputError) as error:
         parse_study(data).design()
@@ -103,8 +125,21 @@ def test_wrong_study_is_refused_with_field_value_and_remedy(data, words):
         assert word in str(error.value)
 
 
-@pytest.mark.parametrize("text", ["a: [", "- 1", "", "a: 1\na: 2", "&a [*a]", "a: !!python/object:os.system x",
-                                  "\0", "a: &b {c: *b}", "? [1]\n: 2", "[" * 5000])  # fmt: skip
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: [",
+        "- 1",
+        "",
+        "a: 1\na: 2",
+        "&a [*a]",
+        "a: !!python/object:os.system x",
+        "\0",
+        "a: &b {c: *b}",
+        "? [1]\n: 2",
+        "[" * 5000,
+    ],
+)
 def test_text_that_is_no_yaml_mapping_is_refused(text):
     with pytest.raises(InputError):
         parse_mapping(text, "study file")
@@ -126,11 +161,26 @@ def test_any_text_is_a_mapping_or_a_clean_error(text):
         pass
 
 
-_scalars = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8) | st.sampled_from(
-    ["axial_force", "values", "grid", "lhs", "PA6", "typical", "inf"])  # fmt: skip
-_values = st.recursive(_scalars, lambda inner: st.lists(inner, max_size=3) | st.dictionaries(
-    st.sampled_from(["values", "linspace", "uniform", "normal", "expression", "scatter"]) | st.text(max_size=4),
-    inner, max_size=2), max_leaves=6)  # fmt: skip
+_scalars = (
+    st.none()
+    | st.booleans()
+    | st.integers()
+    | st.floats()
+    | st.text(max_size=8)
+    | st.sampled_from(["axial_force", "values", "grid", "lhs", "PA6", "typical", "inf"])
+)
+_values = st.recursive(
+    _scalars,
+    lambda inner: (
+        st.lists(inner, max_size=3)
+        | st.dictionaries(
+            st.sampled_from(["values", "linspace", "uniform", "normal", "expression", "scatter"]) | st.text(max_size=4),
+            inner,
+            max_size=2,
+        )
+    ),
+    max_leaves=6,
+)
 _keys = st.sampled_from([*parse_study({"name": "a"}).config.model_dump(), "nam"])
 _names = st.sampled_from(["axial_force", "friction_coefficient", "material_pair", "roller_material", "u"])
 

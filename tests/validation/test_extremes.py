@@ -48,4 +48,7 @@ def test_random_extremes_are_finite_or_flagged_and_quiet(seed):
 
 
 def test_the_page_is_what_its_data_say():
-    assert subprocess.run([sys.executable, "-m", "validation.adopt.extremes", "--check"], cwd=ROOT, check=False).returncode == 0
+    assert (
+        subprocess.run([sys.executable, "-m", "validation.adopt.extremes", "--check"], cwd=ROOT, check=False).returncode
+        == 0
+    )

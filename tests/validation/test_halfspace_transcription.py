@@ -1,6 +1,5 @@
 """The benchmark's transcription of eqs. (1)-(6) computes the package's field: the ratio compares like with like."""
 
-
 import numpy as np
 import pytest
 

@@ -58,8 +58,10 @@ def test_published_options_give_the_published_forces(told):
 
 def test_kalker_is_contact_within_one_per_cent_where_sliding_is_forty_off(told):
     contact = paper.reference()["contact"]["driven"]
-    exact, rough = (np.array(told["ours"]["driven"][m]["lateral_force"]) / contact["lateral_force"] - 1
-                    for m in ("kalker", "sliding"))  # fmt: skip
+    exact, rough = (
+        np.array(told["ours"]["driven"][m]["lateral_force"]) / contact["lateral_force"] - 1
+        for m in ("kalker", "sliding")
+    )
     assert np.abs(exact).max() < 0.01
     assert rough.max() > 0.4
 

@@ -160,8 +160,9 @@ def test_measurement_runs_from_parts_to_page(tmp_path, monkeypatch):
         tradeoff.write_part(name, str(sizes), str(tmp_path / f"{name}.nc"))
     tradeoff.write_gathered([str(tmp_path / f"{n}.nc") for n in names], str(sizes), str(tmp_path / "tradeoff.nc"))
     out = tmp_path / "out"
-    tradeoff_page.write_results(*(str(p) for p in (tmp_path / "tradeoff.nc", out / "tradeoff.json", out / "figures",
-                                                   out / "tradeoff.html")))  # fmt: skip
+    tradeoff_page.write_results(
+        *(str(p) for p in (tmp_path / "tradeoff.nc", out / "tradeoff.json", out / "figures", out / "tradeoff.html"))
+    )
     found = json.loads((out / "tradeoff.json").read_text(encoding="utf-8"))
     orders = {(o["stage"], o["method"], o["quantity"]): o["order"] for o in found["orders"]}
     assert 1.0 < orders["tractions", "grid", "friction_force"] < 3.0
@@ -178,11 +179,21 @@ def test_measurement_runs_from_parts_to_page(tmp_path, monkeypatch):
 
 def test_forces_of_patches_that_reach_the_equator_converge():
     """Beyond the equator of the guide the slip is constant: the integrals are cut there, and converge as elsewhere."""
-    case = tr.Case(axis_distance=20, guide_profile_radius=2.1, roller_profile_radius=-2.14, contact_angle=75,
-                   radial_force=-25, axial_force=2, motor_force=0, friction_coefficient=0.85,
-                   roller_material="PA6", guide_material="PA6")  # fmt: skip
-    rough, fine = (tr.solve(case, outputs=("forces", "contact"), accuracy=tradeoff_settings.accuracy_of(n))
-                   for n in (12, 40))  # fmt: skip
+    case = tr.Case(
+        axis_distance=20,
+        guide_profile_radius=2.1,
+        roller_profile_radius=-2.14,
+        contact_angle=75,
+        radial_force=-25,
+        axial_force=2,
+        motor_force=0,
+        friction_coefficient=0.85,
+        roller_material="PA6",
+        guide_material="PA6",
+    )
+    rough, fine = (
+        tr.solve(case, outputs=("forces", "contact"), accuracy=tradeoff_settings.accuracy_of(n)) for n in (12, 40)
+    )
     equator = 2.1 * np.tan(np.radians(90 - 75) / 2)
     assert (fine.semi_axis_lateral > equator).all()
     np.testing.assert_allclose(rough.normal_force, fine.normal_force, rtol=1e-6)

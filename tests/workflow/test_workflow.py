@@ -48,8 +48,9 @@ def snakemake(place, *words, code=0):
 
 def started(told):
     """Names of the rules that were run."""
-    return sorted(line.split("rule ")[1].rstrip(":") for line in told.splitlines()
-                  if line.startswith(("rule ", "localrule ")))  # fmt: skip
+    return sorted(
+        line.split("rule ")[1].rstrip(":") for line in told.splitlines() if line.startswith(("rule ", "localrule "))
+    )
 
 
 def test_study_to_report_then_nothing_and_a_changed_study_only_what_depends_on_it(place):
@@ -70,10 +71,13 @@ def test_study_to_report_then_nothing_and_a_changed_study_only_what_depends_on_i
         assert ds.sizes["axial_force"] == 11 and int(ds["converged"].sum()) == 22
 
 
-@pytest.mark.parametrize(("words", "named"), [
-    (["--config", "stduy=x.yaml"], "study"),
-    (["--config", "study=nowhere.yaml"], "nowhere.yaml"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (["--config", "stduy=x.yaml"], "study"),
+        (["--config", "study=nowhere.yaml"], "nowhere.yaml"),
+    ],
+)
 def test_wrong_configuration_is_told_without_a_traceback(place, words, named):
     write_study(place)
     told = snakemake(place, "-n", *words, code=1)
@@ -83,8 +87,9 @@ def test_wrong_configuration_is_told_without_a_traceback(place, words, named):
 def test_killed_workflow_goes_on_without_unlocking_and_solves_no_finished_chunk_again(place):
     write_study(place, levels=200, outputs="forces, peak_stress", size=60)
     target = "results/tiny/study.nc"
-    process = subprocess.Popen(command(target), cwd=place, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                               start_new_session=True)  # fmt: skip
+    process = subprocess.Popen(
+        command(target), cwd=place, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+    )
     chunks = place / "results" / "tiny" / "chunks"
     for _ in range(900):
         if len(list(chunks.glob("*.nc"))) >= 2 or process.poll() is not None:

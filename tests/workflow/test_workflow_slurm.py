@@ -51,10 +51,22 @@ def place(tmp_path):
 
 
 def submit(place, env, results):
-    words = ["snakemake", "--profile", "profiles/slurm", "--nocolor", "--default-resources", "mem_mb=500", "runtime=5",
-             "--config", f"results={results}", "--", f"{results}/tiny/study.nc"]  # fmt: skip
-    return subprocess.Popen(words, cwd=place, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                            start_new_session=True)  # fmt: skip
+    words = [
+        "snakemake",
+        "--profile",
+        "profiles/slurm",
+        "--nocolor",
+        "--default-resources",
+        "mem_mb=500",
+        "runtime=5",
+        "--config",
+        f"results={results}",
+        "--",
+        f"{results}/tiny/study.nc",
+    ]
+    return subprocess.Popen(
+        words, cwd=place, env=env, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True
+    )
 
 
 def finish(process, seconds=240):
@@ -76,8 +88,14 @@ def numbers(place, results):
 
 
 def test_cluster_gives_the_numbers_of_a_local_run_though_a_worker_is_killed(slurm, place):
-    subprocess.run(["snakemake", "--cores", "2", "--config", "results=local", "--", "local/tiny/study.nc"], cwd=place,
-                   env=slurm, check=True, capture_output=True, timeout=240)  # fmt: skip
+    subprocess.run(
+        ["snakemake", "--cores", "2", "--config", "results=local", "--", "local/tiny/study.nc"],
+        cwd=place,
+        env=slurm,
+        check=True,
+        capture_output=True,
+        timeout=240,
+    )
     process = submit(place, slurm, "results")
     victim = None
     for _ in range(600):

@@ -35,8 +35,11 @@ def course(estimate: Callable[[int], Estimates], at: Sequence[int] | np.ndarray,
     name_course, name_course_low, name_course_high, each shape (m, k).
     """
     rows = [estimate(int(size)) for size in at]
-    return {f"{name}_course{end}": np.stack([row[name + end] for row in rows])
-            for name in names for end in ("", "_low", "_high")}  # fmt: skip
+    return {
+        f"{name}_course{end}": np.stack([row[name + end] for row in rows])
+        for name in names
+        for end in ("", "_low", "_high")
+    }
 
 
 def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:

@@ -88,8 +88,9 @@ def _kernels(count: int, smooth: bool) -> tuple[np.ndarray, ...]:
     return tuple(np.exp(-0.5 * ((at[:, None] - at) / width) ** 2) for width in WIDTHS)
 
 
-def _told(counts: np.ndarray, along_x: tuple[np.ndarray, ...],
-          along_y: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+def _told(
+    counts: np.ndarray, along_x: tuple[np.ndarray, ...], along_y: tuple[np.ndarray, ...]
+) -> tuple[np.ndarray, np.ndarray]:
     """What rules of each width tell of rows they were not made from, and of their own; counts (parts, x, y)."""
     whole, size = counts.sum(axis=0), counts.sum(axis=(1, 2))[:, None, None]
     rows = whole.sum()

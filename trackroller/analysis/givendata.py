@@ -16,9 +16,11 @@ MIN_ROWS = 30
 PAWN_BINS = 10
 GROUPS = 20  # of the grouped jackknife
 MEASURES = {
-    "first": ("first", "first_low", "first_high"), "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
-    "pawn": ("pawn", "pawn_low", "pawn_high", "pawn_noise"), "prcc": ("prcc", "prcc_low", "prcc_high"),
-}  # fmt: skip
+    "first": ("first", "first_low", "first_high"),
+    "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
+    "pawn": ("pawn", "pawn_low", "pawn_high", "pawn_noise"),
+    "prcc": ("prcc", "prcc_low", "prcc_high"),
+}
 
 
 def bins(values: np.ndarray, count: int, ordered: bool = True) -> np.ndarray:
@@ -33,9 +35,13 @@ def bins(values: np.ndarray, count: int, ordered: bool = True) -> np.ndarray:
 
 
 def given_data(
-    y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0,
-    measures: Iterable[str] = tuple(MEASURES), resamples: int = 300,
-) -> Estimates:  # fmt: skip
+    y: np.ndarray,
+    unit: np.ndarray,
+    ordered: np.ndarray,
+    seed: int = 0,
+    measures: Iterable[str] = tuple(MEASURES),
+    resamples: int = 300,
+) -> Estimates:
     """Given-data measures of one output.
 
     Parameters
@@ -147,8 +153,9 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
     return value, float(np.percentile(drawn, 95) * shrink)
 
 
-def pawn_interval(y: np.ndarray, group: np.ndarray, value: float, seed: int = 0, resamples: int = 300,
-                  rows: int = 2048) -> tuple[float, float]:  # fmt: skip
+def pawn_interval(
+    y: np.ndarray, group: np.ndarray, value: float, seed: int = 0, resamples: int = 300, rows: int = 2048
+) -> tuple[float, float]:
     """95 % interval of a PAWN index: the bootstrap's own spread about it.
 
     Long samples are thinned to `rows` and the spread, which falls as one over the root of the rows, is scaled.

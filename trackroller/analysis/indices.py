@@ -156,9 +156,15 @@ def effects(y: np.ndarray, coded: np.ndarray, listed: np.ndarray, quadratic: boo
     good = np.isfinite(y)
     count = coded.shape[1]
     nan = np.full(count, np.nan)
-    out: Estimates = {"effect": nan, "effect_low": nan, "effect_high": nan, "curvature": nan,
-                      "interaction": np.full((count, count), np.nan), "r_squared": np.array(np.nan),
-                      "rows_used": np.array(good.sum())}  # fmt: skip
+    out: Estimates = {
+        "effect": nan,
+        "effect_low": nan,
+        "effect_high": nan,
+        "curvature": nan,
+        "interaction": np.full((count, count), np.nan),
+        "r_squared": np.array(np.nan),
+        "rows_used": np.array(good.sum()),
+    }
     names, matrix = _terms(coded[good], listed, quadratic)
     if quadratic and np.linalg.matrix_rank(matrix) < matrix.shape[1]:
         names, matrix = _terms(coded[good], listed, False)

@@ -37,8 +37,10 @@ def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
     left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
     if not left:
         return f"{text}; no row left out for its regime"
-    return (f"{text}; {' and '.join(left)} rows left out of every index and never filled in; "
-            "their occurrence is analysed as an output of its own")  # fmt: skip
+    return (
+        f"{text}; {' and '.join(left)} rows left out of every index and never filled in; "
+        "their occurrence is analysed as an output of its own"
+    )
 
 
 def correlated(design: SampledDesign) -> str:
@@ -59,31 +61,43 @@ def correlated(design: SampledDesign) -> str:
 
 _DIMS = {1: ("output", "factor"), 2: ("output", "factor", "factor_2"), 0: ("output",)}
 _WORDS = {
-    "S1": "first-order Sobol index", "ST": "total Sobol index", "S2": "second-order Sobol index",
-    "mu": "mean elementary effect", "mu_star": "mean absolute elementary effect",
-    "sigma": "standard deviation of elementary effects", "effects_used": "elementary effects used",
-    "main_share": "share of variance of main effect", "interaction_share": "share of variance of interaction",
+    "S1": "first-order Sobol index",
+    "ST": "total Sobol index",
+    "S2": "second-order Sobol index",
+    "mu": "mean elementary effect",
+    "mu_star": "mean absolute elementary effect",
+    "sigma": "standard deviation of elementary effects",
+    "effects_used": "elementary effects used",
+    "main_share": "share of variance of main effect",
+    "interaction_share": "share of variance of interaction",
     "higher_share": "share of variance of interactions of three and more factors",
-    "effect": "change over the factor's range", "curvature": "quadratic coefficient, coded",
-    "interaction": "two-factor interaction effect", "r_squared": "share of variance fitted",
+    "effect": "change over the factor's range",
+    "curvature": "quadratic coefficient, coded",
+    "interaction": "two-factor interaction effect",
+    "r_squared": "share of variance fitted",
     "fit_alone": "share of variance alone, by a fitted polynomial",
     "fit_share": "share of variance predicted by the fitted polynomial",
-    "first": "share of variance explained alone, from given data", "pawn": "PAWN index", "delta": "delta index",
-    "pawn_noise": "PAWN index an inert factor stays below", "delta_noise": "delta index an inert factor stays below",
+    "first": "share of variance explained alone, from given data",
+    "pawn": "PAWN index",
+    "delta": "delta index",
+    "pawn_noise": "PAWN index an inert factor stays below",
+    "delta_noise": "delta index an inert factor stays below",
     "prcc": "partial rank correlation coefficient",
-}  # fmt: skip
+}
 
 
 def labelled(design: SampledDesign, columns: list[Output], results: list[Fields], at: np.ndarray) -> xr.Dataset:
     """Results of each output as one data set; `at` holds the sample sizes of the courses."""
-    out = xr.Dataset(coords={
-        "output": np.array([c.name for c in columns], dtype=object),
-        "factor": np.array(list(design.factors), dtype=object),
-        "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
-        "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
-        "scale": ("output", np.array([c.scale for c in columns], dtype=object)),
-        "factor_name": ("factor", np.array([factor_name(n) for n in design.factors], dtype=object)),
-    })  # fmt: skip
+    out = xr.Dataset(
+        coords={
+            "output": np.array([c.name for c in columns], dtype=object),
+            "factor": np.array(list(design.factors), dtype=object),
+            "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
+            "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
+            "scale": ("output", np.array([c.scale for c in columns], dtype=object)),
+            "factor_name": ("factor", np.array([factor_name(n) for n in design.factors], dtype=object)),
+        }
+    )
     for name in results[0]:
         values = np.stack([r[name] for r in results])
         root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")

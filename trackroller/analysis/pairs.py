@@ -67,8 +67,9 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     return out
 
 
-def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray,
-         degrees: tuple[int, int]) -> tuple[np.ndarray, np.ndarray, float] | None:  # fmt: skip
+def _fit(
+    y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, degrees: tuple[int, int]
+) -> tuple[np.ndarray, np.ndarray, float] | None:
     """Columns, the factor or (after the factors) the pair each belongs to, and the predicted share of variance."""
     alone, joint = degrees
     found = [_functions(unit[:, j], bool(ordered[j]), alone) for j in range(unit.shape[1])]

@@ -57,8 +57,9 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.n
     return mask
 
 
-def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[str] = (),
-           keep: Iterable[str] | None = None) -> xr.Dataset:  # fmt: skip
+def pareto(
+    ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[str] = (), keep: Iterable[str] | None = None
+) -> xr.Dataset:
     """Pareto set of a solved study.
 
     Parameters
@@ -103,8 +104,10 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     excluded["an undefined goal"] = int((allowed & ~defined).sum())
     allowed &= defined
     optimal = pareto_mask(table, objectives.values(), allowed)
-    data: dict[str, Any] = {name: ("row", values[0][allowed], {"units": values[1], "long_name": values[2]})
-                            for name, values in columns.items()}  # fmt: skip
+    data: dict[str, Any] = {
+        name: ("row", values[0][allowed], {"units": values[1], "long_name": values[2]})
+        for name, values in columns.items()
+    }
     for name, value in design.columns.items():
         if name not in data and not (model and name == "contact_model"):
             shown = np.array([label(v) for v in value], dtype=object) if value.dtype == object else value
@@ -114,10 +117,14 @@ def pareto(ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[
     factors = [n for n in design.factors if not (model and n == "contact_model")]
     out.attrs = {
         "objectives": ", ".join(f"{n} {d}" for n, d in objectives.items()),
-        "constraints": "; ".join(constraints), "factors": ", ".join(factors), "rows": int(own.sum()), "model": model,
+        "constraints": "; ".join(constraints),
+        "factors": ", ".join(factors),
+        "rows": int(own.sum()),
+        "model": model,
         "excluded": "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing",
-        "not_rolling": int((own & (regime != 0)).sum()), "study": ds.attrs.get("study", ""),
-    }  # fmt: skip
+        "not_rolling": int((own & (regime != 0)).sum()),
+        "study": ds.attrs.get("study", ""),
+    }
     return out
 
 
@@ -150,8 +157,11 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
         found["roller_life_hours"] = "max"
     elif "life_cycles" in ds:
         found["roller_life_cycles"] = "max"
-    for name, variable in (("friction_power", "friction_power"), ("friction_energy", "friction_energy_per_distance"),
-                           ("max_pressure", "max_pressure")):  # fmt: skip
+    for name, variable in (
+        ("friction_power", "friction_power"),
+        ("friction_energy", "friction_energy_per_distance"),
+        ("max_pressure", "max_pressure"),
+    ):
         if variable in ds and len(found) == 1:
             found[name] = "min"
     return found if len(found) == 2 else {}

@@ -42,20 +42,31 @@ def _check_rows(ds: xr.Dataset, design: SampledDesign) -> None:
     dims = case_dims(ds, design.factors)
     rows = int(np.prod([ds.sizes[d] for d in dims])) if dims else 1
     if rows != design.size:
-        raise InputError("study", f"{rows} rows", f"the {design.size} rows of its design {design.method}",
-                         "Gather the study again.")  # fmt: skip
+        raise InputError(
+            "study", f"{rows} rows", f"the {design.size} rows of its design {design.method}", "Gather the study again."
+        )
     for name, factor in design.factors.items():
         if name not in ds.variables or not factor.ordered or ds[name].dtype.kind not in "fiu":
             continue
         if not np.allclose(flat(ds, name, dims), design.columns[name], rtol=1e-6, atol=1e-12):
-            raise InputError("study", name, "the values of its design: same seed, same samplers",
-                             "Rows and study file do not belong together: run the study again.")  # fmt: skip
+            raise InputError(
+                "study",
+                name,
+                "the values of its design: same seed, same samplers",
+                "Rows and study file do not belong together: run the study again.",
+            )
 
 
 def _table_design(ds: xr.Dataset, specs: Mapping[str, Any]) -> SampledDesign:
     """A table's factors are those columns that vary; expressions beside it are not independent."""
-    names = [str(n) for n in ds.variables if ds[n].dims == ("case",) and n not in specs and n != "case"
-             and (n in PARAMETERS or n in ds.coords or ds[n].dtype.kind in "OUST")]  # fmt: skip
+    names = [
+        str(n)
+        for n in ds.variables
+        if ds[n].dims == ("case",)
+        and n not in specs
+        and n != "case"
+        and (n in PARAMETERS or n in ds.coords or ds[n].dtype.kind in "OUST")
+    ]
     columns: dict[str, np.ndarray] = {}
     free: dict[str, Factor] = {}
     for name in names:

@@ -24,8 +24,12 @@ from trackroller.study.outputs import case_dims, default_names, flat, outputs, r
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
 
-def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | None = None,
-               log_life_scatter: float | Mapping[str, np.ndarray] = 0.0) -> xr.Dataset:  # fmt: skip
+def robustness(
+    ds: xr.Dataset,
+    design: SampledDesign,
+    names: Iterable[str] | None = None,
+    log_life_scatter: float | Mapping[str, np.ndarray] = 0.0,
+) -> xr.Dataset:
     """Distribution of every output and probability of each regime at every design point.
 
     Parameters
@@ -72,13 +76,18 @@ def robustness(ds: xr.Dataset, design: SampledDesign, names: Iterable[str] | Non
     for key, value in (("probability", share), ("probability_low", low), ("probability_high", high)):
         out[key] = (("regime", "point"), value, {"units": "1", "long_name": key.replace("_", " ") + " of the regime"})
     out.attrs = {
-        "method": "nested", "rows": int(np.prod(shape)), "inner_samples": shape[1], "interval": "95 %",
-        "outer_factors": ", ".join(design.meta["outer"]), "inner_factors": ", ".join(design.meta["inner"]),
-        "log_life_scatter": _largest(log_life_scatter), "study": ds.attrs.get("study", ""),
+        "method": "nested",
+        "rows": int(np.prod(shape)),
+        "inner_samples": shape[1],
+        "interval": "95 %",
+        "outer_factors": ", ".join(design.meta["outer"]),
+        "inner_factors": ", ".join(design.meta["inner"]),
+        "log_life_scatter": _largest(log_life_scatter),
+        "study": ds.attrs.get("study", ""),
         "treatment": "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
-                     "other case as life 0; the same inner sample at every design point"
-                     + (", the material's own scatter of life in B10" if _largest(log_life_scatter) else ""),
-    }  # fmt: skip
+        "other case as life 0; the same inner sample at every design point"
+        + (", the material's own scatter of life in B10" if _largest(log_life_scatter) else ""),
+    }
     return out
 
 
@@ -139,16 +148,21 @@ def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list) -
         "output": np.array([c.name for c in columns], dtype=object),
         "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
         "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
-        "percentile": np.array(PERCENTILES), "regime": np.array(REGIMES, dtype=object),
-        "point": np.arange(shape[0]), "point_name": ("point", np.array(point, dtype=object)), **outer,
-    }  # fmt: skip
+        "percentile": np.array(PERCENTILES),
+        "regime": np.array(REGIMES, dtype=object),
+        "point": np.arange(shape[0]),
+        "point_name": ("point", np.array(point, dtype=object)),
+        **outer,
+    }
 
 
 def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.ndarray) -> dict[str, np.ndarray]:
     """Statistics of one output, shapes (points, samples), NaN where not usable."""
     points = len(values)
-    out = {k: np.full(points, np.nan) for k in ("mean", "standard_deviation", "used_share",
-                                                 "b10", "b10_low", "b10_high", "b10_safe")}  # fmt: skip
+    out = {
+        k: np.full(points, np.nan)
+        for k in ("mean", "standard_deviation", "used_share", "b10", "b10_low", "b10_high", "b10_safe")
+    }
     out["percentile_value"] = np.full((points, len(PERCENTILES)), np.nan)
     for p in range(points):
         good = values[p][~np.isnan(values[p])]

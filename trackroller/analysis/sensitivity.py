@@ -176,10 +176,16 @@ def analyse_dataset(
     result["take_times"] = ("output", np.array([_times(r, design.method) for r in results]))
     dims = case_dims(ds, design.factors)
     result.attrs = {
-        "method": design.method, "needs": NEEDS[design.method], "rows": design.size,
-        "kept_regimes": ", ".join(keep), "bootstrap_seed": seed, "resamples": how.resamples, "interval": "95 %",
-        "treatment": treatment(regimes(ds, dims), keep) + correlated(design), "study": ds.attrs.get("study", ""),
-    }  # fmt: skip
+        "method": design.method,
+        "needs": NEEDS[design.method],
+        "rows": design.size,
+        "kept_regimes": ", ".join(keep),
+        "bootstrap_seed": seed,
+        "resamples": how.resamples,
+        "interval": "95 %",
+        "treatment": treatment(regimes(ds, dims), keep) + correlated(design),
+        "study": ds.attrs.get("study", ""),
+    }
     return result
 
 
@@ -195,8 +201,13 @@ def _times(out: Fields, method: str) -> float:
     return max(convergence.take_times(low, high, target) for low, high in pairs)
 
 
-def analyse(study_nc: str | Path, out_nc: str | Path, names: Iterable[str] | None = None,
-            keep: Iterable[str] | None = None, natural: Iterable[str] = ()) -> xr.Dataset:  # fmt: skip
+def analyse(
+    study_nc: str | Path,
+    out_nc: str | Path,
+    names: Iterable[str] | None = None,
+    keep: Iterable[str] | None = None,
+    natural: Iterable[str] = (),
+) -> xr.Dataset:
     """Analyse a gathered study file and write the labelled result beside it.
 
     Parameters

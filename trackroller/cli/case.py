@@ -70,10 +70,13 @@ def _json(value: Any) -> Any:
 def print_json(dataset: xr.Dataset) -> None:
     """Print a result as JSON: values, dims and units by name; NaN is null, infinity a text."""
     told = {
-        str(name): {"dims": list(variable.dims), "units": variable.attrs.get("units", "1"),
-                    "value": _json(variable.values.tolist())}
+        str(name): {
+            "dims": list(variable.dims),
+            "units": variable.attrs.get("units", "1"),
+            "value": _json(variable.values.tolist()),
+        }
         for name, variable in dataset.variables.items()
-    }  # fmt: skip
+    }
     told["regime"]["meaning"] = np.array(REGIMES)[dataset["regime"].values].tolist()
     print(json.dumps(told))
 

@@ -11,8 +11,12 @@ import typer
 from trackroller import __version__
 from trackroller.errors import InputError
 
-app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False,
-                  help="Parameter studies of locating-bearing track rollers.")  # fmt: skip
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help="Parameter studies of locating-bearing track rollers.",
+)
 materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 app.add_typer(materials, name="materials")
 

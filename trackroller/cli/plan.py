@@ -41,8 +41,7 @@ def _print_study(path: Path, results: Path) -> None:
     print(f"study     {study.name} ({study.config.design})")
     print(f"cases     {status.total}, {status.done} of them solved already")
     print(f"chunks    {chunks} of up to {chunk} cases")
-    print(f"time      {duration(seconds)} on one core, {duration(seconds / 2)} on two ({told} cases/s: "
-          f"{speed:.3g})")  # fmt: skip
+    print(f"time      {duration(seconds)} on one core, {duration(seconds / 2)} on two ({told} cases/s: {speed:.3g})")
     print(f"disk      about {size(status.total * bytes_a_case(study.config.outputs))}")
 
 

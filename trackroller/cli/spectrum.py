@@ -72,6 +72,8 @@ def _scatter(ds: xr.Dataset, body: str) -> str:
     lives = ds["life_shifts_at_probability"].sel(body=body)
     if bool(lives.isnull().all()):
         return ""
-    said = [f"{_cell(float(lives.sel(probability=p).min(skipna=False)))} until {100 * float(p):g} % have failed"
-            for p in ds["probability"].values]  # fmt: skip
+    said = [
+        f"{_cell(float(lives.sel(probability=p).min(skipna=False)))} until {100 * float(p):g} % have failed"
+        for p in ds["probability"].values
+    ]
     return f" ({', '.join(said)})"

@@ -18,8 +18,13 @@ def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: 
 
     study = load_study(path)
     console = Console(file=sys.stderr, soft_wrap=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-               TextColumn("{task.fields[rate]} cases/s, left"), TimeRemainingColumn())  # fmt: skip
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[rate]} cases/s, left"),
+        TimeRemainingColumn(),
+    )
     with Progress(*columns, console=console, disable=quiet, speed_estimate_period=120) as bar:
         task = bar.add_task(study.name, total=None, rate="-")
         began: dict[str, float] = {}
@@ -34,9 +39,15 @@ def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: 
             spent = max(shown.elapsed or 0.0, 1e-3)
             bar.update(task, rate=f"{(shown.completed - began['done']) / spent:.0f}")
 
-        plan = run_study(study, results, rerun_failed=rerun_failed, scheduler=scheduler, started=started,
-                         tell=lambda line: console.print(line, highlight=False, markup=False),
-                         progress=progress)  # fmt: skip
+        plan = run_study(
+            study,
+            results,
+            rerun_failed=rerun_failed,
+            scheduler=scheduler,
+            started=started,
+            tell=lambda line: console.print(line, highlight=False, markup=False),
+            progress=progress,
+        )
     print(plan.folder.gathered)
 
 
@@ -46,8 +57,10 @@ def print_status(name: str, results: Path) -> None:
 
     study = find_study(name, results)
     status = status_of(study, results)
-    print(f"study     {study.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
-          f"{status.failed} failed")  # fmt: skip
+    print(
+        f"study     {study.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
+        f"{status.failed} failed"
+    )
     if status.missing:
         print(f"time left {duration(status.seconds_left)} on one core")
     else:

@@ -22,8 +22,12 @@ def workflow_study(config: Mapping[str, Any]) -> Study:
         if key not in CONFIG_KEYS:
             raise unknown_name("--config key", str(key), CONFIG_KEYS)
     if not isinstance(config.get("study"), str):
-        raise InputError("study", config.get("study"), "the path of a study file",
-                         "Write it in config/config.yaml or give --config study=config/studies/NAME.yaml.")  # fmt: skip
+        raise InputError(
+            "study",
+            config.get("study"),
+            "the path of a study file",
+            "Write it in config/config.yaml or give --config study=config/studies/NAME.yaml.",
+        )
     return load_study(config["study"])
 
 
@@ -50,8 +54,13 @@ def sources(*parts: str) -> list[str]:
     found: list[Path] = []
     for part in parts:
         path = (root.parent if part.startswith("validation") else root) / part
-        found += sorted(p for p in path.rglob("*") if p.suffix in (".py", ".html", ".css", ".j2")) if path.is_dir() \
-            else [path] if path.is_file() else []  # fmt: skip
+        found += (
+            sorted(p for p in path.rglob("*") if p.suffix in (".py", ".html", ".css", ".j2"))
+            if path.is_dir()
+            else [path]
+            if path.is_file()
+            else []
+        )
     return [str(p) for p in found]
 
 

@@ -188,8 +188,9 @@ def noise_of(u: np.ndarray, height: np.ndarray) -> float:
 
 def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float = 0.0) -> CrossSection:
     """The cross-section cut at `inner` < 0 < `outer` where it reaches so far, its edges rounded with `chamfer`."""
-    return CrossSection(section.height, section.slope, max(section.inner, inner), min(section.outer, outer), chamfer,
-                        section.parabolic)  # fmt: skip
+    return CrossSection(
+        section.height, section.slope, max(section.inner, inner), min(section.outer, outer), chamfer, section.parabolic
+    )
 
 
 @dataclass(frozen=True)

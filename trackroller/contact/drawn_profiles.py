@@ -66,16 +66,24 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
     if told["frame"] == "contact":
         wide = x[-1] - x[0]
         if not NARROWEST < wide / guide_radius < WIDEST:
-            raise ShapeError(body, f"points over {wide:.4g} mm", f"{NARROWEST * guide_radius:.4g} to "
-                             f"{WIDEST * guide_radius:.4g} mm, beside a guide_profile_radius of {guide_radius:g} mm",
-                             "Give x and z in mm.")  # fmt: skip
+            raise ShapeError(
+                body,
+                f"points over {wide:.4g} mm",
+                f"{NARROWEST * guide_radius:.4g} to "
+                f"{WIDEST * guide_radius:.4g} mm, beside a guide_profile_radius of {guide_radius:g} mm",
+                "Give x and z in mm.",
+            )
         return _flat_enough(drawn(x, out * z, noise), body, guide_radius)
     if side == 2 and np.count_nonzero(x <= 0) >= FEWEST:
         x, z = -x[::-1], z[::-1]
     x, z = x[x >= 0], z[x >= 0]
     if x.size < FEWEST:
-        raise ShapeError(body, f"{x.size} points with x >= 0", f"at least {FEWEST} on the side of a contact",
-                         "In frame: section x = 0 is the middle of the guide; see also frame: contact.")  # fmt: skip
+        raise ShapeError(
+            body,
+            f"{x.size} points with x >= 0",
+            f"at least {FEWEST} on the side of a contact",
+            "In frame: section x = 0 is the middle of the guide; see also frame: contact.",
+        )
     nominal = guide_radius * math.sin(alpha)
     u, w = x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
     u, w = _single_valued(u, w)
@@ -83,11 +91,14 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
     # back in the picture, where the nominal geometry has its contact too
     place = apex * math.cos(alpha) + float(np.interp(apex, u, w)) * math.sin(alpha)
     if not nominal / ASTRAY < place < nominal * ASTRAY:
-        raise ShapeError(body, f"a curve that is inclined by the contact angle {place:.4g} mm from the middle",
-                         f"{nominal / ASTRAY:.4g} to {nominal * ASTRAY:.4g} mm: the nominal contact lies "
-                         f"guide_profile_radius sin(contact_angle) = {nominal:.4g} mm from it",
-                         "Give x and z in mm, x = 0 in the middle, and the nominal radius near the drawn one; or use "
-                         "frame: contact.")  # fmt: skip
+        raise ShapeError(
+            body,
+            f"a curve that is inclined by the contact angle {place:.4g} mm from the middle",
+            f"{nominal / ASTRAY:.4g} to {nominal * ASTRAY:.4g} mm: the nominal contact lies "
+            f"guide_profile_radius sin(contact_angle) = {nominal:.4g} mm from it",
+            "Give x and z in mm, x = 0 in the middle, and the nominal radius near the drawn one; or use "
+            "frame: contact.",
+        )
     return _flat_enough(drawn(u - apex, out * w, noise), body, guide_radius)
 
 
@@ -96,10 +107,13 @@ def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSe
     low, high = shape.limits
     if high - low > NARROWEST * guide_radius:
         return shape
-    raise ShapeError(body, f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact",
-                     f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least, beside a "
-                     f"guide_profile_radius of {guide_radius:g} mm",
-                     "Give x and z in mm; smooth what is noise (`smooth`).")  # fmt: skip
+    raise ShapeError(
+        body,
+        f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact",
+        f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least, beside a "
+        f"guide_profile_radius of {guide_radius:g} mm",
+        "Give x and z in mm; smooth what is noise (`smooth`).",
+    )
 
 
 def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -125,8 +139,12 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
         raise _nowhere_parallel(u, w, body, alpha, (noise, values) if noise else None)
     from scipy.optimize import brentq
 
-    roots = np.array([brentq(slope, places[k], places[k + 1]) if values[k] * values[k + 1] < 0
-                      else places[k + (values[k] != 0)] for k in turns])  # fmt: skip
+    roots = np.array(
+        [
+            brentq(slope, places[k], places[k + 1]) if values[k] * values[k + 1] < 0 else places[k + (values[k] != 0)]
+            for k in turns
+        ]
+    )
     square, linear, _ = np.polyfit(u - u.mean(), w, 2)
     apex = u.mean() - 0.5 * linear / square if square != 0 else u.mean()
     return float(roots[np.argmin(np.abs(roots - apex))])
@@ -141,17 +159,32 @@ def _nowhere_parallel(u, w, body: str, alpha: float, smooth: tuple | None = None
     low, high = (round(float(v), 3) + 0.0 for v in (lean.min(), lean.max()))
     wanted = f"one that is somewhere inclined by the contact angle of {angle:.4g} deg"
     if smooth is not None and points.min() <= angle <= points.max():
-        return ShapeError(f"{body}.smooth", smooth[0], f"less: smoothed so, the curve is inclined by {low:.4g} to "
-                          f"{high:.4g} deg only, and {wanted} is needed (the points are)",
-                          "Give the standard deviation of the noise in mm, some 0.001, or 'auto'.")  # fmt: skip
+        return ShapeError(
+            f"{body}.smooth",
+            smooth[0],
+            f"less: smoothed so, the curve is inclined by {low:.4g} to "
+            f"{high:.4g} deg only, and {wanted} is needed (the points are)",
+            "Give the standard deviation of the noise in mm, some 0.001, or 'auto'.",
+        )
     upside_down = points.min() <= -angle <= points.max()
-    remedy = ("It is inclined so the other way round: z counts from the guide towards the roller's axis."
-              if upside_down else "Draw more of it, or use frame: contact.")  # fmt: skip
+    remedy = (
+        "It is inclined so the other way round: z counts from the guide towards the roller's axis."
+        if upside_down
+        else "Draw more of it, or use frame: contact."
+    )
     return ShapeError(body, f"a curve inclined by {low:.4g} to {high:.4g} deg", wanted, remedy)
 
 
-def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alpha: float, rolling_radius: float,
-        guide_curve_radius: float, side: int) -> Gap:  # fmt: skip
+def gap(
+    guide: str,
+    roller: str,
+    guide_radius: float,
+    roller_radius: float,
+    alpha: float,
+    rolling_radius: float,
+    guide_curve_radius: float,
+    side: int,
+) -> Gap:
     """The gap beside contact `side` of profiles in canonical JSON ('': the circle); lengths mm, angle rad.
 
     Beside a parabola the other body, if not drawn, is a parabola too. Raises `ShapeError` for shapes that interlock.
@@ -159,9 +192,13 @@ def gap(guide: str, roller: str, guide_radius: float, roller_radius: float, alph
     if '"parabola"' in guide + roller:
         guide = guide or json.dumps({"parabola": guide_radius})
         roller = roller or json.dumps({"parabola": roller_radius})
-    found = Gap(cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
-                cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
-                alpha, rolling_radius, guide_curve_radius)  # fmt: skip
+    found = Gap(
+        cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
+        cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
+        alpha,
+        rolling_radius,
+        guide_curve_radius,
+    )
     less = " Or smooth less: `smooth` is the noise in mm." if '"smooth"' in guide + roller else ""
     _check_touch(found, "roller_profile" if roller else "guide_profile", guide_radius, less)
     return found
@@ -173,16 +210,19 @@ def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> 
     lateral = found.lateral(x)
     first, depth = float(x[np.argmin(lateral)]), float(-lateral.min())
     if depth > INTERLOCK * guide_radius:
-        raise ShapeError(body, f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward",
-                         "shapes that touch at the nominal contact, give or take what load and wear can close",
-                         "Compare both profiles (and the radii of those not drawn) beside that point."
-                         + more)  # fmt: skip
+        raise ShapeError(
+            body,
+            f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward",
+            "shapes that touch at the nominal contact, give or take what load and wear can close",
+            "Compare both profiles (and the radii of those not drawn) beside that point." + more,
+        )
     if depth > FIRST * guide_radius and abs(first) > ASIDE * guide_radius:
-        raise ShapeError(body, f"shapes that touch {first:.3g} mm outward of the nominal contact, {depth:.3g} mm "
-                         "before they touch there",
-                         f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it: all lever arms rest on it",
-                         "Make the groove wider than the guide there, or mend contact_angle and the nominal "
-                         "radii." + more)  # fmt: skip
+        raise ShapeError(
+            body,
+            f"shapes that touch {first:.3g} mm outward of the nominal contact, {depth:.3g} mm before they touch there",
+            f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it: all lever arms rest on it",
+            "Make the groove wider than the guide there, or mend contact_angle and the nominal radii." + more,
+        )
 
 
 def treats_sides_alike(text: str) -> bool:

@@ -146,8 +146,12 @@ def table(speed, friction) -> FrictionLaw:
     speeds = _list("speed", speed, "slip speeds in mm/s")
     values = _list("friction", friction, "friction coefficients")
     if speeds.size != values.size:
-        _refuse("friction", values.tolist(), f"as many friction coefficients as slip speeds: {values.size} beside the "
-                f"{speeds.size} of speed", "Give one friction coefficient for each slip speed.")  # fmt: skip
+        _refuse(
+            "friction",
+            values.tolist(),
+            f"as many friction coefficients as slip speeds: {values.size} beside the {speeds.size} of speed",
+            "Give one friction coefficient for each slip speed.",
+        )
     if speeds[0] != 0.0 or np.any(np.diff(speeds) <= 0) or not np.all(np.isfinite(speeds)):
         _refuse("speed", speeds.tolist(), "slip speeds in mm/s that rise from 0")
     if not (values[0] > 0 and np.all(values >= 0) and np.all(np.isfinite(values))):

@@ -80,8 +80,10 @@ def _divided(pressure: np.ndarray, times: int) -> np.ndarray:
     """Pressures (N, ...) of elements divided into `times` each, (N times, ...); see `GridPatch.refined`."""
     square = np.pad(pressure**2, [(1, 1)] + [(0, 0)] * (pressure.ndim - 1))
     before, here, after = square[:-2], square[1:-1], square[2:]
-    pieces = [np.sqrt(np.maximum(here + 0.5 * t * (after - before) + 0.5 * t * t * (after - 2 * here + before), 0.0))
-              for t in 0.5 * _centres(times)]  # fmt: skip
+    pieces = [
+        np.sqrt(np.maximum(here + 0.5 * t * (after - before) + 0.5 * t * t * (after - 2 * here + before), 0.0))
+        for t in 0.5 * _centres(times)
+    ]
     parts = np.stack(pieces, axis=1)
     mean = parts.mean(axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -89,9 +89,14 @@ class LinearTheory:
         free = q * chebvander(self.x, self.degree)
         none, edge_none = np.zeros_like(free), np.zeros_like(self.edge)
         edge_free = np.zeros((self.edge.shape[0], self.degree + 1))
-        matrix = np.block([[q * u_xx, q * u_xy, free, none], [q * u_xy, q * u_yy, none, free],
-                           [self.edge, edge_none, edge_free, edge_free],
-                           [edge_none, self.edge, edge_free, edge_free]])  # fmt: skip
+        matrix = np.block(
+            [
+                [q * u_xx, q * u_xy, free, none],
+                [q * u_xy, q * u_yy, none, free],
+                [self.edge, edge_none, edge_free, edge_free],
+                [edge_none, self.edge, edge_free, edge_free],
+            ]
+        )
         x, y, zero = a * self.x, b * self.y, np.zeros_like(self.x)
         edge_zero = np.zeros(2 * self.edge.shape[0])
         # integrals along y of the rigid slips (0, 1), (1, 0), (-y, x)

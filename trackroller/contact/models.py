@@ -72,8 +72,15 @@ class SlidingModel:
         points, falling = self.settings.traction_points, None
         if not self.friction_law.is_constant:
             points, falling = FINER * self.settings.elements, self.friction_law
-        return sliding.tractions(ellipse, slip, friction, spin_model=self.spin_model, points=points, law=falling,
-                                 travel_speed=self.travel[rows])  # fmt: skip
+        return sliding.tractions(
+            ellipse,
+            slip,
+            friction,
+            spin_model=self.spin_model,
+            points=points,
+            law=falling,
+            travel_speed=self.travel[rows],
+        )
 
     def power(self, ellipse, slip, friction, rows):
         nodes = self.settings.force_nodes
@@ -94,8 +101,14 @@ class KalkerModel:
     difference_step = 1e-3
     residual = 1e-7
 
-    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
-                 profile_slip: bool = False) -> None:  # fmt: skip
+    def __init__(
+        self,
+        settings: Accuracy,
+        elastic: Elastic,
+        law: FrictionLaw,
+        travel_speed: np.ndarray,
+        profile_slip: bool = False,
+    ) -> None:
         from trackroller.contact.kalker import KalkerSettings
         from trackroller.contact.kalker.law import KalkerLaw
 
@@ -124,15 +137,22 @@ class FastsimModel:
     difference_step = 1e-3
     residual = 1e-7
 
-    def __init__(self, settings: Accuracy, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
-                 profile_slip: bool = False) -> None:  # fmt: skip
+    def __init__(
+        self,
+        settings: Accuracy,
+        elastic: Elastic,
+        law: FrictionLaw,
+        travel_speed: np.ndarray,
+        profile_slip: bool = False,
+    ) -> None:
         from trackroller.contact import fastsim
 
         self.elastic, self.travel = elastic, travel_speed
         n = settings.elements  # strips and steps in the proportion of the default settings
         self._fastsim = fastsim
-        self.settings = fastsim.FastsimSettings(strips=4 * n // 5, steps=6 * n // 5, points=n, law=law,
-                                                profile_slip=profile_slip)  # fmt: skip
+        self.settings = fastsim.FastsimSettings(
+            strips=4 * n // 5, steps=6 * n // 5, points=n, law=law, profile_slip=profile_slip
+        )
 
     def _solution(self, ellipse, slip, friction, rows):
         from trackroller.contact.linear import LARGEST_RATIO
@@ -141,9 +161,16 @@ class FastsimModel:
         known = np.flatnonzero(np.maximum(a, b) <= most * np.minimum(a, b))
         part = slip.take(known)
         solution = self._fastsim.solve_patch(
-            ellipse.take(known), part.longitudinal, 0.0, part.spin, friction[known], self.elastic.take(rows[known]),
-            self.settings, self.travel[rows[known]], part if self.settings.profile_slip else None,
-        )  # fmt: skip
+            ellipse.take(known),
+            part.longitudinal,
+            0.0,
+            part.spin,
+            friction[known],
+            self.elastic.take(rows[known]),
+            self.settings,
+            self.travel[rows[known]],
+            part if self.settings.profile_slip else None,
+        )
 
         def spread(values):
             full = np.full(len(rows), np.nan)
@@ -167,8 +194,10 @@ class FastsimModel:
         rounder = dataclasses.replace(ellipse, semi_axis_lateral=np.where(known, a, np.clip(a, b / most, b * most)))
         t = self._fastsim.tractions(rounder, slip, friction, self.elastic.take(rows), self.settings, self.travel[rows])
         wrong = ~known[:, None, None]
-        fields = {name: np.where(wrong, np.nan, getattr(t, name))
-                  for name in ("shear_lateral", "shear_rolling", "slip_lateral", "slip_rolling")}  # fmt: skip
+        fields = {
+            name: np.where(wrong, np.nan, getattr(t, name))
+            for name in ("shear_lateral", "shear_rolling", "slip_lateral", "slip_rolling")
+        }
         widened = t.x * (a / rounder.semi_axis_lateral)[:, None]
         return dataclasses.replace(t, x=widened, stick=t.stick & ~wrong, **fields)
 
@@ -181,9 +210,14 @@ class FastsimModel:
 
 
 def contact_model(
-    name: str, settings: Accuracy, elastic: Elastic, spin_model: str = "skewed", law: FrictionLaw | None = None,
-    travel_speed: np.ndarray | float = 1000.0, slip_terms: Collection[str] = (),
-) -> ContactModel:  # fmt: skip
+    name: str,
+    settings: Accuracy,
+    elastic: Elastic,
+    spin_model: str = "skewed",
+    law: FrictionLaw | None = None,
+    travel_speed: np.ndarray | float = 1000.0,
+    slip_terms: Collection[str] = (),
+) -> ContactModel:
     """The model `name` for n rollers.
 
     Parameters

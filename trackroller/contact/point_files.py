@@ -38,8 +38,12 @@ def read_points(name: Any, field: str) -> list[list[float]]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except (UnicodeDecodeError, OSError) as error:
-        raise InputError(field, str(name), f"a readable text file in UTF-8 ({error})",
-                         "Save the points as text: two columns, x and z.") from None  # fmt: skip
+        raise InputError(
+            field,
+            str(name),
+            f"a readable text file in UTF-8 ({error})",
+            "Save the points as text: two columns, x and z.",
+        ) from None
     for number, line in enumerate(text.splitlines(), start=1):
         cells = _cells(line.split("#")[0])
         if not cells:
@@ -48,9 +52,12 @@ def read_points(name: Any, field: str) -> list[list[float]]:
             rows.append([float(cells[0]), float(cells[1])])
         except (ValueError, IndexError):
             if rows or number > HEADINGS:
-                raise InputError(f"{field}, line {number}", line, "two numbers x, z [mm]",
-                                 "Decimal points; decimal commas only between semicolons, tabs or blanks; remarks "
-                                 "after '#'.") from None  # fmt: skip
+                raise InputError(
+                    f"{field}, line {number}",
+                    line,
+                    "two numbers x, z [mm]",
+                    "Decimal points; decimal commas only between semicolons, tabs or blanks; remarks after '#'.",
+                ) from None
     return rows
 
 

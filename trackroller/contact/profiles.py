@@ -62,8 +62,12 @@ def canonical(value: Mapping[str, Any], field: str = "profile") -> dict[str, Any
             raise unknown_name(f"{field} entry", str(key), KEYS)
     forms = [key for key in FORMS if key in value]
     if len(forms) != 1:
-        raise InputError(field, sorted(map(str, value)), "exactly one of " + ", ".join(FORMS),
-                         "Keep the one that describes the cross-section.")  # fmt: skip
+        raise InputError(
+            field,
+            sorted(map(str, value)),
+            "exactly one of " + ", ".join(FORMS),
+            "Keep the one that describes the cross-section.",
+        )
     out = _shape(forms[0], value, field)
     if "points" not in out:
         for key in ("frame", "smooth"):
@@ -101,8 +105,12 @@ def _shape(form: str, value: Mapping[str, Any], field: str) -> dict[str, Any]:
     out: dict[str, Any] = {"points": _points(rows, f"{field}.{form}"), "frame": frame}
     x = [p[0] for p in out["points"]]
     if frame == "contact" and not x[0] < 0 < x[-1]:
-        raise InputError(f"{field}.{form}", [x[0], x[-1]], "points on both sides of the nominal contact x = 0",
-                         "In frame: contact x counts from there; frame: section has x = 0 in the middle.")  # fmt: skip
+        raise InputError(
+            f"{field}.{form}",
+            [x[0], x[-1]],
+            "points on both sides of the nominal contact x = 0",
+            "In frame: contact x counts from there; frame: section has x = 0 in the middle.",
+        )
     smooth = value.get("smooth", 0.0)
     if smooth != "auto" and not (_is_number(smooth) and 0.0 <= float(smooth) < math.inf):
         raise InputError(f"{field}.smooth", smooth, "the standard deviation of the noise >= 0 [mm], or 'auto'")
@@ -142,16 +150,21 @@ def _points(rows: Any, field: str) -> list[list[float]]:
     except (TypeError, ValueError):
         raise InputError(field, rows if len(str(rows)) < 200 else "...", "rows of two numbers x, z [mm]") from None
     if points.ndim != 2 or points.shape[1] != 2 or not FEWEST <= len(points) <= MOST:
-        raise InputError(field, f"an array of shape {points.shape}",
-                         f"{FEWEST} to {MOST} rows of two numbers x, z [mm]")  # fmt: skip
+        raise InputError(
+            field, f"an array of shape {points.shape}", f"{FEWEST} to {MOST} rows of two numbers x, z [mm]"
+        )
     if not np.all(np.isfinite(points)):
         row = int(np.flatnonzero(~np.all(np.isfinite(points), axis=1))[0])
         raise InputError(f"{field}[{row}]", points[row].tolist(), "finite numbers", "Leave out what was not measured.")
     falls = np.flatnonzero(np.diff(points[:, 0]) <= 0)
     if falls.size:
         row = int(falls[0]) + 1
-        raise InputError(f"{field}[{row}]", points[row].tolist(), "x increases from row to row",
-                         "Sort the points by x and keep one of those with the same x.")  # fmt: skip
+        raise InputError(
+            f"{field}[{row}]",
+            points[row].tolist(),
+            "x increases from row to row",
+            "Sort the points by x and keep one of those with the same x.",
+        )
     return points.tolist()
 
 

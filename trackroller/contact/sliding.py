@@ -170,8 +170,15 @@ def _all_patches(first, last, a, b, scale, sine, cosine, radius, shift, model, n
 def _integrals(ellipse: Ellipse, slip: Slip, friction: np.ndarray, spin_model: str, nodes: int) -> np.ndarray:
     n = np.size(friction)
     out = np.empty((4, n))
-    given = (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.max_pressure, slip.sine,
-             slip.cosine, slip.guide_profile_radius, slip.shift)  # fmt: skip
+    given = (
+        ellipse.semi_axis_lateral,
+        ellipse.semi_axis_rolling,
+        friction * ellipse.max_pressure,
+        slip.sine,
+        slip.cosine,
+        slip.guide_profile_radius,
+        slip.shift,
+    )
     columns = [np.ascontiguousarray(np.broadcast_to(c, (n,)), dtype=float) for c in given]
     arguments: Any = (*columns, spin_model_index(spin_model), *clustered_rule(nodes), out)
     share_rows(lambda first, last: _all_patches(first, last, *arguments), n, 64)
@@ -179,9 +186,14 @@ def _integrals(ellipse: Ellipse, slip: Slip, friction: np.ndarray, spin_model: s
 
 
 def resultants(
-    ellipse: Ellipse, slip: Slip, friction: np.ndarray, elastic: Elastic | None = None, *,
-    spin_model: str = "skewed", nodes: int = 16,
-) -> Resultants:  # fmt: skip
+    ellipse: Ellipse,
+    slip: Slip,
+    friction: np.ndarray,
+    elastic: Elastic | None = None,
+    *,
+    spin_model: str = "skewed",
+    nodes: int = 16,
+) -> Resultants:
     """Friction forces and spin moment on the roller in full sliding, eq. (30) integrated.
 
     Parameters
@@ -226,17 +238,34 @@ def shear_directions(a, b, sine, cosine, radius, shift, model, x, y, slip_x, sli
 def slip_field(ellipse: Ellipse, slip: Slip, x: np.ndarray, y: np.ndarray, spin_model: str = "skewed"):
     """Slip of the roller against the guide per travel speed omega r_A [1] at points x, y (n, m) [mm]."""
     slip_x, slip_y = np.empty(x.shape), np.empty(x.shape)
-    shear_directions(ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, slip.sine, slip.cosine,
-                     slip.guide_profile_radius, slip.shift, spin_model_index(spin_model),
-                     np.ascontiguousarray(x), np.ascontiguousarray(y), slip_x, slip_y)  # fmt: skip
+    shear_directions(
+        ellipse.semi_axis_lateral,
+        ellipse.semi_axis_rolling,
+        slip.sine,
+        slip.cosine,
+        slip.guide_profile_radius,
+        slip.shift,
+        spin_model_index(spin_model),
+        np.ascontiguousarray(x),
+        np.ascontiguousarray(y),
+        slip_x,
+        slip_y,
+    )
     r_a = slip.rolling_radius[:, None]
     return slip_x / r_a, slip_y / r_a
 
 
 def tractions(
-    ellipse: Ellipse, slip: Slip, friction: np.ndarray, elastic: Elastic | None = None, *,
-    spin_model: str = "skewed", points: int = 41, law: FrictionLaw | None = None, travel_speed=1.0,
-) -> SurfaceTractions:  # fmt: skip
+    ellipse: Ellipse,
+    slip: Slip,
+    friction: np.ndarray,
+    elastic: Elastic | None = None,
+    *,
+    spin_model: str = "skewed",
+    points: int = 41,
+    law: FrictionLaw | None = None,
+    travel_speed=1.0,
+) -> SurfaceTractions:
     """Pressure, shear and slip on a grid of `points` x `points` over each patch; 0 outside the ellipse.
 
     Under a `law` that depends on the slip speed, at `travel_speed` [mm/s], (n,) or scalar, the points are the centres
@@ -258,8 +287,16 @@ def tractions(
     if law is not None:
         bound = bound * law(speed * np.broadcast_to(travel_speed, (n,))[:, None, None])
     inside = root > 0
-    return SurfaceTractions(x, y, pressure, -bound * slip_x, -bound * slip_y, np.where(inside, slip_x, 0.0),
-                            np.where(inside, slip_y, 0.0), np.zeros(pressure.shape, bool))  # fmt: skip
+    return SurfaceTractions(
+        x,
+        y,
+        pressure,
+        -bound * slip_x,
+        -bound * slip_y,
+        np.where(inside, slip_x, 0.0),
+        np.where(inside, slip_y, 0.0),
+        np.zeros(pressure.shape, bool),
+    )
 
 
 def tractions_full_slip(ellipse: Ellipse, friction: np.ndarray, direction: np.ndarray) -> Resultants:

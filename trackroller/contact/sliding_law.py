@@ -143,19 +143,27 @@ def _one_patch(a, b, sine, cosine, radius, shift, speed, model, knots, factors, 
 
 
 @njit(cache=True, nogil=True)
-def _all_patches(first, last, a, b, scale, sine, cosine, radius, shift, speed, model, knots, factors, nodes, weights,
-                 out):  # fmt: skip
+def _all_patches(
+    first, last, a, b, scale, sine, cosine, radius, shift, speed, model, knots, factors, nodes, weights, out
+):
     for i in range(first, last):
-        _one_patch(a[i], b[i], sine[i], cosine[i], radius[i], shift[i], speed[i], model, knots, factors, nodes,
-                   weights, out[i])  # fmt: skip
+        _one_patch(
+            a[i], b[i], sine[i], cosine[i], radius[i], shift[i], speed[i], model, knots, factors, nodes, weights, out[i]
+        )
         for k in range(4):
             out[i, k] *= scale[i]
 
 
 def integrals(
-    ellipse: Ellipse, slip: Slip, friction: np.ndarray, law: FrictionLaw, travel_speed, *,
-    spin_model: str = "skewed", nodes: int = 16,
-) -> tuple[Resultants, np.ndarray]:  # fmt: skip
+    ellipse: Ellipse,
+    slip: Slip,
+    friction: np.ndarray,
+    law: FrictionLaw,
+    travel_speed,
+    *,
+    spin_model: str = "skewed",
+    nodes: int = 16,
+) -> tuple[Resultants, np.ndarray]:
     """Resultants on the roller [N, N, N mm] and dissipation per angular speed omega [N mm per rad], shape (n,).
 
     Parameters
@@ -169,10 +177,17 @@ def integrals(
     """
     n = np.size(friction)
     out = np.empty((n, 4))
-    given = (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.max_pressure, slip.sine,
-             slip.cosine, slip.guide_profile_radius, slip.shift, travel_speed / slip.rolling_radius)  # fmt: skip
+    given = (
+        ellipse.semi_axis_lateral,
+        ellipse.semi_axis_rolling,
+        friction * ellipse.max_pressure,
+        slip.sine,
+        slip.cosine,
+        slip.guide_profile_radius,
+        slip.shift,
+        travel_speed / slip.rolling_radius,
+    )
     columns = [np.array(np.broadcast_to(c, (n,)), dtype=float, order="C") for c in given]
-    arguments: Any = (*columns, spin_model_index(spin_model), law.speed, law.factor,
-                      *clustered_rule(nodes), out)  # fmt: skip
+    arguments: Any = (*columns, spin_model_index(spin_model), law.speed, law.factor, *clustered_rule(nodes), out)
     share_rows(lambda first, last: _all_patches(first, last, *arguments), n, 32)
     return Resultants(out[:, 0], out[:, 1], out[:, 2]), out[:, 3]

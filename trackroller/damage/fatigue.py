@@ -105,8 +105,12 @@ def line_at_probability(
 
     p = np.asarray(probability, dtype=float)
     if not np.all((p > 0) & (p < 1)):
-        raise InputError("failure_probability", np.ravel(p)[0] if p.size == 1 else p.tolist(),
-                         "it must lie between 0 and 1", "Give 0.1 for 10 %.")  # fmt: skip
+        raise InputError(
+            "failure_probability",
+            np.ravel(p)[0] if p.size == 1 else p.tolist(),
+            "it must lie between 0 and 1",
+            "Give 0.1 for 10 %.",
+        )
     t_n, t_s = scatter_ranges(exponent, scatter_cycles, scatter_stress)
     deviate = ndtri(p) / DECADES
     fall = t_s**deviate
@@ -116,9 +120,12 @@ def line_at_probability(
 
 
 def _line(
-    line: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike], rule: str, probability: ArrayLike,
-    scatter_cycles: float | None, scatter_stress: float | None,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    line: tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike],
+    rule: str,
+    probability: ArrayLike,
+    scatter_cycles: float | None,
+    scatter_stress: float | None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Knee (sigma_D, N_k) at the failure probability and exponent k of a line (R_m, sigma_D, N_Rm, N_k)."""
     if rule not in LIFE_RULES:
         raise unknown_name("life_rule", rule, LIFE_RULES)

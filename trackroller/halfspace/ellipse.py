@@ -188,10 +188,11 @@ def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=0.0) ->
         k1, k2 = pole_y / (pole_x + a), pole_y / (pole_x - a)
     zero = np.zeros_like(a)
     k0, k1, k2 = (
-        (zero, zero, zero), (pole_y, zero, zero), (zero, np.where(inside, k1, 0.0), np.where(inside, k2, 0.0))
-    )[spin_model]  # fmt: skip
-    columns = (a, b, friction, slip.sine, slip.cosine, slip.guide_profile_radius, shift, fixed,
-               pole_x, k0, k1, k2)  # fmt: skip
+        (zero, zero, zero),
+        (pole_y, zero, zero),
+        (zero, np.where(inside, k1, 0.0), np.where(inside, k2, 0.0)),
+    )[spin_model]
+    columns = (a, b, friction, slip.sine, slip.cosine, slip.guide_profile_radius, shift, fixed, pole_x, k0, k1, k2)
     for j, column in enumerate(columns):
         rows[:, j] = column
     return rows

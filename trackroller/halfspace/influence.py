@@ -131,8 +131,9 @@ def stress_parts(loads: CornerLoads, points: Array) -> Array:
     """Stress of `loads` at points (n, 3) [mm] as (n, 2, 6): sigma = [:, 0] + nu [:, 1] [MPa]."""
     out = np.zeros((points.shape[0], 12))
     kind = 2 if loads.bilinear else 1
-    sum_points(points / loads.length, loads.corners, loads.near, loads.nodes, loads.far, loads.box, loads.reach,
-               kind, out)  # fmt: skip
+    sum_points(
+        points / loads.length, loads.corners, loads.near, loads.nodes, loads.far, loads.box, loads.reach, kind, out
+    )
     return out.reshape(-1, 2, 6)
 
 

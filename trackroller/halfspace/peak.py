@@ -221,8 +221,16 @@ def _search(patches: _Patches, rules: tuple, settings: PeakSettings, smallest: f
     values = patches.scan(points, scan_rule)
     chosen = np.stack([best_seeds(points, values[:, :, body], count, APART[slender]) for body in (0, 1)], axis=1)
     of, body, _ = (index.ravel() for index in np.indices((n, 2, count)))
-    climbs = _Climbs(patches, of, body, points[of, chosen.ravel()], np.full(of.size, -1.0), np.zeros(of.size),
-                     0.12 * PROPORTIONS * np.ones((of.size, 3)), np.zeros((of.size, 2)))  # fmt: skip
+    climbs = _Climbs(
+        patches,
+        of,
+        body,
+        points[of, chosen.ravel()],
+        np.full(of.size, -1.0),
+        np.zeros(of.size),
+        0.12 * PROPORTIONS * np.ones((of.size, 3)),
+        np.zeros((of.size, 2)),
+    )
     climbs.along[:] = along_turn(patches.rows[of], climbs.u)
     rows = np.flatnonzero(chosen.ravel() >= 0)
     climbs.f[rows] = climbs.values(rows, climbs.u[rows], climb_rule, climb_rule)

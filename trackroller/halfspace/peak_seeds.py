@@ -18,8 +18,13 @@ def _scan_points() -> np.ndarray:
     for rho, count in ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)):
         angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
         rows += [(rho * math.cos(t), rho * math.sin(t), 0.0) for t in angles]
-    for depth, rings in ((0.12, ((0.4, 6), (0.8, 6))), (0.2, ((0.95, 8),)), (0.3, ((0.4, 6), (0.8, 6))),
-                         (0.5, ((0.45, 6),)), (0.75, ((0.45, 4),))):  # fmt: skip
+    for depth, rings in (
+        (0.12, ((0.4, 6), (0.8, 6))),
+        (0.2, ((0.95, 8),)),
+        (0.3, ((0.4, 6), (0.8, 6))),
+        (0.5, ((0.45, 6),)),
+        (0.75, ((0.45, 4),)),
+    ):
         rows.append((0.0, 0.0, depth))
         for rho, count in rings:
             angles = 2 * np.pi * (np.arange(count) + 0.5 * (rho == 0.4)) / count

@@ -49,18 +49,43 @@ Element = Any  # sympy's PolyElement has no useful static type
 
 _DERIVATIVES: dict[str, dict[Element, Element]] = {
     "x": {
-        x: _RING(1), R: x * iR, iR: -x * iR**3, iS: -x * iR * iS**2, iP: -2 * x * iP**2,
-        Lx: iR, Ly: -x * y * iR * iP, Lz: x * iR * iS, Ax: -y * iR * iS + y * z * iR * iP, Ay: y * iR * iS,
+        x: _RING(1),
+        R: x * iR,
+        iR: -x * iR**3,
+        iS: -x * iR * iS**2,
+        iP: -2 * x * iP**2,
+        Lx: iR,
+        Ly: -x * y * iR * iP,
+        Lz: x * iR * iS,
+        Ax: -y * iR * iS + y * z * iR * iP,
+        Ay: y * iR * iS,
     },
     "y": {
-        y: _RING(1), R: y * iR, iR: -y * iR**3, iS: -y * iR * iS**2, iQ: -2 * y * iQ**2,
-        Ly: iR, Lx: -x * y * iR * iQ, Lz: y * iR * iS, Ay: -x * iR * iS + x * z * iR * iQ, Ax: x * iR * iS,
+        y: _RING(1),
+        R: y * iR,
+        iR: -y * iR**3,
+        iS: -y * iR * iS**2,
+        iQ: -2 * y * iQ**2,
+        Ly: iR,
+        Lx: -x * y * iR * iQ,
+        Lz: y * iR * iS,
+        Ay: -x * iR * iS + x * z * iR * iQ,
+        Ax: x * iR * iS,
     },
     "z": {
-        z: _RING(1), R: z * iR, iR: -z * iR**3, iS: -iR * iS, iP: -2 * z * iP**2, iQ: -2 * z * iQ**2,
-        Lz: iR, Lx: -x * z * iR * iQ, Ly: -y * z * iR * iP, Ax: -x * y * iR * iP, Ay: -x * y * iR * iQ,
+        z: _RING(1),
+        R: z * iR,
+        iR: -z * iR**3,
+        iS: -iR * iS,
+        iP: -2 * z * iP**2,
+        iQ: -2 * z * iQ**2,
+        Lz: iR,
+        Lx: -x * z * iR * iQ,
+        Ly: -y * z * iR * iP,
+        Ax: -x * y * iR * iP,
+        Ay: -x * y * iR * iQ,
     },
-}  # fmt: skip
+}
 
 # Rewriting rules (factors to find, replacement), tried in this order until none applies.
 _RULES: list[tuple[dict[int, int], Element]] = [
@@ -124,10 +149,24 @@ def _monomials(degree: int, parity_x: int, parity_y: int) -> list[Element]:
 
 # Points with rational R, so that the equations for the coefficients are exact.
 _QUADRUPLES = [
-    (1, 2, 2, 3), (2, 3, 6, 7), (1, 4, 8, 9), (4, 4, 7, 9), (2, 6, 9, 11), (6, 6, 7, 11), (3, 4, 12, 13),
-    (2, 5, 14, 15), (2, 10, 11, 15), (1, 12, 12, 17), (8, 9, 12, 17), (1, 6, 18, 19), (6, 6, 17, 19),
-    (6, 10, 15, 19), (4, 5, 20, 21), (4, 8, 19, 21), (4, 13, 16, 21),
-]  # fmt: skip
+    (1, 2, 2, 3),
+    (2, 3, 6, 7),
+    (1, 4, 8, 9),
+    (4, 4, 7, 9),
+    (2, 6, 9, 11),
+    (6, 6, 7, 11),
+    (3, 4, 12, 13),
+    (2, 5, 14, 15),
+    (2, 10, 11, 15),
+    (1, 12, 12, 17),
+    (8, 9, 12, 17),
+    (1, 6, 18, 19),
+    (6, 6, 17, 19),
+    (6, 10, 15, 19),
+    (4, 5, 20, 21),
+    (4, 8, 19, 21),
+    (4, 13, 16, 21),
+]
 
 
 def _values_at(f: Element, point: tuple[int, int, int, int]) -> dict[tuple[int, ...], Any]:

@@ -50,8 +50,12 @@ class MaterialDatabase:
         if isinstance(material, Mapping):
             return inline_material(material, self.materials)
         if not isinstance(material, str):
-            raise InputError("material", material, "a name of the database or a mapping with its values",
-                             "Put a name that looks like a number in quotes.")  # fmt: skip
+            raise InputError(
+                "material",
+                material,
+                "a name of the database or a mapping with its values",
+                "Put a name that looks like a number in quotes.",
+            )
         if material not in self.materials:
             raise unknown_name("material", material, self.materials)
         return self.materials[material]
@@ -98,8 +102,10 @@ class MaterialDatabase:
     def _unknown_pair(self, names: list[tuple[str, ...]], level: str) -> InputError:
         label = tuple(body[-1] for body in names)
         known = ", ".join("-".join(sorted(p) if len(p) == 2 else [*p, *p]) for p in self.friction_table)
-        remedy = ("Give friction_coefficient in the case, add the pair under `friction:` of your materials"
-                  " file, or give the material a `family` that has one.")  # fmt: skip
+        remedy = (
+            "Give friction_coefficient in the case, add the pair under `friction:` of your materials"
+            " file, or give the material a `family` that has one."
+        )
         for body in names:
             if body[-1] not in self.families() and (close := nearest(body[-1], self.families())):
                 remedy += f" Did you mean the family '{close}'?"

@@ -48,8 +48,9 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
             raise unknown_name(f"material '{name}': field", key, FIELDS)
     values = {key: value for key, value in values.items() if value is not None}
     if not values:
-        raise InputError(f"material '{name}'", None, "it must have at least one value",
-                         f"Give one of {', '.join(PROPERTIES)}.")  # fmt: skip
+        raise InputError(
+            f"material '{name}'", None, "it must have at least one value", f"Give one of {', '.join(PROPERTIES)}."
+        )
     text = _read(path)
     builtin = read_database(None)
     build_database(text, str(path), over=builtin)  # a file that is broken already is not touched
@@ -113,8 +114,12 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
         return head + ("" if head.endswith("\n") or not head else "\n") + out.getvalue()
     materials = data["materials"]
     if name in materials and not replace:
-        raise InputError(f"{path}: materials.{name}", name, "the file has a material of this name already",
-                         "Take another name, or replace its values (replace=True).")  # fmt: skip
+        raise InputError(
+            f"{path}: materials.{name}",
+            name,
+            "the file has a material of this name already",
+            "Take another name, or replace its values (replace=True).",
+        )
     if name in materials:
         for key, value in block.items():
             materials[name][key] = value

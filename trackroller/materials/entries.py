@@ -71,14 +71,16 @@ class EntryParser:
         if UNITS[prop.unit][unit] != 1.0:
             number = _scaled(number, UNITS[prop.unit][unit])
         source = self.source(str(entry["source"])) if entry.get("source") else "not given"
-        return Value(check_number(prop, number, where), prop.unit, source, placeholder,
-                     str(entry.get("note") or ""), self.origin)  # fmt: skip
+        return Value(
+            check_number(prop, number, where), prop.unit, source, placeholder, str(entry.get("note") or ""), self.origin
+        )
 
     def material(self, name: Any, entry: Any, known: Mapping[str, Material]) -> Material:
         """A material from its entry, over the known one of the same name or the one that `like` names."""
         if not isinstance(name, str) or not name.strip():
-            raise InputError(f"{self.file}: materials", name, "a material's name must be a text",
-                             f'Put it in quotes: "{name}".')  # fmt: skip
+            raise InputError(
+                f"{self.file}: materials", name, "a material's name must be a text", f'Put it in quotes: "{name}".'
+            )
         where = f"{self.file}: materials.{name}"
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, f"it must be a mapping with {', '.join(REQUIRED)}")
@@ -96,12 +98,17 @@ class EntryParser:
         missing = [key for key in REQUIRED if key not in records]
         if missing:
             given = ", ".join(map(str, entry)) or "nothing"
-            raise InputError(where, given, f"it lacks {', '.join(missing)}",
-                             "Give them, or write `like: NAME` to take them from another.")  # fmt: skip
+            raise InputError(
+                where,
+                given,
+                f"it lacks {', '.join(missing)}",
+                "Give them, or write `like: NAME` to take them from another.",
+            )
         return self._made(name, entry, base, records, where)
 
-    def _base(self, entry: Mapping[str, Any], same: Material | None, known: Mapping[str, Material],
-              where: str) -> Material | None:  # fmt: skip
+    def _base(
+        self, entry: Mapping[str, Any], same: Material | None, known: Mapping[str, Material], where: str
+    ) -> Material | None:
         like = entry.get("like")
         if like is None:
             return same
@@ -109,13 +116,19 @@ class EntryParser:
             raise unknown_name(f"{where}.like", like, known)
         return known[like]
 
-    def _made(self, name: str, entry: Mapping[str, Any], base: Material | None, records: dict[str, Value],
-              where: str) -> Material:  # fmt: skip
+    def _made(
+        self, name: str, entry: Mapping[str, Any], base: Material | None, records: dict[str, Value], where: str
+    ) -> Material:
         family = entry.get("family") or (base.family if base else "")
         description = entry.get("description") or (base.description if base and "like" not in entry else "")
         try:
-            return Material(name=name, family=family, description=description, records=records,
-                            **{key: record.value for key, record in records.items()})  # fmt: skip
+            return Material(
+                name=name,
+                family=family,
+                description=description,
+                records=records,
+                **{key: record.value for key, record in records.items()},
+            )
         except InputError as error:
             field = error.field.rpartition(".")[2]
             raise InputError(f"{where}.{field}", error.value, error.allowed, error.remedy) from None
@@ -127,8 +140,12 @@ class EntryParser:
             raise InputError(where, entry, "an entry must look like {pair: [metal, PA6], typical: 0.2}")
         pair = entry.get("pair")
         if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(p, str) and p for p in pair):
-            raise InputError(f"{where}.pair", pair, "it must be a list of two families or material names",
-                             "Write pair: [metal, PA6].")  # fmt: skip
+            raise InputError(
+                f"{where}.pair",
+                pair,
+                "it must be a list of two families or material names",
+                "Write pair: [metal, PA6].",
+            )
         where = f"{where}.{'-'.join(pair)}"
         levels = {}
         for key, value in entry.items():
@@ -137,8 +154,9 @@ class EntryParser:
             if key not in FRICTION_LEVELS:
                 raise unknown_name(f"{where}: level", str(key), FRICTION_LEVELS)
             record = self.value(FRICTION, value, f"{where}.{key}")
-            levels[key] = FrictionValue(record.value, record.unit, record.source, record.placeholder,
-                                        record.note, record.origin)  # fmt: skip
+            levels[key] = FrictionValue(
+                record.value, record.unit, record.source, record.placeholder, record.note, record.origin
+            )
         if not levels:
             raise InputError(where, dict(entry), f"it must give one of {', '.join(FRICTION_LEVELS)}")
         return frozenset(pair), levels

@@ -32,8 +32,12 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
     path = Path(named).expanduser()
     if not path.is_file():
         field = "materials file" if argument is not None else ENVIRONMENT
-        raise InputError(field, str(named), "it must name a YAML file that is there",
-                         "Correct the path, or leave it out to use the built-in materials.")  # fmt: skip
+        raise InputError(
+            field,
+            str(named),
+            "it must name a YAML file that is there",
+            "Correct the path, or leave it out to use the built-in materials.",
+        )
     return path.resolve()
 
 
@@ -130,8 +134,12 @@ def _refuse_repeated_keys(node: Any, file: str) -> None:
         seen: set[str] = set()
         for key, value in node.value:
             if key.value in seen:
-                raise InputError(f"{file}, line {key.start_mark.line + 1}", key.value,
-                                 "the name stands twice at the same place", "Keep one of them.")  # fmt: skip
+                raise InputError(
+                    f"{file}, line {key.start_mark.line + 1}",
+                    key.value,
+                    "the name stands twice at the same place",
+                    "Keep one of them.",
+                )
             seen.add(key.value)
             _refuse_repeated_keys(value, file)
     elif isinstance(node, yaml.SequenceNode):

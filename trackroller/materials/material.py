@@ -53,9 +53,12 @@ class Material:
                 continue
             object.__setattr__(self, prop.name, check_number(prop, value, where))
         if not self.cycles_at_tensile_strength < self.cycles_at_fatigue_limit:
-            raise InputError(f"{where}.cycles_at_tensile_strength", self.cycles_at_tensile_strength,
-                             f"N_Rm must lie below N_k = {self.cycles_at_fatigue_limit:g}",
-                             "Give the lower number of cycles to the tensile strength.")  # fmt: skip
+            raise InputError(
+                f"{where}.cycles_at_tensile_strength",
+                self.cycles_at_tensile_strength,
+                f"N_Rm must lie below N_k = {self.cycles_at_fatigue_limit:g}",
+                "Give the lower number of cycles to the tensile strength.",
+            )
 
     @property
     def fatigue_limit(self) -> float:

@@ -49,7 +49,12 @@ def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
 
 def _row(name: str, symbol: str, record: Value) -> dict[str, str]:
     return {
-        "field": name, "symbol": symbol, "value": f"{record.value:g}", "unit": record.unit,
-        "source": record.source, "placeholder": "placeholder" if record.placeholder else "",
-        "note": record.note, "origin": record.origin,
-    }  # fmt: skip
+        "field": name,
+        "symbol": symbol,
+        "value": f"{record.value:g}",
+        "unit": record.unit,
+        "source": record.source,
+        "placeholder": "placeholder" if record.placeholder else "",
+        "note": record.note,
+        "origin": record.origin,
+    }

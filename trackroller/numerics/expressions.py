@@ -19,20 +19,39 @@ from trackroller.errors import InputError, unknown_name
 MAX_LENGTH = 500  # an expression longer than this is a program and belongs into a script
 
 FUNCTIONS: dict[str, tuple[Any, int]] = {
-    "abs": (np.abs, 1), "sqrt": (np.sqrt, 1), "exp": (np.exp, 1), "log": (np.log, 1),
-    "log10": (np.log10, 1), "sin": (np.sin, 1), "cos": (np.cos, 1), "tan": (np.tan, 1),
-    "radians": (np.radians, 1), "degrees": (np.degrees, 1), "sign": (np.sign, 1), "round": (np.round, 1),
-    "min": (np.minimum, 2), "max": (np.maximum, 2), "where": (np.where, 3),
-}  # fmt: skip
+    "abs": (np.abs, 1),
+    "sqrt": (np.sqrt, 1),
+    "exp": (np.exp, 1),
+    "log": (np.log, 1),
+    "log10": (np.log10, 1),
+    "sin": (np.sin, 1),
+    "cos": (np.cos, 1),
+    "tan": (np.tan, 1),
+    "radians": (np.radians, 1),
+    "degrees": (np.degrees, 1),
+    "sign": (np.sign, 1),
+    "round": (np.round, 1),
+    "min": (np.minimum, 2),
+    "max": (np.maximum, 2),
+    "where": (np.where, 3),
+}
 CONSTANTS = {"pi": np.pi, "inf": np.inf}
 _BINARY: dict[type, Any] = {
-    ast.Add: np.add, ast.Sub: np.subtract, ast.Mult: np.multiply, ast.Div: np.divide,
-    ast.Pow: np.power, ast.Mod: np.mod,
-}  # fmt: skip
+    ast.Add: np.add,
+    ast.Sub: np.subtract,
+    ast.Mult: np.multiply,
+    ast.Div: np.divide,
+    ast.Pow: np.power,
+    ast.Mod: np.mod,
+}
 _COMPARE: dict[type, Any] = {
-    ast.Lt: np.less, ast.LtE: np.less_equal, ast.Gt: np.greater, ast.GtE: np.greater_equal,
-    ast.Eq: lambda a, b: np.asarray(a == b), ast.NotEq: lambda a, b: np.asarray(a != b),
-}  # fmt: skip
+    ast.Lt: np.less,
+    ast.LtE: np.less_equal,
+    ast.Gt: np.greater,
+    ast.GtE: np.greater_equal,
+    ast.Eq: lambda a, b: np.asarray(a == b),
+    ast.NotEq: lambda a, b: np.asarray(a != b),
+}
 _ALLOWED = "numbers, factor names, + - * / % **, comparisons, and, or, not and the functions " + ", ".join(FUNCTIONS)
 
 

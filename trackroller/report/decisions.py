@@ -20,13 +20,19 @@ MAX_DESIGNS = 12  # rows of the table of the Pareto set
 MAX_POINTS = 24  # rows of the table of design points
 OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 MEASURES = (
-    ("S1", "Sobol index, alone"), ("ST", "Sobol index, total"), ("main_share", "share of variance, alone"),
-    ("mu_star", "mean absolute effect μ*"), ("sigma", "spread of effects σ"), ("effect", "change over the range"),
+    ("S1", "Sobol index, alone"),
+    ("ST", "Sobol index, total"),
+    ("main_share", "share of variance, alone"),
+    ("mu_star", "mean absolute effect μ*"),
+    ("sigma", "spread of effects σ"),
+    ("effect", "change over the range"),
     ("curvature", "curvature of the fit"),
-    ("first", "share of variance, given data"), ("fit_alone", "share of variance, fitted polynomial"),
-    ("delta", "delta"), ("pawn", "PAWN"),
+    ("first", "share of variance, given data"),
+    ("fit_alone", "share of variance, fitted polynomial"),
+    ("delta", "delta"),
+    ("pawn", "PAWN"),
     ("prcc", "partial rank correlation"),
-)  # fmt: skip
+)
 
 
 def decisions(ds: xr.Dataset, analysis: Path | None) -> dict[str, Any]:
@@ -76,11 +82,14 @@ def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
         rows.append((words.upper(words.of_output(sens, output)) + unit, ranks, str(part["note"].item()), advice))
     index = words.headline(sens)
     return {
-        "method": str(sens.attrs.get("method", "")), "index": str(sens[index].attrs.get("long_name", index)),
-        "rows": rows, "sentence": words.overview(sens), "needs": str(sens.attrs.get("needs", "")),
+        "method": str(sens.attrs.get("method", "")),
+        "index": str(sens[index].attrs.get("long_name", index)),
+        "rows": rows,
+        "sentence": words.overview(sens),
+        "needs": str(sens.attrs.get("needs", "")),
         "treatment": str(sens.attrs.get("treatment", "")),
         "measures": [measures(sens, name) for name in main_outputs(sens, 2)],
-    }  # fmt: skip
+    }
 
 
 def measures(sens: xr.Dataset, output: str) -> dict[str, Any]:
@@ -127,11 +136,13 @@ def robust_points(table: xr.Dataset) -> dict[str, Any]:
     if scatter > 0:
         text = f"B10 holds the material's own scatter of life, T_N = {style.rounded(10 ** (DECADES * scatter), 3)}."
     return {
-        "tables": tables, "sentence": " ".join(words.robustness(table, name) for name in lives[:2]), "scatter": text,
+        "tables": tables,
+        "sentence": " ".join(words.robustness(table, name) for name in lives[:2]),
+        "scatter": text,
         "samples": int(table.attrs.get("inner_samples", 0)),
         "treatment": words.upper(str(table.attrs.get("treatment", ""))),
         "inner": str(table.attrs.get("inner_factors", "")).replace("_", " "),
-    }  # fmt: skip
+    }
 
 
 def _points(table: xr.Dataset, output: str) -> dict[str, Any]:
@@ -147,21 +158,30 @@ def _points(table: xr.Dataset, output: str) -> dict[str, Any]:
         spread = [style.rounded(float(share(percentile=q)[p]), 3) for q in (5.0, 50.0, 95.0)]
         chances = [_chance(table, regime, int(p)) for regime in seen]
         interval = f" ({style.rounded(low, 3)} … {style.rounded(high, 3)})" if np.isfinite(high) else ""
-        rows.append((words.upper(words.point_words(table, int(p))),
-                     [f"{style.rounded(b10, 3)}{interval}", style.rounded(float(part["b10_safe"][p]), 3), *spread,
-                      *chances]))  # fmt: skip
+        rows.append(
+            (
+                words.upper(words.point_words(table, int(p))),
+                [f"{style.rounded(b10, 3)}{interval}", style.rounded(float(part["b10_safe"][p]), 3), *spread, *chances],
+            )
+        )
     unit = style.unit_text(str(part["output_units"].item()))
     never = [OTHERS[r] for r in OTHERS if r not in seen]
     high = 100 * float(table["probability_high"].sel(regime=[r for r in OTHERS if r not in seen]).max()) if never else 0
     said = f"No case of any point shows {words.listing(never)}: below {high:.2g} % at each (95 %)." if never else ""
-    return {"title": words.upper(str(part["output_name"].item())), "unit": unit, "rows": rows, "never": said,
-            "columns": [words.upper(OTHERS[r]) for r in seen],
-            "left": max(0, table.sizes["point"] - MAX_POINTS)}  # fmt: skip
+    return {
+        "title": words.upper(str(part["output_name"].item())),
+        "unit": unit,
+        "rows": rows,
+        "never": said,
+        "columns": [words.upper(OTHERS[r]) for r in seen],
+        "left": max(0, table.sizes["point"] - MAX_POINTS),
+    }
 
 
 def _chance(table: xr.Dataset, regime: str, point: int) -> str:
-    value, low, high = (100 * float(table[n].sel(regime=regime)[point])
-                        for n in ("probability", "probability_low", "probability_high"))  # fmt: skip
+    value, low, high = (
+        100 * float(table[n].sel(regime=regime)[point]) for n in ("probability", "probability_low", "probability_high")
+    )
     return f"{value:.3g} % ({low:.2g} … {high:.2g})" if value else f"0 (below {high:.2g} %)"
 
 
@@ -186,10 +206,13 @@ def pareto_designs(ds: xr.Dataset) -> dict[str, Any]:
     return {
         "columns": [_heading(front, n) + arrows.get(n, "") for n in columns],
         "rows": [(int(front["row"][i]), [_cell(n, front[n].values[i]) for n in columns]) for i in shown],
-        "sentence": words.pareto(front), "count": len(best), "constraints": str(front.attrs.get("constraints", "")),
-        "goals": words.upper("; ".join(f"{_words(front, n)} as {'high' if w == 'max' else 'low'} as possible"
-                                       for n, w in goals)),
-    }  # fmt: skip
+        "sentence": words.pareto(front),
+        "count": len(best),
+        "constraints": str(front.attrs.get("constraints", "")),
+        "goals": words.upper(
+            "; ".join(f"{_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals)
+        ),
+    }
 
 
 def _words(front: xr.Dataset, name: str) -> str:

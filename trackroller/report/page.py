@@ -24,8 +24,17 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 SAMPLED = ("lhs", "sobol", "morris", "saltelli", "nested")  # designs that `samples` counts for
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
-OPTIONS = ("contact_model", "spin_model", "slip_terms", "hertz", "stress_bodies", "life_rule", "accuracy", "normal",
-           "stop_if")  # fmt: skip
+OPTIONS = (
+    "contact_model",
+    "spin_model",
+    "slip_terms",
+    "hertz",
+    "stress_bodies",
+    "life_rule",
+    "accuracy",
+    "normal",
+    "stop_if",
+)
 _TOLD = {
     "study",
     "materials",

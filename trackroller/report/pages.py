@@ -37,10 +37,12 @@ def markdown(content: Sequence[Block], made_by: str, folder: str = "figures") ->
     return "\n".join(lines).rstrip() + "\n"
 
 
-_CSS = ("body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;"
-        "font-size:12px;display:block;overflow-x:auto}td,th{border:1px solid #ccc;padding:2px 7px;text-align:left}"
-        "img{max-width:100%;width:24em}figure{display:inline-block;margin:.5em;vertical-align:top;width:24em}"
-        "figcaption{font-size:12px}")  # fmt: skip
+_CSS = (
+    "body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;"
+    "font-size:12px;display:block;overflow-x:auto}td,th{border:1px solid #ccc;padding:2px 7px;text-align:left}"
+    "img{max-width:100%;width:24em}figure{display:inline-block;margin:.5em;vertical-align:top;width:24em}"
+    "figcaption{font-size:12px}"
+)
 
 
 def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
@@ -62,8 +64,10 @@ def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
             cells = ["<tr>" + "".join(f"<th>{inline(h)}</th>" for h in heads) + "</tr>"]
             cells += ["<tr>" + "".join(f"<td>{inline(str(c))}</td>" for c in row) + "</tr>" for row in rows]
             body.append("<table>" + "".join(cells) + "</table>")
-    return (f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
-            f"<style>{_CSS}</style></head><body>{''.join(body)}</body></html>\n")  # fmt: skip
+    return (
+        f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
+        f"<style>{_CSS}</style></head><body>{''.join(body)}</body></html>\n"
+    )
 
 
 def inline(text: str) -> str:

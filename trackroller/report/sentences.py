@@ -45,9 +45,11 @@ def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
     low = part[f"{index}_low"].values if f"{index}_low" in part else nan
     high = part[f"{index}_high"].values if f"{index}_high" in part else nan
     names = part["factor_name"].values if "factor_name" in part.coords else part["factor"].values
-    rows = [Rank(str(f), str(n), float(v), float(a), float(b))
-            for f, n, v, a, b in zip(part["factor"].values, names, part[index].values, low, high, strict=True)
-            if np.isfinite(v)]  # fmt: skip
+    rows = [
+        Rank(str(f), str(n), float(v), float(a), float(b))
+        for f, n, v, a, b in zip(part["factor"].values, names, part[index].values, low, high, strict=True)
+        if np.isfinite(v)
+    ]
     return sorted(rows, key=lambda r: -abs(r.value) if index in SIGNED else -r.value)
 
 
@@ -183,10 +185,14 @@ def interactions(sens: xr.Dataset, output: str) -> str:
     if not np.isfinite(low) and value < 0.01:
         return f"No interaction of two factors makes 1 % of the variance of {of_output(sens, output)}."
     if np.isfinite(low) and low <= 0:
-        return (f"No interaction of two factors on {of_output(sens, output)} is beyond doubt; the largest, {names[i]} "
-                f"with {names[j]}, is {percent(value, low, high)} of the variance{how}.")  # fmt: skip
-    text = (f"The strongest interaction on {of_output(sens, output)}, {names[i]} with {names[j]}, "
-            f"makes {percent(value, low, high)} of the variance{how}")  # fmt: skip
+        return (
+            f"No interaction of two factors on {of_output(sens, output)} is beyond doubt; the largest, {names[i]} "
+            f"with {names[j]}, is {percent(value, low, high)} of the variance{how}."
+        )
+    text = (
+        f"The strongest interaction on {of_output(sens, output)}, {names[i]} with {names[j]}, "
+        f"makes {percent(value, low, high)} of the variance{how}"
+    )
     if "higher_share" in part:
         text += f"; interactions of three and more factors {percent(float(part['higher_share']))}"
     return text + "."
@@ -213,17 +219,23 @@ def band(factor: str, levels: Sequence[str], median: np.ndarray, what: str, unit
     if most - least <= 0.05 * max(abs(least), abs(most)):
         return f"the median {what} hardly changes with {factor}"
     if not ordered:
-        return (f"the median {what} is {with_unit(least, unit)} with {factor} {levels[low]} and "
-                f"{with_unit(most, unit)} with {levels[high]}")  # fmt: skip
+        return (
+            f"the median {what} is {with_unit(least, unit)} with {factor} {levels[low]} and "
+            f"{with_unit(most, unit)} with {levels[high]}"
+        )
     first, last = float(median[good[0]]), float(median[good[-1]])
     if abs(last - first) < 0.5 * (most - least):
-        return (f"the median {what} goes between {number(least)} and {with_unit(most, unit)} along {factor}, "
-                f"without a steady trend")  # fmt: skip
+        return (
+            f"the median {what} goes between {number(least)} and {with_unit(most, unit)} along {factor}, "
+            f"without a steady trend"
+        )
     verb = "rises" if last > first else "falls"
     ratio = max(first, last) / min(first, last) if min(first, last) > 0 else np.nan
     times = f" (by a factor of {number(ratio)})" if np.isfinite(ratio) else ""
-    return (f"the median {what} {verb} from {number(first)} to {with_unit(last, unit)}{times} as {factor} goes from "
-            f"{levels[good[0]]} to {levels[good[-1]]}")  # fmt: skip
+    return (
+        f"the median {what} {verb} from {number(first)} to {with_unit(last, unit)}{times} as {factor} goes from "
+        f"{levels[good[0]]} to {levels[good[-1]]}"
+    )
 
 
 def pareto(front: xr.Dataset) -> str:
@@ -240,8 +252,10 @@ def pareto(front: xr.Dataset) -> str:
         for name in goals:
             attrs, value = front[name].attrs, float(front[name].values[row])
             reached.append(f"{attrs.get('long_name', name)} {with_unit(value, attrs.get('units', ''))}")
-        return (f"One of {allowed} allowed designs is best in everything: {listing(reached)}. "
-                f"Left out: {front.attrs['excluded']}.{model}")  # fmt: skip
+        return (
+            f"One of {allowed} allowed designs is best in everything: {listing(reached)}. "
+            f"Left out: {front.attrs['excluded']}.{model}"
+        )
     said = []
     for item in front.attrs["objectives"].split(", "):
         name, direction = item.split(" ")
@@ -251,8 +265,10 @@ def pareto(front: xr.Dataset) -> str:
         ends = (values.max(), values.min()) if direction == "max" else (values.min(), values.max())
         goes = "down" if direction == "max" else "up"
         said.append(f"{words} from {number(ends[0])} {goes} to {with_unit(ends[1], unit)}")
-    return (f"{count} of {allowed} allowed designs are beaten by no other; among them one can trade "
-            f"{listing(said)}. Left out: {front.attrs['excluded']}.{model}")  # fmt: skip
+    return (
+        f"{count} of {allowed} allowed designs are beaten by no other; among them one can trade "
+        f"{listing(said)}. Left out: {front.attrs['excluded']}.{model}"
+    )
 
 
 def robustness(table: xr.Dataset, output: str) -> str:
@@ -270,12 +286,17 @@ def robustness(table: xr.Dataset, output: str) -> str:
     if str(part["output_name"].item()).endswith("overrollings"):
         unit = "overrollings"
     still = float(table["probability"].sel(regime="rolling").values[best]) == 1.0
-    text = (f"At {where} nine of ten {'cases' if still else 'of the rolling cases'} reach {with_unit(b10, unit)} "
-            f"({number(low)} to {number(high)}), the best B10 of the {part['output_name'].item()}")  # fmt: skip
+    text = (
+        f"At {where} nine of ten {'cases' if still else 'of the rolling cases'} reach {with_unit(b10, unit)} "
+        f"({number(low)} to {number(high)}), the best B10 of the {part['output_name'].item()}"
+    )
     if not still:
         all_in = float(part["b10_safe"].values[best])
-        text += (f"; with every other regime counted as life 0 it is {with_unit(all_in, unit)}" if all_in > 0 else
-                 "; one in ten or more do not roll, so that counting these no B10 is left")  # fmt: skip
+        text += (
+            f"; with every other regime counted as life 0 it is {with_unit(all_in, unit)}"
+            if all_in > 0
+            else "; one in ten or more do not roll, so that counting these no B10 is left"
+        )
     text += f"; full slip there in {percent(slip[best])} and lift-off in {percent(lift[best])} of the cases"
     worst = int(np.argmax(slip + lift))
     if worst != best and slip[worst] + lift[worst] > slip[best] + lift[best]:

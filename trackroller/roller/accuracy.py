@@ -83,15 +83,24 @@ def _finest(ladder: tuple[Rung, ...], quantities: Iterable[str]) -> Rung:
 def _composed(name: str, tolerance: float, forces: Rung, peak: Rung, elements: int) -> Accuracy:
     rough, fine = tolerance > 1e-2, tolerance < 5e-4
     points = (31, 31) if rough else (81, 121) if fine else (41, 61)
-    return Accuracy(name, tolerance, forces.settings["force_nodes"], forces.settings["coarse_nodes"],
-                    PeakSettings(*peak.settings["peak"]), *points, elements)  # fmt: skip
+    return Accuracy(
+        name,
+        tolerance,
+        forces.settings["force_nodes"],
+        forces.settings["coarse_nodes"],
+        PeakSettings(*peak.settings["peak"]),
+        *points,
+        elements,
+    )
 
 
 # What a preset keeps in 99 % of the designs measured: error of the peak and of the forces in full sliding, which are
 # cheap; and in 95 %, as fewer designs were measured, of the forces of `kalker`. None: twice the elements of `standard`.
 PROMISES: dict[str, tuple[float, float, float | None]] = {
-    "preview": (2e-2, 5e-3, 1.5e-2), "standard": (4e-3, 2e-5, 8e-3), "reference": (3e-4, 1e-7, None),
-}  # fmt: skip
+    "preview": (2e-2, 5e-3, 1.5e-2),
+    "standard": (4e-3, 2e-5, 8e-3),
+    "reference": (3e-4, 1e-7, None),
+}
 
 
 def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung | None]:
@@ -101,9 +110,10 @@ def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung | None]
     return (
         _cheapest(forces, force_error, FORCE_QUANTITIES, "p99") or _finest(forces, FORCE_QUANTITIES),
         _cheapest(peak, peak_error, ("peak_stress",), "p99") or _finest(peak, ("peak_stress",)),
-        None if element_error is None
+        None
+        if element_error is None
         else _cheapest(rolling, element_error, FORCE_QUANTITIES, "p95") or _finest(rolling, FORCE_QUANTITIES),
-    )  # fmt: skip
+    )
 
 
 def _preset(name: str) -> Accuracy:
@@ -147,8 +157,11 @@ def accuracy_settings(
 @functools.lru_cache(maxsize=256)
 def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]) -> Accuracy:
     peaks = bool(outputs & PEAK_OUTPUTS)
-    wanted = (*FORCE_QUANTITIES, *(("friction_energy",) if "friction_work" in outputs else ()),
-              *(("peak_stress",) if peaks else ()))  # fmt: skip
+    wanted = (
+        *FORCE_QUANTITIES,
+        *(("friction_energy",) if "friction_work" in outputs else ()),
+        *(("peak_stress",) if peaks else ()),
+    )
     rolling = contact_model != "sliding"
     elements = PRESETS["standard"].elements
     if rolling:
@@ -178,9 +191,12 @@ def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: I
             bounds[q] = max(bounds.get(q, 0.0), rung.errors[q].bound / share)
     worst = max(bounds, key=lambda q: bounds[q])
     reached = rounded_up(bounds[worst])
-    return InputError("accuracy", tolerance, f"the finest tolerance that {model} reaches here is {reached:g}, by its "
-                      f"{worst.replace('_', ' ')}", "Use 'reference' for the best there is, or a larger tolerance, or "
-                      "ask only for outputs that are needed.")  # fmt: skip
+    return InputError(
+        "accuracy",
+        tolerance,
+        f"the finest tolerance that {model} reaches here is {reached:g}, by its {worst.replace('_', ' ')}",
+        "Use 'reference' for the best there is, or a larger tolerance, or ask only for outputs that are needed.",
+    )
 
 
 def rounded_up(value: float) -> float:
@@ -192,15 +208,26 @@ def rounded_up(value: float) -> float:
 
 
 _QUANTITY_OF = {
-    "normal_force": "normal_force", "lateral_force": "friction_force", "driving_force": "friction_force",
-    "spin_moment": "spin_moment", "friction_power": "friction_energy",
-    "friction_energy_per_distance": "friction_energy", "peak_stress": "peak_stress", "life_cycles": "life",
-    "life_hours": "life", "roller_life_hours": "life", "guide_life_hours": "life",
-}  # fmt: skip
+    "normal_force": "normal_force",
+    "lateral_force": "friction_force",
+    "driving_force": "friction_force",
+    "spin_moment": "spin_moment",
+    "friction_power": "friction_energy",
+    "friction_energy_per_distance": "friction_energy",
+    "peak_stress": "peak_stress",
+    "life_cycles": "life",
+    "life_hours": "life",
+    "roller_life_hours": "life",
+    "guide_life_hours": "life",
+}
 _RELATIVE_TO = {
-    "normal_force": "itself", "friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)",
-    "friction_energy": "itself", "peak_stress": "itself", "life": "itself",
-}  # fmt: skip
+    "normal_force": "itself",
+    "friction_force": "mu F_N",
+    "spin_moment": "mu F_N sqrt(a b)",
+    "friction_energy": "itself",
+    "peak_stress": "itself",
+    "life": "itself",
+}
 
 
 def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[str, Levels]:
@@ -210,8 +237,10 @@ def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[
     """
     rungs = ladders()
     own: dict[str, dict[str, Any]]
-    own = {"forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
-           "peak": {"peak": list(vars(settings.peak).values())}}  # fmt: skip
+    own = {
+        "forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
+        "peak": {"peak": list(vars(settings.peak).values())},
+    }
     if contact_model != "sliding":
         ladder = contact_model if contact_model in rungs else "kalker"
         own = {ladder: {"elements": settings.elements}, "peak": own["peak"]}
@@ -230,7 +259,12 @@ def _sum(one: Levels, other: Levels) -> Levels:
 def error_attributes(settings: Accuracy, contact_model: str) -> dict[str, dict[str, Any]]:
     """Attributes that tell the expected error of discretisation, by result variable."""
     levels = expected_errors(settings, contact_model)
-    return {variable: {"expected_relative_error": rounded_up(max(levels[q].median, 1e-16)),
-                       "relative_error_99_percent": rounded_up(max(levels[q].bound, 1e-16)),
-                       "relative_error_refers_to": _RELATIVE_TO[q]}
-            for variable, q in _QUANTITY_OF.items() if q in levels}  # fmt: skip
+    return {
+        variable: {
+            "expected_relative_error": rounded_up(max(levels[q].median, 1e-16)),
+            "relative_error_99_percent": rounded_up(max(levels[q].bound, 1e-16)),
+            "relative_error_refers_to": _RELATIVE_TO[q],
+        }
+        for variable, q in _QUANTITY_OF.items()
+        if q in levels
+    }

@@ -25,8 +25,9 @@ class Block:
     def take(self, rows: np.ndarray) -> Block:
         """The cases `rows`; a row may be taken more than once."""
         values = {name: array[rows] for name, array in self.values.items()}
-        return Block(values, self.regime[rows], self.converged[rows], self.bits[rows], self.model[rows],
-                     self.stopped[rows])  # fmt: skip
+        return Block(
+            values, self.regime[rows], self.converged[rows], self.bits[rows], self.model[rows], self.stopped[rows]
+        )
 
 
 def join(parts: Sequence[Block]) -> Block:
@@ -35,10 +36,13 @@ def join(parts: Sequence[Block]) -> Block:
         return parts[0]
     names = dict.fromkeys(name for part in parts for name in part.values)
     none: np.ndarray = np.empty(0)
-    values = {name: _joined([part.values.get(name, none) for part in parts], [len(part) for part in parts])
-              for name in names}  # fmt: skip
-    plain = (np.concatenate([getattr(part, name) for part in parts])
-             for name in ("regime", "converged", "bits", "model", "stopped"))  # fmt: skip
+    values = {
+        name: _joined([part.values.get(name, none) for part in parts], [len(part) for part in parts]) for name in names
+    }
+    plain = (
+        np.concatenate([getattr(part, name) for part in parts])
+        for name in ("regime", "converged", "bits", "model", "stopped")
+    )
     return Block(values, *plain)
 
 

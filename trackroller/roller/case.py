@@ -142,8 +142,12 @@ def _check_material_kind(name: str, value: Any) -> None:
     from trackroller.materials import Material
 
     if not isinstance(value, (str, Mapping, Material)) or value == "":
-        raise InputError(name, value, "a material is a name of the database or a mapping with its values",
-                         "`trackroller materials list` shows the names.")  # fmt: skip
+        raise InputError(
+            name,
+            value,
+            "a material is a name of the database or a mapping with its values",
+            "`trackroller materials list` shows the names.",
+        )
 
 
 def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
@@ -152,9 +156,16 @@ def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
     Checks that the rolling radius is positive and that both relative curvatures are positive: else the
     surfaces conform or interlock and there is no point contact.
     """
-    get = {name: np.atleast_1d(np.asarray(columns[name], dtype=float)) for name in (
-        "axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius",
-        "contact_angle")}  # fmt: skip
+    get = {
+        name: np.atleast_1d(np.asarray(columns[name], dtype=float))
+        for name in (
+            "axis_distance",
+            "guide_profile_radius",
+            "roller_profile_radius",
+            "guide_curve_radius",
+            "contact_angle",
+        )
+    }
     get = dict(zip(get, np.broadcast_arrays(*get.values()), strict=True))
     alpha = np.deg2rad(get["contact_angle"])
     radius = rolling_radius(get["axis_distance"], get["guide_profile_radius"], alpha)
@@ -162,27 +173,36 @@ def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
     if bad.size:
         i = bad[0]
         limit = get["guide_profile_radius"][i] * np.cos(alpha[i])
-        return InputError("axis_distance", float(get["axis_distance"][i]),
-                          f"the rolling radius A_T - r_C,G cos(alpha) = {radius[i]:.6g} mm must be > 0",
-                          f"Use an axis_distance above {limit:.6g} mm.")  # fmt: skip
-    k_x, k_y = curvatures(get["roller_profile_radius"], get["guide_profile_radius"],
-                          get["guide_curve_radius"], radius, alpha)  # fmt: skip
+        return InputError(
+            "axis_distance",
+            float(get["axis_distance"][i]),
+            f"the rolling radius A_T - r_C,G cos(alpha) = {radius[i]:.6g} mm must be > 0",
+            f"Use an axis_distance above {limit:.6g} mm.",
+        )
+    k_x, k_y = curvatures(
+        get["roller_profile_radius"], get["guide_profile_radius"], get["guide_curve_radius"], radius, alpha
+    )
     bad = np.flatnonzero(~(k_x > 0))
     if bad.size:
         i = bad[0]
         groove = get["guide_profile_radius"][i]
-        return InputError("roller_profile_radius", float(get["roller_profile_radius"][i]),
-                          f"the surfaces conform or interlock: 1/r_C,TR + 1/r_C,G = {k_x[i]:.6g} 1/mm must be > 0",
-                          f"Use a groove wider than the guide (roller_profile_radius below {-groove:.6g} mm)"
-                          " or a convex roller (> 0).")  # fmt: skip
+        return InputError(
+            "roller_profile_radius",
+            float(get["roller_profile_radius"][i]),
+            f"the surfaces conform or interlock: 1/r_C,TR + 1/r_C,G = {k_x[i]:.6g} 1/mm must be > 0",
+            f"Use a groove wider than the guide (roller_profile_radius below {-groove:.6g} mm)"
+            " or a convex roller (> 0).",
+        )
     bad = np.flatnonzero(~(k_y > 0))
     if bad.size:
         i = bad[0]
-        return InputError("guide_curve_radius", float(get["guide_curve_radius"][i]),
-                          "the surfaces conform or interlock: cos(alpha)/r_A + cos(alpha)/r_Curve = "
-                          f"{k_y[i]:.6g} 1/mm must be > 0",
-                          f"Use an inner curve wider than the roller (guide_curve_radius below {-radius[i]:.6g} mm),"
-                          " a straight (inf) or an outer curve (> 0).")  # fmt: skip
+        return InputError(
+            "guide_curve_radius",
+            float(get["guide_curve_radius"][i]),
+            f"the surfaces conform or interlock: cos(alpha)/r_A + cos(alpha)/r_Curve = {k_y[i]:.6g} 1/mm must be > 0",
+            f"Use an inner curve wider than the roller (guide_curve_radius below {-radius[i]:.6g} mm),"
+            " a straight (inf) or an outer curve (> 0).",
+        )
     return None
 
 
@@ -290,8 +310,9 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
             numbers[name] = raw.astype(float)  # None becomes NaN
         except (TypeError, ValueError):
             words = FRICTION_LEVELS if name == "friction_coefficient" else ()
-            numbers[name] = np.array([math.nan if isinstance(v, str) and v in words else _number(name, v)
-                                      for v in raw], dtype=float).reshape(n)  # fmt: skip
+            numbers[name] = np.array(
+                [math.nan if isinstance(v, str) and v in words else _number(name, v) for v in raw], dtype=float
+            ).reshape(n)
         bad = np.flatnonzero(~parameter.accepts(numbers[name]))
         if bad.size:
             raise InputError(f"{name} (case {bad[0]})", raw[bad[0]], parameter.allowed())

@@ -52,17 +52,35 @@ _ALL = (
     Variable("stick_area_fraction", "contact", _C, "1", "A_stick/A", "share of the patch that sticks"),
     Variable("friction_power", "friction_work", _C, "W", "P_f", "friction power at the travel speed"),
     Variable("friction_energy_per_distance", "friction_work", _C, "J m-1", "W_f", "friction energy per distance"),
-    Variable("friction_energy_balance", "friction_work", _C, "J m-1", "-(xi F_A + phi M_R)",
-             "friction energy per distance that the forces and moments imply"),
-    Variable("energy_residual", "friction_work", (), "1", "",
-             "relative difference of friction energy and the work that the drive puts in"),
+    Variable(
+        "friction_energy_balance",
+        "friction_work",
+        _C,
+        "J m-1",
+        "-(xi F_A + phi M_R)",
+        "friction energy per distance that the forces and moments imply",
+    ),
+    Variable(
+        "energy_residual",
+        "friction_work",
+        (),
+        "1",
+        "",
+        "relative difference of friction energy and the work that the drive puts in",
+    ),
     Variable("peak_stress", "peak_stress", _CB, "MPa", "sigma_DEH,max", "largest von Mises stress of the body"),
     Variable("peak_x", "peak_stress", _CB, "mm", "x_C", "lateral position of the peak stress"),
     Variable("peak_y", "peak_stress", _CB, "mm", "y_C", "position of the peak stress in the rolling direction"),
     Variable("peak_z", "peak_stress", _CB, "mm", "z_C", "depth of the peak stress"),
     Variable("life_cycles", "life", _CB, "1", "N", "overrollings to failure"),
-    Variable("life_error_estimate", "life", _CB, "1", "k delta(sigma)/sigma",
-             "estimated relative error of the life: Woehler exponent times that of the peak stress"),
+    Variable(
+        "life_error_estimate",
+        "life",
+        _CB,
+        "1",
+        "k delta(sigma)/sigma",
+        "estimated relative error of the life: Woehler exponent times that of the peak stress",
+    ),
     Variable("life_hours", "life", _CB, "h", "L_h", "life in hours of travel"),
     Variable("roller_life_hours", "life", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
     Variable("guide_life_hours", "life", (), "h", "L_h,G", "hours to the first failure of the guide"),
@@ -73,8 +91,14 @@ _ALL = (
     Variable("shear_rolling", "tractions", _PATCH, "MPa", "tau_y", "shear on the roller in the rolling direction"),
     Variable("slip_lateral", "tractions", _PATCH, "1", "v_x/v", "lateral slip over travel speed"),
     Variable("slip_rolling", "tractions", _PATCH, "1", "v_y/v", "rolling slip over travel speed"),
-    Variable("friction_energy_density", "tractions", _PATCH, "J m-1 mm-2", "|tau||v|/v",
-             "friction energy per area and distance travelled"),
+    Variable(
+        "friction_energy_density",
+        "tractions",
+        _PATCH,
+        "J m-1 mm-2",
+        "|tau||v|/v",
+        "friction energy per area and distance travelled",
+    ),
     Variable("xz_x", "subsurface", ("contact", "body", "section_x"), "mm", "x_C", "x in the lateral section"),
     Variable("xz_z", "subsurface", ("contact", "body", "section_z"), "mm", "z_C", "depth in the lateral section"),
     Variable("yz_y", "subsurface", ("contact", "body", "section_y"), "mm", "y_C", "y in the rolling section"),
@@ -85,7 +109,7 @@ _ALL = (
     Variable("stress_yz", "subsurface", ("component", *_YZ), "MPa", "sigma_ij", "stresses in the rolling section"),
     Variable("residual", "status", (), "1", "", "largest imbalance of forces and torque over the load"),
     Variable("error_estimate", "status", _CB, "1", "", "estimated relative error of the peak stress"),
-)  # fmt: skip
+)
 
 VARIABLES: dict[str, Variable] = {v.name: v for v in _ALL}
 
@@ -120,19 +144,33 @@ FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
 
 def _flag(name: str, values: np.ndarray) -> tuple[str, np.ndarray, dict[str, Any]]:
     if name == "validity":
-        return "case", values.astype(np.int32), {
-            "long_name": "where the model leaves its ground", "units": "1",
-            "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
-            "flag_meanings": " ".join(VALIDITY_BITS),
-            "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items())}  # fmt: skip
+        return (
+            "case",
+            values.astype(np.int32),
+            {
+                "long_name": "where the model leaves its ground",
+                "units": "1",
+                "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
+                "flag_meanings": " ".join(VALIDITY_BITS),
+                "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items()),
+            },
+        )
     told, words = FLAGS[name]
-    return "case", values.astype(np.int8), {
-        "long_name": told, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8),
-        "flag_meanings": " ".join(words)}  # fmt: skip
+    return (
+        "case",
+        values.astype(np.int8),
+        {
+            "long_name": told,
+            "units": "1",
+            "flag_values": np.arange(len(words), dtype=np.int8),
+            "flag_meanings": " ".join(words),
+        },
+    )
 
 
-def build(values: Mapping[str, np.ndarray], flags: Mapping[str, np.ndarray], attrs: Mapping[str, Any],
-          single: bool) -> xr.Dataset:  # fmt: skip
+def build(
+    values: Mapping[str, np.ndarray], flags: Mapping[str, np.ndarray], attrs: Mapping[str, Any], single: bool
+) -> xr.Dataset:
     """Data set with dimension `case` (dropped for a `single` case) from arrays whose first axis is the case.
 
     `flags` are arrays (n,) of those in `FLAGS`, and `validity` with the bits of `VALIDITY_BITS`.
@@ -148,12 +186,18 @@ def build(values: Mapping[str, np.ndarray], flags: Mapping[str, np.ndarray], att
         variables[name] = (("case", *v.dims), array, meta)
     variables |= {name: _flag(name, array) for name, array in flags.items()}
     coords: dict[str, Any] = {
-        "contact": ("contact", np.array([1, 2], dtype=np.int32),
-                    {"long_name": "contact, 1 at +x_R, 2 at -x_R", "units": "1"}),
+        "contact": (
+            "contact",
+            np.array([1, 2], dtype=np.int32),
+            {"long_name": "contact, 1 at +x_R, 2 at -x_R", "units": "1"},
+        ),
         "body": ("body", np.array(["roller", "guide"]), {"long_name": "body"}),
-    }  # fmt: skip
+    }
     if any(name.startswith("stress_") for name in values):
-        coords["component"] = ("component", np.array(["xx", "yy", "zz", "xy", "yz", "zx"]),
-                               {"long_name": "stress component"})  # fmt: skip
+        coords["component"] = (
+            "component",
+            np.array(["xx", "yy", "zz", "xy", "yz", "zx"]),
+            {"long_name": "stress component"},
+        )
     ds = xr.Dataset(variables, coords=coords, attrs=dict(attrs))
     return ds.isel(case=0) if single else ds

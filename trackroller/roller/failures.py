@@ -41,13 +41,17 @@ def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Datas
 def _hints(table: CaseTable, options: Options, i: int, steep: bool) -> list[str]:
     hints = []
     if steep:
-        hints.append("Friction falls faster with the slip speed than elastic surfaces follow (steep_friction): "
-                     "the roller may not roll steadily; a friction_law that falls less steeply, or contact_model: "
-                     "sliding, has a solution more often")  # fmt: skip
+        hints.append(
+            "Friction falls faster with the slip speed than elastic surfaces follow (steep_friction): "
+            "the roller may not roll steadily; a friction_law that falls less steeply, or contact_model: "
+            "sliding, has a solution more often"
+        )
     rough = [name for name in ("guide_profile", "roller_profile") if _goes_through_points(str(getattr(table, name)[i]))]
     if rough and options.normal == "halfspace":
-        hints.append(f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
-                     "give `smooth`, the standard deviation of the noise in mm, or 'auto'")  # fmt: skip
+        hints.append(
+            f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
+            "give `smooth`, the standard deviation of the noise in mm, or 'auto'"
+        )
     if options.contact_model == "fastsim" and options.normal == "hertz" and _is_slender(table, i):
         hints.append("The patches are too slender for fastsim: contact_model: kalker goes further")
     if "curve" in options.slip_terms and table.guide_curve_radius[i] < 0:

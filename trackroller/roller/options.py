@@ -46,9 +46,14 @@ class Options:
                 raise unknown_name("outputs", str(name), OUTPUT_GROUPS)
         if not self.outputs:
             raise InputError("outputs", outputs, "at least one of " + ", ".join(OUTPUT_GROUPS))
-        for field, options in (("contact_model", CONTACT_MODELS), ("spin_model", SPIN_MODELS), ("hertz", HERTZ),
-                               ("stress_bodies", STRESS_BODIES), ("life_rule", LIFE_RULES),
-                               ("normal", NORMAL)):  # fmt: skip
+        for field, options in (
+            ("contact_model", CONTACT_MODELS),
+            ("spin_model", SPIN_MODELS),
+            ("hertz", HERTZ),
+            ("stress_bodies", STRESS_BODIES),
+            ("life_rule", LIFE_RULES),
+            ("normal", NORMAL),
+        ):
             if getattr(self, field) not in options:
                 raise unknown_name(field, str(getattr(self, field)), options)
         check_hertz(self.hertz, self.normal)
@@ -82,13 +87,21 @@ class Options:
 def check_hertz(hertz: str, normal: str) -> None:
     """`InputError` for a way to Hertz's ellipse where there is none."""
     if normal == "halfspace" and hertz != "exact":
-        raise InputError("hertz", hertz, "exact with normal: halfspace, which solves patch and pressure itself",
-                         "Leave hertz out, or take normal: hertz (with circles).")  # fmt: skip
+        raise InputError(
+            "hertz",
+            hertz,
+            "exact with normal: halfspace, which solves patch and pressure itself",
+            "Leave hertz out, or take normal: hertz (with circles).",
+        )
 
 
 def check_slip_terms(terms: Collection[str], contact_model: str) -> None:
     """`InputError` for terms of the slip that a contact model cannot have."""
     if "curve" in terms and contact_model == "sliding":
-        raise InputError("slip_terms", list(terms), "'curve' for fastsim, kalker and auto only",
-                         "Take contact_model: kalker, or leave 'curve' out: where everything slides it would leave all "
-                         "forces as they are and only lengthen slip and friction work.")  # fmt: skip
+        raise InputError(
+            "slip_terms",
+            list(terms),
+            "'curve' for fastsim, kalker and auto only",
+            "Take contact_model: kalker, or leave 'curve' out: where everything slides it would leave all "
+            "forces as they are and only lengthen slip and friction work.",
+        )

@@ -100,8 +100,9 @@ class Mirror:
             asked = np.concatenate([np.ones(half, bool), ~twin])
             found = law(ellipse.take(asked), slip.take(asked), friction[asked], rows[asked], fine)
             sides = []
-            for values, sign in zip((found.lateral_force, found.driving_force, found.spin_moment), (-1, 1, -1),
-                                    strict=True):  # fmt: skip
+            for values, sign in zip(
+                (found.lateral_force, found.driving_force, found.spin_moment), (-1, 1, -1), strict=True
+            ):
                 full = np.empty(len(rows))
                 full[asked] = values
                 full[half:][twin] = sign * full[:half][twin]
@@ -140,8 +141,12 @@ class Mirror:
             return full[good]
 
         return SurfaceTractions(
-            mirrored(found.x, -1.0), mirrored(found.y, 1.0, flip=False), mirrored(found.pressure, 1.0),
-            mirrored(found.shear_lateral, -1.0), mirrored(found.shear_rolling, 1.0),
-            mirrored(found.slip_lateral, -1.0), mirrored(found.slip_rolling, 1.0),
+            mirrored(found.x, -1.0),
+            mirrored(found.y, 1.0, flip=False),
+            mirrored(found.pressure, 1.0),
+            mirrored(found.shear_lateral, -1.0),
+            mirrored(found.shear_rolling, 1.0),
+            mirrored(found.slip_lateral, -1.0),
+            mirrored(found.slip_rolling, 1.0),
             mirrored(found.stick, 1.0).astype(bool),
-        )  # fmt: skip
+        )

@@ -40,12 +40,22 @@ WINDOW = 16 * BLOCK  # cases among which equal mechanics are looked for
 
 
 def solve(
-    cases: Any, outputs: Iterable[str] | str = DEFAULT_OUTPUTS, *, contact_model: str = "sliding",
-    spin_model: str = "skewed", accuracy: str | float | Accuracy = "standard", hertz: str = "exact",
-    stress_bodies: str = "both", life_rule: str = "elementary", normal: str = "hertz",
-    contact_tolerance: float = 0.05, stop_if: str | None = None, shortcuts: bool = True,
-    slip_terms: Collection[str] | str = (), database: MaterialDatabase | None = None,
-) -> xr.Dataset:  # fmt: skip
+    cases: Any,
+    outputs: Iterable[str] | str = DEFAULT_OUTPUTS,
+    *,
+    contact_model: str = "sliding",
+    spin_model: str = "skewed",
+    accuracy: str | float | Accuracy = "standard",
+    hertz: str = "exact",
+    stress_bodies: str = "both",
+    life_rule: str = "elementary",
+    normal: str = "hertz",
+    contact_tolerance: float = 0.05,
+    stop_if: str | None = None,
+    shortcuts: bool = True,
+    slip_terms: Collection[str] | str = (),
+    database: MaterialDatabase | None = None,
+) -> xr.Dataset:
     """Contact forces, tractions, stresses and life of track rollers.
 
     Parameters
@@ -77,9 +87,20 @@ def solve(
 
     Raises `InputError` for bad input only: a case that cannot be solved is a row with `regime` failed.
     """
-    options = Options(tuple([outputs] if isinstance(outputs, str) else outputs), contact_model, spin_model, accuracy,
-                      hertz, stress_bodies, life_rule, normal, contact_tolerance, stop_if, shortcuts,
-                      slip_terms)  # type: ignore[arg-type]  # fmt: skip
+    options = Options(
+        tuple([outputs] if isinstance(outputs, str) else outputs),
+        contact_model,
+        spin_model,
+        accuracy,
+        hertz,
+        stress_bodies,
+        life_rule,
+        normal,
+        contact_tolerance,
+        stop_if,
+        shortcuts,
+        slip_terms,
+    )  # type: ignore[arg-type]
     single = isinstance(cases, Case) or (hasattr(cases, "keys") and not hasattr(cases, "data_vars"))
     if hasattr(cases, "data_vars"):
         single = "case" not in cases.dims
@@ -92,8 +113,12 @@ def solve(
 def _check_profiles(table: CaseTable, options: Options) -> None:
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
-            raise InputError("normal", options.normal, f"a case with a {name} needs normal: halfspace",
-                             f"Set normal to halfspace, or remove {name}.")  # fmt: skip
+            raise InputError(
+                "normal",
+                options.normal,
+                f"a case with a {name} needs normal: halfspace",
+                f"Set normal to halfspace, or remove {name}.",
+            )
 
 
 def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
@@ -176,9 +201,13 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     from trackroller import __version__
     from trackroller.roller.dataset import VARIABLES, build
 
-    keep = [name for name in block.values
-            if VARIABLES[name].group in options.outputs or name == "residual"
-            or (name == "error_estimate" and "peak_stress" in options.outputs)]  # fmt: skip
+    keep = [
+        name
+        for name in block.values
+        if VARIABLES[name].group in options.outputs
+        or name == "residual"
+        or (name == "error_estimate" and "peak_stress" in options.outputs)
+    ]
     attrs: dict[str, Any] = {
         "Conventions": "CF-1.11",
         "source": f"trackroller {__version__}",

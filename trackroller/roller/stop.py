@@ -20,12 +20,32 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import PARAMETERS, REGIMES
 
 STRENGTHS = {"R_m": "tensile_strength", "tensile_strength": "tensile_strength", "fatigue_limit": "fatigue_limit"}
-BEFORE_STRESSES = ("regime", "normal_force", "lateral_force", "driving_force", "spin_moment", "rolling_radius_shift",
-                   "slip", "drilling_torque", "tilting_moment", "yaw_moment", "transmitted_force", "semi_axis_lateral",
-                   "semi_axis_rolling", "max_pressure", "max_shear")  # fmt: skip
+BEFORE_STRESSES = (
+    "regime",
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "rolling_radius_shift",
+    "slip",
+    "drilling_torque",
+    "tilting_moment",
+    "yaw_moment",
+    "transmitted_force",
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+    "max_pressure",
+    "max_shear",
+)
 PEAK = "peak_stress"
-_COMPARE: dict[type, Any] = {ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Lt: operator.lt, ast.LtE: operator.le,
-                             ast.Eq: operator.eq, ast.NotEq: operator.ne}  # fmt: skip
+_COMPARE: dict[type, Any] = {
+    ast.Gt: operator.gt,
+    ast.GtE: operator.ge,
+    ast.Lt: operator.lt,
+    ast.LtE: operator.le,
+    ast.Eq: operator.eq,
+    ast.NotEq: operator.ne,
+}
 _EXAMPLE = "For example: peak_stress > R_m or max_pressure > 1500"
 
 

@@ -52,8 +52,12 @@ def _client(scheduler: str) -> Any:
     try:
         return Client(scheduler, timeout="10s")
     except (OSError, ValueError) as exc:
-        raise InputError("--scheduler", scheduler, f"no dask scheduler answers there ({exc})",
-                         "Start one: dask scheduler, dask worker ADDRESS.") from None  # fmt: skip
+        raise InputError(
+            "--scheduler",
+            scheduler,
+            f"no dask scheduler answers there ({exc})",
+            "Start one: dask scheduler, dask worker ADDRESS.",
+        ) from None
 
 
 def _work(cases: CaseList, database: Any) -> store.Block:

@@ -43,8 +43,12 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 def check_name(name: str, where: str = "name") -> str:
     """A name that can be a folder's: it can neither leave the results folder nor hide in it."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or ".." in name or name.endswith("."):
-        raise InputError(where, name, "letters, digits, '.', '_' and '-', at most 64, a letter or digit first",
-                         "It names the results folder: no path parts.")  # fmt: skip
+        raise InputError(
+            where,
+            name,
+            "letters, digits, '.', '_' and '-', at most 64, a letter or digit first",
+            "It names the results folder: no path parts.",
+        )
     return name
 
 
@@ -295,8 +299,12 @@ def _cross_check(study: Study) -> None:
     if config.design == "grid":
         for name, spec in study.factors.items():
             if not set(spec) & {*LISTS, "expression"}:
-                raise InputError(f"factors.{name}", spec, "a grid needs values, linspace or logspace",
-                                 "Or choose a sampled design: lhs, sobol, saltelli, morris.")  # fmt: skip
+                raise InputError(
+                    f"factors.{name}",
+                    spec,
+                    "a grid needs values, linspace or logspace",
+                    "Or choose a sampled design: lhs, sobol, saltelli, morris.",
+                )
     check(config, study.factors)
     _check_options(study)
     from trackroller.study.design.build import check_geometry, check_materials

@@ -19,12 +19,23 @@ _FORCES = {
     "kalker": (0.02, 0.37, 2.0),
     "auto": (0.025, 0.09, 0.5),
 }  # preview: a table, and what lies outside it
-_PEAKS = {"sliding": (1.4e-3, 1.8e-3, 8.5e-3), "fastsim": (2.5e-3, 7e-3, 0.013), "kalker": (8e-3, 0.02, 0.05),
-          "auto": (5e-3, 6e-3, 0.03)}  # fmt: skip
+_PEAKS = {
+    "sliding": (1.4e-3, 1.8e-3, 8.5e-3),
+    "fastsim": (2.5e-3, 7e-3, 0.013),
+    "kalker": (8e-3, 0.02, 0.05),
+    "auto": (5e-3, 6e-3, 0.03),
+}
 _SOLVED_FORCES, _SOLVED_PEAKS = (0.9, 0.8, 6.0), (0.1, 0.25, 1.0)  # patches solved on a grid, any contact model
 _TRACTIONS, _SUBSURFACE = 1e-3, 0.1
-_BYTES = {"forces": 200, "contact": 120, "friction_work": 40, "peak_stress": 160, "life": 90,
-          "tractions": 300_000, "subsurface": 1_500_000}  # fmt: skip
+_BYTES = {
+    "forces": 200,
+    "contact": 120,
+    "friction_work": 40,
+    "peak_stress": 160,
+    "life": 90,
+    "tractions": 300_000,
+    "subsurface": 1_500_000,
+}
 
 
 def rate(options: Mapping[str, Any]) -> float:

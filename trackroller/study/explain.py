@@ -53,31 +53,71 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     bare = 2 * free - int((requirements.is_mirror_symmetric(part) & requirements.is_frictionless(part)).sum())
     sides = f"; {twins} mirror-symmetric (no axial force): one contact each" if twins else ""
     told = [
-        Stage("geometry, Hertz or half-space pressure", True, m, n, "cases",
-              f"{n - m} cases repeat the mechanics of others" if m < n else "every case has mechanics of its own"),
+        Stage(
+            "geometry, Hertz or half-space pressure",
+            True,
+            m,
+            n,
+            "cases",
+            f"{n - m} cases repeat the mechanics of others" if m < n else "every case has mechanics of its own",
+        ),
         Stage("equilibrium", True, patches, 2 * n, "patches", _model(options) + sides),
-    ]  # fmt: skip
+    ]
 
     def stage(name: str, need: set[str], unit: str, count: int, total: int, why: str) -> None:
         missing = " or ".join(sorted(need))
         runs = bool(need & wanted)
-        told.append(Stage(name, runs, count if runs else 0, total, unit,
-                          why if runs else f"no output needs it (it serves {missing})"))  # fmt: skip
+        told.append(
+            Stage(
+                name,
+                runs,
+                count if runs else 0,
+                total,
+                unit,
+                why if runs else f"no output needs it (it serves {missing})",
+            )
+        )
 
     stage("friction work", {"friction_work"}, "patches", patches, 2 * n, "asked for" + sides)
     if options.stop_if is not None:
-        told.append(Stage("stop condition", bool(asked), m if asked else 0, n, "cases",
-                          f"{options.stop_if}: where it holds no peak is searched for" if asked
-                          else "no stress is asked for: nothing to stop"))  # fmt: skip
+        told.append(
+            Stage(
+                "stop condition",
+                bool(asked),
+                m if asked else 0,
+                n,
+                "cases",
+                f"{options.stop_if}: where it holds no peak is searched for"
+                if asked
+                else "no stress is asked for: nothing to stop",
+            )
+        )
     if asked and options.contact_model != "sliding":
         rubbing = patches - bare if on else patches
-        told.append(Stage("tractions on a grid", rubbing > 0, rubbing, 2 * n, "patches",
-                          "the stress of stick and slip needs them"
-                          + (f"; {free} cases without friction have none" if free and on else "")))  # fmt: skip
+        told.append(
+            Stage(
+                "tractions on a grid",
+                rubbing > 0,
+                rubbing,
+                2 * n,
+                "patches",
+                "the stress of stick and slip needs them"
+                + (f"; {free} cases without friction have none" if free and on else ""),
+            )
+        )
     elif "tractions" not in wanted:
-        told.append(Stage("tractions on a grid", False, 0, 2 * n, "patches",
-                          "not asked for: full sliding tractions are known in closed form"
-                          if options.contact_model == "sliding" else "no output needs them"))  # fmt: skip
+        told.append(
+            Stage(
+                "tractions on a grid",
+                False,
+                0,
+                2 * n,
+                "patches",
+                "not asked for: full sliding tractions are known in closed form"
+                if options.contact_model == "sliding"
+                else "no output needs them",
+            )
+        )
     why = "serves " + " and ".join(sorted(asked)) + sides
     if on and bare > 1:
         why += f"; {bare} patches without friction: one search for each ellipticity and material"

@@ -73,8 +73,12 @@ class StudyFolder:
                 pass
         except OSError as exc:
             if exc.errno in (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP):
-                raise InputError("results folder", str(self.root), f"it cannot be a folder ({exc.strerror})",
-                                 "Choose another with --results.") from None  # fmt: skip
+                raise InputError(
+                    "results folder",
+                    str(self.root),
+                    f"it cannot be a folder ({exc.strerror})",
+                    "Choose another with --results.",
+                ) from None
             raise disk_error(exc, self.root) from None
         return self
 

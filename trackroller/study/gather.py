@@ -65,8 +65,11 @@ def gather(plan: Plan, out: Path | None = None, tell: Tell | None = None) -> Pat
     if missing := int((listed[source] != cases).sum()):
         raise WorkError(f"{missing} of {len(cases)} cases are in no chunk: start the run again.")
     grid = sampled.method == "grid" and bool(sampled.factors)
-    axes = (Axes(tuple(sampled.factors), tuple(sampled.meta["shape"]), sampled.factors) if grid
-            else Axes(("case",), (len(cases),), {}))  # fmt: skip
+    axes = (
+        Axes(tuple(sampled.factors), tuple(sampled.meta["shape"]), sampled.factors)
+        if grid
+        else Axes(("case",), (len(cases),), {})
+    )
 
     def save(beside: Path) -> None:
         import netCDF4
@@ -116,9 +119,14 @@ def _batches(layout: dict[str, store.Layout], rows: int) -> Iterator[dict[str, s
 
 
 def _write(
-    file: Any, plan: Plan, design: Any, cases: np.ndarray, source: np.ndarray, axes: Axes,
+    file: Any,
+    plan: Plan,
+    design: Any,
+    cases: np.ndarray,
+    source: np.ndarray,
+    axes: Axes,
     drawn: dict[str, np.ndarray],
-) -> None:  # fmt: skip
+) -> None:
     layout, coords, attrs, reasons = _layout(plan)
     study = plan.study
     materials = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
@@ -161,17 +169,30 @@ def _write_axes(file: Any, design: Any, axes: Axes, drawn: dict[str, np.ndarray]
     """Labels of the dimensions and every parameter as a coordinate; returns the names of the latter."""
     labels: list[str] = []
     for dim, factor in axes.factors.items():
-        values = np.array(factor.levels, dtype=float) if factor.numeric else np.array(
-            [label(v) for v in factor.levels], dtype=object)  # fmt: skip
+        values = (
+            np.array(factor.levels, dtype=float)
+            if factor.numeric
+            else np.array([label(v) for v in factor.levels], dtype=object)
+        )
         _put(file, dim, (dim,), values, _parameter_attrs(dim))
         if dim == "material_pair":
             for i, name in enumerate(MATERIAL_FIELDS):
-                _put(file, name, (dim,), np.array([pair[i] for pair in factor.levels], dtype=object),
-                     {"long_name": name.replace("_", " ")})  # fmt: skip
+                _put(
+                    file,
+                    name,
+                    (dim,),
+                    np.array([pair[i] for pair in factor.levels], dtype=object),
+                    {"long_name": name.replace("_", " ")},
+                )
                 labels.append(name)
     if "case" not in axes.dims:
-        _put(file, "case", axes.dims, np.arange(design.sizes["case"]).reshape(axes.shape),
-             {"long_name": "case number, for `trackroller repeat`", "units": "1"})  # fmt: skip
+        _put(
+            file,
+            "case",
+            axes.dims,
+            np.arange(design.sizes["case"]).reshape(axes.shape),
+            {"long_name": "case number, for `trackroller repeat`", "units": "1"},
+        )
         labels.append("case")
     else:
         _put(file, "case", ("case",), np.arange(design.sizes["case"]), {"long_name": "case number", "units": "1"})
@@ -233,8 +254,13 @@ def _put(file: Any, name: str, dims: tuple[str, ...], values: Any, attrs: dict[s
         fill = np.nan if values.dtype.kind == "f" else None
         variable = file.createVariable(name, values.dtype, dims, fill_value=fill, **packed)
         variable[...] = values
-    variable.setncatts({key: _attribute(key, value, values.dtype) for key, value in attrs.items()
-                        if value is not None and key != "_FillValue"})  # fmt: skip
+    variable.setncatts(
+        {
+            key: _attribute(key, value, values.dtype)
+            for key, value in attrs.items()
+            if value is not None and key != "_FillValue"
+        }
+    )
 
 
 def _attribute(key: str, value: Any, dtype: np.dtype) -> Any:

@@ -45,7 +45,8 @@ class Analysis(BaseModel):
     measures: tuple[str, ...] = Field(MEASURES, description="given-data measures to take besides the design's own")
     resamples: int = Field(300, ge=50, le=10_000, description="bootstrap resamples behind the 95 % intervals")
     material_scatter: bool | float = Field(
-        False, description="nested: the material's own scatter in B10; true: that of the database; or T_N")  # fmt: skip
+        False, description="nested: the material's own scatter in B10; true: that of the database; or T_N"
+    )
 
     @field_validator("scale")
     @classmethod
@@ -84,8 +85,12 @@ class Analysis(BaseModel):
 def directions(value: Any) -> dict[str, str]:
     """The key `pareto`: two or more outputs or factors, each with `max` or `min`."""
     if not isinstance(value, Mapping) or len(value) == 1:
-        raise InputError("pareto", value, "two or more outputs or factors, each with max or min",
-                         "For example {roller_life_hours: max, friction_power: min}.")  # fmt: skip
+        raise InputError(
+            "pareto",
+            value,
+            "two or more outputs or factors, each with max or min",
+            "For example {roller_life_hours: max, friction_power: min}.",
+        )
     return {str(name): choice(way, f"pareto.{name}", DIRECTIONS) for name, way in value.items()}
 
 
@@ -139,8 +144,12 @@ def check_scatter(wanted: bool | float, design: str, materials: Iterable[Any]) -
         raise InputError("analysis.material_scatter", wanted, "design: nested", "Leave it out: there is no B10 here.")
     bare = [m.name for m in materials if m.scatter_in_cycles is None and m.scatter_in_stress is None]
     if wanted is True and bare:
-        raise InputError("analysis.material_scatter", True, f"no scatter is known of {', '.join(bare)}",
-                         "Give scatter_in_cycles with the materials, or T_N itself: material_scatter: 4.")  # fmt: skip
+        raise InputError(
+            "analysis.material_scatter",
+            True,
+            f"no scatter is known of {', '.join(bare)}",
+            "Give scatter_in_cycles with the materials, or T_N itself: material_scatter: 4.",
+        )
 
 
 def check(config: Any, factors: Mapping[str, Any]) -> None:
@@ -157,8 +166,12 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
         if "expression" not in factors.get(name, {}) and not _numeric(factors.get(name, {})):
             raise InputError("pareto", name, "a number a case", "Names have no more and less.")
     if config.design == "nested" and config.pareto:
-        raise InputError("pareto", dict(config.pareto), "a study that is not nested: what scatters is nobody's to "
-                         "choose", "Compare its design points by B10, or take a grid or a sample.")  # fmt: skip
+        raise InputError(
+            "pareto",
+            dict(config.pareto),
+            "a study that is not nested: what scatters is nobody's to choose",
+            "Compare its design points by B10, or take a grid or a sample.",
+        )
     words = [*free, *MATERIAL_FIELDS, "material_pair", "regime"]
     for text in config.constraints:
         for name in names_in(text):
@@ -182,8 +195,9 @@ def _unknown(where: str, name: str, known: Iterable[str], groups: Iterable[str])
     if name_of in VARIABLES and (group := VARIABLES[name_of].group) not in set(groups):
         if group == "status":
             return InputError(where, name, "a result or a factor")
-        return InputError(where, name, f"its group {group} is not among the study's outputs",
-                          f"Add {group} to outputs.")  # fmt: skip
+        return InputError(
+            where, name, f"its group {group} is not among the study's outputs", f"Add {group} to outputs."
+        )
     if name_of in VARIABLES and variable not in DEFAULTS and "[" not in name:
         dims = VARIABLES[name_of].dims
         example = ",".join(word for d, word in (("contact", "1"), ("body", "roller")) if d in dims)

@@ -21,10 +21,27 @@ from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 
 RESULTS_VERSION = 13  # raise it with every change of the solver that changes numbers: all cases are solved anew
 
-_MATERIAL_VALUES = ("youngs_modulus", "poisson_ratio", "tensile_strength", "fatigue_limit",
-                    "cycles_at_tensile_strength", "cycles_at_fatigue_limit")  # fmt: skip
-_PHYSICS = ("solver.py", "stages", "equilibrium", "geometry.py", "fatigue.py", "accuracy.py", "contact",
-            "contact_choice.py", "contact_choice_probe.py", "halfspace", "quadrature.py")  # fmt: skip
+_MATERIAL_VALUES = (
+    "youngs_modulus",
+    "poisson_ratio",
+    "tensile_strength",
+    "fatigue_limit",
+    "cycles_at_tensile_strength",
+    "cycles_at_fatigue_limit",
+)
+_PHYSICS = (
+    "solver.py",
+    "stages",
+    "equilibrium",
+    "geometry.py",
+    "fatigue.py",
+    "accuracy.py",
+    "contact",
+    "contact_choice.py",
+    "contact_choice_probe.py",
+    "halfspace",
+    "quadrature.py",
+)
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:

@@ -25,8 +25,10 @@ def tell_changed_code(folder: StudyFolder, tell: Tell) -> None:
         except (OSError, AttributeError, ValueError, KeyError):
             continue
         if told != now:
-            tell(f"the solver's source has changed since {folder.root} was solved; its cases are kept, because "
-                 "the results version has not. Delete the folder to solve them anew.")  # fmt: skip
+            tell(
+                f"the solver's source has changed since {folder.root} was solved; its cases are kept, because "
+                "the results version has not. Delete the folder to solve them anew."
+            )
             return
 
 

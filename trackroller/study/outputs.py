@@ -105,9 +105,11 @@ def _available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) ->
     return [
         str(name)
         for name, var in ds.data_vars.items()
-        if name not in known and set(dims) & set(var.dims) and var.dtype.kind in "fiu"
+        if name not in known
+        and set(dims) & set(var.dims)
+        and var.dtype.kind in "fiu"
         and not (set(var.dims) - set(dims)) & FIELDS - set(factors)
-    ]  # fmt: skip
+    ]
 
 
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
@@ -142,8 +144,12 @@ def _raw(ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]) -
         raise InputError("analysis.outputs", name, "contacts are 1 and 2, bodies roller and guide") from None
     values = flat(part, variable, dims).astype(float)
     if values.ndim > 1 and not join:
-        raise InputError("analysis.outputs", name, "one number a case is wanted",
-                         f"Choose a contact and body, such as {variable}[1,roller].")  # fmt: skip
+        raise InputError(
+            "analysis.outputs",
+            name,
+            "one number a case is wanted",
+            f"Choose a contact and body, such as {variable}[1,roller].",
+        )
     if values.ndim > 1:
         values = values.reshape(len(values), -1)
         empty = np.isnan(values).all(axis=1)
@@ -172,8 +178,11 @@ def _usable(
         if name not in REGIMES:
             raise unknown_name("analysis.keep", name, REGIMES)
     usable = np.isin(regime, [REGIMES.index(name) for name in keep])
-    lost = {_REGIME_WORDS[n]: int((regime == i).sum()) for i, n in enumerate(REGIMES)
-            if n not in keep and (regime == i).any()}  # fmt: skip
+    lost = {
+        _REGIME_WORDS[n]: int((regime == i).sum())
+        for i, n in enumerate(REGIMES)
+        if n not in keep and (regime == i).any()
+    }
     converged = flat(ds, "converged", dims) != 0 if "converged" in ds else np.ones(len(regime), dtype=bool)
     if count := int((usable & ~converged).sum()):
         lost["not converged"] = count
@@ -206,7 +215,7 @@ def outputs(
     natural: Iterable[str] = (),
     unlimited: bool = False,
     scale: str | Mapping[str, str] = "",
-) -> list[Output]:  # fmt: skip
+) -> list[Output]:
     """Columns to analyse.
 
     Parameters

@@ -237,8 +237,7 @@ def _seal(folder: StudyFolder, name: str, tell: Tell) -> tuple[str, np.ndarray]:
         where = {case: i for i, case in enumerate(listed.cases.tolist())}
         rows = np.array([where[case] for case in block.cases.tolist()])
         new = chunk_name(block.cases)
-        save_list(folder.case_list(new), block.cases, {k: v[rows] for k, v in listed.columns.items()},
-                   listed.options)  # fmt: skip
+        save_list(folder.case_list(new), block.cases, {k: v[rows] for k, v in listed.columns.items()}, listed.options)
         keep(folder, new, block)
         sealed = (new, block.cases)
     if sealed[0] != name:

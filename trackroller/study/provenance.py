@@ -28,8 +28,13 @@ def git_commit() -> str:
 
         def git(*words: str) -> str:
             # no optional locks: a run that is killed here must not leave the repository locked
-            return subprocess.run(["git", "--no-optional-locks", "-C", str(root), *words], capture_output=True,
-                                  text=True, timeout=10, check=True).stdout.strip()  # fmt: skip
+            return subprocess.run(
+                ["git", "--no-optional-locks", "-C", str(root), *words],
+                capture_output=True,
+                text=True,
+                timeout=10,
+                check=True,
+            ).stdout.strip()
 
         changed = git("status", "--porcelain", "--untracked-files=no", "--", "trackroller")
         return git("rev-parse", "HEAD") + ("+changed" if changed else "")

@@ -17,10 +17,16 @@ Progress = Callable[[int], None]
 
 
 def run_study(
-    study: Study, results: Path | str = "results", *, rerun_failed: bool = False, scheduler: str | None = None,
-    tell: Tell | None = None, started: Callable[[int, int], None] | None = None, progress: Progress | None = None,
+    study: Study,
+    results: Path | str = "results",
+    *,
+    rerun_failed: bool = False,
+    scheduler: str | None = None,
+    tell: Tell | None = None,
+    started: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
     solver: Solver | None = None,
-) -> Plan:  # fmt: skip
+) -> Plan:
     """Plan a study, solve what is missing and gather it.
 
     Parameters

@@ -30,9 +30,11 @@ def _factor() -> dict[str, Any]:
     numbers = {**DISTRIBUTIONS, "linspace": 3, "logspace": 3}
     kinds |= {kind: {"type": "array", "minItems": n, "maxItems": n} for kind, n in numbers.items()}
     return {
-        "type": "object", "properties": {**kinds, "scatter": {"type": "boolean"}}, "additionalProperties": False,
+        "type": "object",
+        "properties": {**kinds, "scatter": {"type": "boolean"}},
+        "additionalProperties": False,
         "oneOf": [{"required": [kind]} for kind in kinds],
-    }  # fmt: skip
+    }
 
 
 def schema() -> dict[str, Any]:
@@ -47,8 +49,10 @@ def schema() -> dict[str, Any]:
     base |= {name: {"type": "string"} for name in MATERIAL_FIELDS} | {"material_pair": pair}
     base |= {name: {"type": ["object", "string", "null"], "description": told} for name, told in MAPPING_FIELDS.items()}
     properties["base"] |= {"properties": base, "additionalProperties": False}
-    named = {name: _factor() | ({"description": PARAMETERS[name].allowed()} if name in PARAMETERS else {})
-             for name in (*base, *OPTION_FACTORS)}  # fmt: skip
+    named = {
+        name: _factor() | ({"description": PARAMETERS[name].allowed()} if name in PARAMETERS else {})
+        for name in (*base, *OPTION_FACTORS)
+    }
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
     properties["design"]["enum"] = list(METHODS)
     properties["outputs"]["items"] = {"enum": list(OUTPUT_GROUPS)}
@@ -57,8 +61,9 @@ def schema() -> dict[str, Any]:
     for name, words in options.items():
         properties[name]["enum"] = list(words)
     properties["accuracy"]["anyOf"] = [
-        {"enum": list(ACCURACIES)}, {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
-    ]  # fmt: skip
+        {"enum": list(ACCURACIES)},
+        {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
+    ]
     for name, words in OPTION_FACTORS.items():
         several = {"type": "array", "items": {"enum": list(words)}, "minItems": 1, "uniqueItems": True}
         properties[name]["anyOf"] = [{"enum": list(words)}, several]

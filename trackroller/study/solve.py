@@ -79,8 +79,10 @@ def check_identity(cases: CaseList, database: Any) -> None:
     from trackroller.roller.case import to_table
 
     if (fingerprints(to_table(cases.design(), database), cases.options) != cases.cases).any():
-        raise WorkError(f"chunk {cases.name}: the materials or the solver changed after the study was planned. "
-                        "Start the run again: it plans anew.")  # fmt: skip
+        raise WorkError(
+            f"chunk {cases.name}: the materials or the solver changed after the study was planned. "
+            "Start the run again: it plans anew."
+        )
 
 
 def missing_rows(cases: CaseList, blocks: list[store.Block]) -> np.ndarray:
@@ -124,9 +126,14 @@ def write_part(folder: StudyFolder, name: str, block: store.Block) -> None:
 
 
 def solve_chunk(
-    folder: StudyFolder, name: str, database: Any = None, *, tell: Tell | None = None,
-    progress: Callable[[int], None] | None = None, solver: Solver | None = None,
-) -> str:  # fmt: skip
+    folder: StudyFolder,
+    name: str,
+    database: Any = None,
+    *,
+    tell: Tell | None = None,
+    progress: Callable[[int], None] | None = None,
+    solver: Solver | None = None,
+) -> str:
     """Solve what is missing of a chunk and keep it.
 
     `progress` is called with the number of cases after each block. Returns one line that sums it up.
@@ -151,8 +158,10 @@ def solve_chunk(
         folder.lock(name).unlink()
     spent = time.perf_counter() - started
     speed = f", {len(rows) / spent:.0f} cases/s" if spent > 0 and len(rows) else ""
-    return (f"chunk {name}: {len(cases.cases)} cases, {len(rows)} solved now in {spent:.1f} s{speed}, "
-            f"{int(chunk.failed.sum())} failed")  # fmt: skip
+    return (
+        f"chunk {name}: {len(cases.cases)} cases, {len(rows)} solved now in {spent:.1f} s{speed}, "
+        f"{int(chunk.failed.sum())} failed"
+    )
 
 
 def _blocks(rows: np.ndarray) -> Iterator[np.ndarray]:

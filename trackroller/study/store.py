@@ -105,16 +105,27 @@ def from_dataset(dataset: xr.Dataset, cases: np.ndarray, seconds: float = 0.0) -
             continue
         attrs = {k: _plain(v) for k, v in variable.attrs.items()}
         if "case" not in variable.dims:
-            coords[str(name)] = {"dims": list(variable.dims), "values": _plain(variable.values), "attrs": attrs,
-                                 "coordinate": name in dataset.coords}  # fmt: skip
+            coords[str(name)] = {
+                "dims": list(variable.dims),
+                "values": _plain(variable.values),
+                "attrs": attrs,
+                "coordinate": name in dataset.coords,
+            }
             continue
         values = variable.transpose("case", ...).values
         dims = tuple(str(d) for d in variable.transpose("case", ...).dims[1:])
         dtype = "f8" if values.dtype.kind == "f" else f"i{min(values.dtype.itemsize, 8)}"
         layout[str(name)] = Layout(dims, values.shape[1:], dtype, attrs)
         columns.append(values.reshape(len(cases), -1).astype(float))
-    block = Block(np.asarray(cases, dtype="S32"), np.hstack(columns), layout, coords, {}, seconds,
-                  {k: _plain(v) for k, v in dataset.attrs.items()})  # fmt: skip
+    block = Block(
+        np.asarray(cases, dtype="S32"),
+        np.hstack(columns),
+        layout,
+        coords,
+        {},
+        seconds,
+        {k: _plain(v) for k, v in dataset.attrs.items()},
+    )
     told = np.atleast_1d(dataset["reason"].values) if "reason" in dataset else np.full(len(block.cases), "")
     for i, failed in enumerate(block.failed):
         if told[i] or failed:
@@ -160,14 +171,20 @@ def concatenate(blocks: list[Block]) -> Block:
     for block in blocks:
         reasons |= block.reasons
     values = np.concatenate([aligned(b, layout) for b in blocks])
-    return Block(np.concatenate([b.cases for b in blocks]), values, layout, first.coords, reasons,
-                 sum(b.seconds for b in blocks), first.attrs)  # fmt: skip
+    return Block(
+        np.concatenate([b.cases for b in blocks]),
+        values,
+        layout,
+        first.coords,
+        reasons,
+        sum(b.seconds for b in blocks),
+        first.attrs,
+    )
 
 
 def _header(block: Block) -> str:
     layout = {k: [list(v.dims), list(v.shape), v.dtype, v.attrs] for k, v in block.layout.items()}
-    return json.dumps({"layout": layout, "coords": block.coords, "reasons": block.reasons,
-                       "attrs": block.attrs})  # fmt: skip
+    return json.dumps({"layout": layout, "coords": block.coords, "reasons": block.reasons, "attrs": block.attrs})
 
 
 def _digest(header: str, cases: np.ndarray, values: np.ndarray) -> str:
@@ -189,12 +206,18 @@ def write(path: Path, block: Block) -> None:
             file.createDimension("case", n)
             file.createDimension("quantity", width)
             file.createDimension("hex", 32)
-            values = file.createVariable("values", "f8", ("case", "quantity"), compression="zlib", complevel=1,
-                                         shuffle=n >= 64)  # fmt: skip
+            values = file.createVariable(
+                "values", "f8", ("case", "quantity"), compression="zlib", complevel=1, shuffle=n >= 64
+            )
             values[:] = block.values
             file.createVariable("cases", "S1", ("case", "hex"))[:] = block.cases.view("S1").reshape(n, 32)
-            file.setncatts({"layout": header, "seconds": float(block.seconds),
-                            "digest": _digest(header, block.cases, block.values)})  # fmt: skip
+            file.setncatts(
+                {
+                    "layout": header,
+                    "seconds": float(block.seconds),
+                    "digest": _digest(header, block.cases, block.values),
+                }
+            )
 
     write_whole(path, save)
 

@@ -24,8 +24,11 @@ def adopt(results: Path) -> None:
     summary = json.loads((results / "tradeoff.json").read_text(encoding="utf-8"))
     if not all(summary["ladders"].values()):
         raise SystemExit("a ladder is empty: measure all contact models first")
-    told = {"made_by": "python -m validation.adopt.tradeoff, from snakemake tradeoff", "sample": summary["sample"],
-            "ladders": summary["ladders"]}  # fmt: skip
+    told = {
+        "made_by": "python -m validation.adopt.tradeoff, from snakemake tradeoff",
+        "sample": summary["sample"],
+        "ladders": summary["ladders"],
+    }
     LADDERS.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
     DATA.mkdir(exist_ok=True)
     shutil.copy(results / "tradeoff.json", DATA / "tradeoff.json")

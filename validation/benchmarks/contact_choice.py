@@ -30,8 +30,20 @@ COVERAGE, TABLE_COVERAGE, SMALLEST = 0.98, 0.99, 1e-5
 FACTOR = 1.2  # of the difference of the forces from the table, for materials more unlike than it holds
 TOLERANCES = (0.01, 0.02, 0.05, 0.1, 0.2)
 MODELS = ("sliding", "fastsim", "kalker")
-KEPT = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral", "semi_axis_rolling",
-        "rolling_radius_shift", "stick_area_fraction", "peak_stress", "regime", "converged", "residual")  # fmt: skip
+KEPT = (
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+    "rolling_radius_shift",
+    "stick_area_fraction",
+    "peak_stress",
+    "regime",
+    "converged",
+    "residual",
+)
 BATCH = 20
 
 
@@ -53,8 +65,15 @@ def solve_all(cases: list[tr.Case], exact: str = "preview") -> dict[str, np.ndar
     accuracy = {"sliding": "standard", "fastsim": "preview", "kalker": exact}
     parts: dict[str, list[Any]] = {name: [] for name in KEPT}
     for i in range(0, len(cases), BATCH):
-        found = [tr.solve(cases[i : i + BATCH], outputs=("forces", "contact", "peak_stress"), contact_model=m,
-                          accuracy=accuracy[m]) for m in MODELS]  # fmt: skip
+        found = [
+            tr.solve(
+                cases[i : i + BATCH],
+                outputs=("forces", "contact", "peak_stress"),
+                contact_model=m,
+                accuracy=accuracy[m],
+            )
+            for m in MODELS
+        ]
         for name in KEPT:
             parts[name].append(np.stack([ds[name].values for ds in found]))
         print(f"{min(i + BATCH, len(cases))} of {len(cases)}", file=sys.stderr, flush=True)
@@ -126,13 +145,22 @@ def make_map(cases: list[tr.Case], found: dict[str, np.ndarray], finest: np.ndar
         more = np.full(len(x), np.nan)
         more[good] = (error[0, k][good] - FACTOR * force[good]) / exact.friction[good]
         beyond = choice.beyond_table(x)
-        table_error = [max(np.quantile(more[good & finest & kind], TABLE_COVERAGE, method="higher"), 0.0)
-                       for kind in (~beyond, beyond)]  # fmt: skip
-        told = {"centre": centre, "width": width, "coefficients": fit(z, log_error), "factor": np.array(FACTOR),
-                "margin": np.quantile(left, COVERAGE, method="higher"),
-                "table_error": np.array(table_error)}  # fmt: skip
-        print(f"{name}: {good.sum()} designs, margin {np.exp(told['margin']):.2f}, spread {left.std():.2f}; "
-              f"table {table_error[0]:.4f}, {table_error[1]:.4f} of mu ({(good & finest).sum()} designs)")  # fmt: skip
+        table_error = [
+            max(np.quantile(more[good & finest & kind], TABLE_COVERAGE, method="higher"), 0.0)
+            for kind in (~beyond, beyond)
+        ]
+        told = {
+            "centre": centre,
+            "width": width,
+            "coefficients": fit(z, log_error),
+            "factor": np.array(FACTOR),
+            "margin": np.quantile(left, COVERAGE, method="higher"),
+            "table_error": np.array(table_error),
+        }
+        print(
+            f"{name}: {good.sum()} designs, margin {np.exp(told['margin']):.2f}, spread {left.std():.2f}; "
+            f"table {table_error[0]:.4f}, {table_error[1]:.4f} of mu ({(good & finest).sum()} designs)"
+        )
         for key, value in told.items():
             out.setdefault(key, []).append(np.asarray(value))
     for row in out["table_error"]:  # one table for both models
@@ -140,8 +168,13 @@ def make_map(cases: list[tr.Case], found: dict[str, np.ndarray], finest: np.ndar
     lower, upper, names = x[rolls].min(axis=0), x[rolls].max(axis=0), list(choice.FEATURES)
     upper[names.index("lift")] = 0.0  # no axial force, which a random draw never gives
     lower[names.index("drive")] = 0.0
-    return {**{key: np.array(values) for key, values in out.items()}, "lower": lower, "upper": upper,
-            "coverage": np.array(COVERAGE), "designs": np.array(int(rolls.sum()))}  # fmt: skip
+    return {
+        **{key: np.array(values) for key, values in out.items()},
+        "lower": lower,
+        "upper": upper,
+        "coverage": np.array(COVERAGE),
+        "designs": np.array(int(rolls.sum())),
+    }
 
 
 def check(cases: list[tr.Case], found: dict[str, np.ndarray], tolerances=TOLERANCES) -> dict[str, np.ndarray]:
@@ -156,8 +189,13 @@ def check(cases: list[tr.Case], found: dict[str, np.ndarray], tolerances=TOLERAN
         met.append(np.mean(own <= tolerance))
         cheap = chosen != MODELS[-1]
         met_cheaper.append(np.mean(own[cheap] <= tolerance) if cheap.any() else np.nan)
-    return {"tolerances": np.array(tolerances), "shares": np.array(shares), "met": np.array(met),
-            "met_cheaper": np.array(met_cheaper), "checked": np.array(int(rolls.sum()))}  # fmt: skip
+    return {
+        "tolerances": np.array(tolerances),
+        "shares": np.array(shares),
+        "met": np.array(met),
+        "met_cheaper": np.array(met_cheaper),
+        "checked": np.array(int(rolls.sum())),
+    }
 
 
 def main() -> int:

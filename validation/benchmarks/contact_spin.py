@@ -29,11 +29,17 @@ SPINS = (0.0, 0.2, 0.5, 10.0)
 def solved(accuracy: str) -> xr.Dataset:
     """All rollers with both models, as a study gathers them."""
     rows = list(itertools.product(FRICTIONS, ANGLES, DISTANCES, LOADS))
-    inputs = {"friction_coefficient": [r[0] for r in rows], "contact_angle": [r[1] for r in rows],
-              "axis_distance": [r[2] for r in rows], "axial_force": [LOADS[r[3]][0] for r in rows],
-              "motor_force": [LOADS[r[3]][1] for r in rows]}  # fmt: skip
-    cases = [tr.Case(radial_force=-200.0, guide_curve_radius=np.inf, **dict(zip(inputs, v, strict=True)))
-             for v in zip(*inputs.values(), strict=True)]  # fmt: skip
+    inputs = {
+        "friction_coefficient": [r[0] for r in rows],
+        "contact_angle": [r[1] for r in rows],
+        "axis_distance": [r[2] for r in rows],
+        "axial_force": [LOADS[r[3]][0] for r in rows],
+        "motor_force": [LOADS[r[3]][1] for r in rows],
+    }
+    cases = [
+        tr.Case(radial_force=-200.0, guide_curve_radius=np.inf, **dict(zip(inputs, v, strict=True)))
+        for v in zip(*inputs.values(), strict=True)
+    ]
     parts = []
     for model in ("sliding", "kalker"):
         ds = tr.solve(cases, outputs=OUTPUTS, contact_model=model, accuracy=accuracy)
@@ -65,20 +71,35 @@ def main() -> None:
     paired = ladder.pairs(solved(parser.parse_args().accuracy))
     found = ladder.errors(paired).sel(contact_model="sliding")
     mu, lean, spin = (paired[n].values for n in ("friction_coefficient", "lean", "spin"))
-    pressed = {name: (paired["axial_force"] == a).values & (paired["motor_force"] == d).values
-               for name, (a, d) in LOADS.items()}  # fmt: skip
+    pressed = {
+        name: (paired["axial_force"] == a).values & (paired["motor_force"] == d).values
+        for name, (a, d) in LOADS.items()
+    }
     rows = [(str(name), [cell(e.values)]) for name, e in found.data_vars.items()]
     table("all rollers: within 5 % (median, largest error in %)", ["sliding"], rows)
     heads = [f"{a:g} to {b:g}" for a, b in itertools.pairwise(LEANS)]
     for quantity in ("normal_force", "peak_stress"):
         e = found[quantity].values
-        rows = [(name, [cell(e[own & (lean >= a) & (lean < b)]) for a, b in itertools.pairwise(LEANS)])
-                for name, own in pressed.items()]  # fmt: skip
+        rows = [
+            (name, [cell(e[own & (lean >= a) & (lean < b)]) for a, b in itertools.pairwise(LEANS)])
+            for name, own in pressed.items()
+        ]
         table(f"{quantity} by mu tan(alpha): within 5 % (median, largest error in %)", heads, rows)
-        rows = [(f"{m:g}", [cell(e[(mu == m) & (spin >= a) & (spin < b) & (paired["contact_angle"].values <= 60)])
-                            for a, b in itertools.pairwise(SPINS)]) for m in FRICTIONS]  # fmt: skip
-        table(f"{quantity} by friction and spin phi rho, alpha to 60 deg", [f"{a:g} to {b:g}" for a, b in
-              itertools.pairwise(SPINS)], rows)  # fmt: skip
+        rows = [
+            (
+                f"{m:g}",
+                [
+                    cell(e[(mu == m) & (spin >= a) & (spin < b) & (paired["contact_angle"].values <= 60)])
+                    for a, b in itertools.pairwise(SPINS)
+                ],
+            )
+            for m in FRICTIONS
+        ]
+        table(
+            f"{quantity} by friction and spin phi rho, alpha to 60 deg",
+            [f"{a:g} to {b:g}" for a, b in itertools.pairwise(SPINS)],
+            rows,
+        )
 
 
 if __name__ == "__main__":

@@ -43,12 +43,12 @@ def laws() -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = []
     for lowest in (0.3, 0.5, 0.7, 0.9):
         middle = 0.5 * (1.0 + lowest)
-        found += [{"kind": "linear", "speed": SPEED, "lowest": lowest},
-                  {"kind": "exponential", "speed": SPEED, "lowest": lowest},
-                  {"kind": "table", "speed": [0.0, 0.5 * SPEED, SPEED, 3 * SPEED],
-                   "friction": [1.0, 1.0, middle, lowest]},
-                  {"kind": "table", "speed": [0.0, 0.2 * SPEED, 2 * SPEED],
-                   "friction": [1.0, 1.1, lowest]}]  # fmt: skip
+        found += [
+            {"kind": "linear", "speed": SPEED, "lowest": lowest},
+            {"kind": "exponential", "speed": SPEED, "lowest": lowest},
+            {"kind": "table", "speed": [0.0, 0.5 * SPEED, SPEED, 3 * SPEED], "friction": [1.0, 1.0, middle, lowest]},
+            {"kind": "table", "speed": [0.0, 0.2 * SPEED, 2 * SPEED], "friction": [1.0, 1.1, lowest]},
+        ]
     return found
 
 
@@ -117,15 +117,24 @@ def measured(cases: list[tr.Case], model: str, accuracy: str, compare: bool) -> 
     residual = ds.residual.values
     unmet = np.flatnonzero(rolls & (ds.converged.values == 0))
     told: dict[str, Any] = {
-        "cases": len(cases), "cpu_seconds_per_case": round(spent / len(cases), 4),
+        "cases": len(cases),
+        "cpu_seconds_per_case": round(spent / len(cases), 4),
         "regimes": {name: int(np.sum(regime == k)) for k, name in enumerate(REGIMES)},
-        "rolling_not_converged": len(unmet), "failed_cases": np.flatnonzero(regime == 3).tolist(),
-        "not_converged_cases": unmet.tolist(), "their_residuals": residual[unmet].tolist(),
-        "residual_percentiles": dict(zip(("50", "90", "99", "100"), np.percentile(residual[rolls], (50, 90, 99, 100)),
-                                         strict=True)),
-        "energy_residual_percentiles": dict(zip(("50", "90", "99", "100"), np.percentile(
-            np.abs(ds.energy_residual.values[rolls]), (50, 90, 99, 100)), strict=True)),
-    }  # fmt: skip
+        "rolling_not_converged": len(unmet),
+        "failed_cases": np.flatnonzero(regime == 3).tolist(),
+        "not_converged_cases": unmet.tolist(),
+        "their_residuals": residual[unmet].tolist(),
+        "residual_percentiles": dict(
+            zip(("50", "90", "99", "100"), np.percentile(residual[rolls], (50, 90, 99, 100)), strict=True)
+        ),
+        "energy_residual_percentiles": dict(
+            zip(
+                ("50", "90", "99", "100"),
+                np.percentile(np.abs(ds.energy_residual.values[rolls]), (50, 90, 99, 100)),
+                strict=True,
+            )
+        ),
+    }
     if compare:
         told |= compared(cases, ds, model, accuracy)
     return told
@@ -149,7 +158,7 @@ def compared(cases: list[tr.Case], ds: Any, model: str, accuracy: str) -> dict[s
         "other_than_followed": {str(i): [REGIMES[ds.regime.values[i]], w[i], line[i]] for i in np.flatnonzero(other)},
         "other_than_both_neighbours": {str(i): [own[i], below[i], above[i]] for i in np.flatnonzero(apart)},
         "differs_from_one_neighbour": int(np.sum(np.abs(below - above) > APART)),
-    }  # fmt: skip
+    }
 
 
 def _told(cases: list[tr.Case], ds: Any) -> np.ndarray:

@@ -61,8 +61,12 @@ def main() -> None:
         limit = on_one_grid(case, given.elements)
         rows.append((coarse, fine, fine + 2 * (fine - coarse), own, limit))
         limits[record["name"]] = float(f"{limit:.6g}")
-        print(f"{record['name']:26s} " + " ".join(f"{1e3 * v:8.4f}" for v in rows[-1])
-              + f"   {time.process_time() - start:.0f} s", flush=True)  # fmt: skip
+        print(
+            f"{record['name']:26s} "
+            + " ".join(f"{1e3 * v:8.4f}" for v in rows[-1])
+            + f"   {time.process_time() - start:.0f} s",
+            flush=True,
+        )
         if given.output:
             stored = {"about": ABOUT, "elements": given.elements, "rolling_radius_shift": limits}
             given.output.write_text(json.dumps(stored, indent=1), encoding="utf-8")

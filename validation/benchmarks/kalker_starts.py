@@ -66,8 +66,10 @@ def at_random(count: int) -> None:
         if not found.converged.all():
             raise SystemExit(f"patch {i} did not converge")
     for name, v in (("ms, influence functions and coarse grid counted", 1e3 * spent), ("products", products)):
-        print(f"{name}: median {np.median(v):.0f}, 90 % {np.quantile(v, 0.9):.0f}, 99 % {np.quantile(v, 0.99):.0f}, "
-              f"most {v.max():.0f}")  # fmt: skip
+        print(
+            f"{name}: median {np.median(v):.0f}, 90 % {np.quantile(v, 0.9):.0f}, 99 % {np.quantile(v, 0.99):.0f}, "
+            f"most {v.max():.0f}"
+        )
     print(f"stick {sticks.min():.2f} to {sticks.max():.2f}, a tenth above {np.quantile(sticks, 0.9):.2f}")
 
 
@@ -105,8 +107,10 @@ def equilibria(count: int) -> None:
 
 def batch(count: int) -> None:
     rng = np.random.default_rng(7)
-    cases = [Case(friction_coefficient=float(mu), motor_force=float(force))
-             for mu, force in zip(rng.uniform(0.05, 0.5, count), rng.choice([0.0, -10.0, 10.0], count), strict=True)]
+    cases = [
+        Case(friction_coefficient=float(mu), motor_force=float(force))
+        for mu, force in zip(rng.uniform(0.05, 0.5, count), rng.choice([0.0, -10.0, 10.0], count), strict=True)
+    ]
     spent, kept = {}, os.environ.get("NUMBA_NUM_THREADS")
     for threads in (1, os.cpu_count() or 1):
         os.environ["NUMBA_NUM_THREADS"] = str(threads)

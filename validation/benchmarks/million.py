@@ -73,7 +73,7 @@ def hand_out() -> None:
 
 def measured(words: list[str], place: Path) -> tuple[float, float, float]:
     """Run a command; returns seconds, CPU seconds (children of it included) and the peak of memory [GB] of one
-    process."""  # fmt: skip
+    process."""
     begun = time.perf_counter()
     with open(place / "told.txt", "w+", encoding="utf-8") as told:
         process = subprocess.Popen(words, cwd=place, stdout=told, stderr=subprocess.STDOUT)
@@ -109,10 +109,15 @@ def main() -> None:
     me, snakemake = [sys.executable, __file__], str(Path(sys.executable).parent / "snakemake")
     run = [snakemake, "--cores", "all", "--quiet", "all", "--"]
     steps = [("plan", [*me, "step", "plan"]), ("graph", [snakemake, "-n", "--quiet", "all"])]
-    steps += [("solve", [*run, "results/million/study.nc"])] if "real" in words else [
-        ("hand out", [*me, "step", "hand_out"]), ("gather", [*run, "results/million/study.nc"])]  # fmt: skip
-    steps += [(rule, [*run, f"results/million/{file}"]) for rule, file in
-              (("analysis", "sensitivity.nc"), ("figures", "figures"), ("report", "report.html"))]  # fmt: skip
+    steps += (
+        [("solve", [*run, "results/million/study.nc"])]
+        if "real" in words
+        else [("hand out", [*me, "step", "hand_out"]), ("gather", [*run, "results/million/study.nc"])]
+    )
+    steps += [
+        (rule, [*run, f"results/million/{file}"])
+        for rule, file in (("analysis", "sensitivity.nc"), ("figures", "figures"), ("report", "report.html"))
+    ]
     for step, command in steps:
         wall, cpu, memory = measured(command, place)
         print(f"{step:10}{wall:8.1f} s {cpu:8.1f} s CPU {memory:6.2f} GB", flush=True)

@@ -32,8 +32,13 @@ def random_patches(n: int, seed: int, slenderness: tuple[float, float] = (1.0, 5
     alpha = rng.uniform(0.2, 1.3, n) * rng.choice([-1, 1], n)
     shift = rng.uniform(-1.2, 1.2, n) * a * np.sin(alpha)
     size = np.maximum(a, 1.0)
-    rows = patch_rows(Ellipse(a, b, np.ones(n)), Slip(np.sin(alpha), np.cos(alpha), 30 * size, 60 * size, shift),
-                      friction, 2, np.where(rng.random(n) < 0.15, 1.0, 0.0))  # fmt: skip
+    rows = patch_rows(
+        Ellipse(a, b, np.ones(n)),
+        Slip(np.sin(alpha), np.cos(alpha), 30 * size, 60 * size, shift),
+        friction,
+        2,
+        np.where(rng.random(n) < 0.15, 1.0, 0.0),
+    )
     return rows, rng.uniform(0, 0.5, (n, 2))
 
 
@@ -62,8 +67,10 @@ def sampled(row: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarray:
     x = rng.uniform(-1, 1, half)
     fold = (row[9] + np.where(x < pole, row[10] * (x + 1), row[11] * (x - 1)) * a) / b
     chord = np.clip(pole + rng.normal(size=half) * min(b / a, 1), -1, 1)
-    x, y = np.append(x, chord), np.append(fold + rng.normal(size=half) * min(a / b, 1),
-                                          np.sqrt(1 - chord**2) * rng.uniform(-1, 1, half))  # fmt: skip
+    x, y = (
+        np.append(x, chord),
+        np.append(fold + rng.normal(size=half) * min(a / b, 1), np.sqrt(1 - chord**2) * rng.uniform(-1, 1, half)),
+    )
     turning = np.stack([x, y, rng.exponential(0.3, 2 * half) * (rng.random(2 * half) < 0.3)], axis=1)
     return project(np.concatenate([everywhere, turning]))
 
@@ -103,17 +110,32 @@ def main() -> None:
     found = find_peaks(rows, nu, PRESETS[args.accuracy].peak)
     below = force[:, :, 0] / found.stress - 1
     missed = np.argwhere(below > found.error)
-    print(json.dumps({
-        "patches": args.patches, "accuracy": args.accuracy,
-        "peaks_within_0.2_percent": float(np.mean(below <= 2e-3)),
-        "covered_of_peaks": float(np.mean(below <= found.error)),
-        "covered_of_patches": float(np.mean((below <= found.error).all(axis=1))),
-        "peaks_above_brute_force_by_0.2_percent": int(np.sum(below < -2e-3)),
-        "estimate_percentiles_50_90": [float(q) for q in np.quantile(found.error, (0.5, 0.9))],
-        "missed": [{"patch": int(i), "body": ("roller", "guide")[k], "ellipticity": float(rows[i, 0] / rows[i, 1]),
-                    "friction": float(rows[i, 2]), "below": float(below[i, k]), "estimate": float(found.error[i, k]),
-                    "place": force[i, k, 1:].round(3).tolist()} for i, k in missed],
-    }, indent=2))  # fmt: skip
+    print(
+        json.dumps(
+            {
+                "patches": args.patches,
+                "accuracy": args.accuracy,
+                "peaks_within_0.2_percent": float(np.mean(below <= 2e-3)),
+                "covered_of_peaks": float(np.mean(below <= found.error)),
+                "covered_of_patches": float(np.mean((below <= found.error).all(axis=1))),
+                "peaks_above_brute_force_by_0.2_percent": int(np.sum(below < -2e-3)),
+                "estimate_percentiles_50_90": [float(q) for q in np.quantile(found.error, (0.5, 0.9))],
+                "missed": [
+                    {
+                        "patch": int(i),
+                        "body": ("roller", "guide")[k],
+                        "ellipticity": float(rows[i, 0] / rows[i, 1]),
+                        "friction": float(rows[i, 2]),
+                        "below": float(below[i, k]),
+                        "estimate": float(found.error[i, k]),
+                        "place": force[i, k, 1:].round(3).tolist(),
+                    }
+                    for i, k in missed
+                ],
+            },
+            indent=2,
+        )
+    )
 
 
 if __name__ == "__main__":

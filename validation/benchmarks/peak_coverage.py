@@ -43,11 +43,18 @@ def random_case(rng: np.random.Generator) -> tr.Case:
     curve = float(rng.choice([math.inf, 1, -1])) * 10 ** rng.uniform(1.3, 3)
     drive = int(rng.integers(-1, 2))  # driven, free, braked
     return tr.Case(
-        radial_force=-load, axial_force=load * rng.uniform(-0.4, 0.4),
-        motor_force=drive * load * 10 ** rng.uniform(-2, -0.3), friction_coefficient=rng.uniform(0, 1),
-        contact_angle=alpha, guide_profile_radius=guide, roller_profile_radius=profile, guide_curve_radius=curve,
+        radial_force=-load,
+        axial_force=load * rng.uniform(-0.4, 0.4),
+        motor_force=drive * load * 10 ** rng.uniform(-2, -0.3),
+        friction_coefficient=rng.uniform(0, 1),
+        contact_angle=alpha,
+        guide_profile_radius=guide,
+        roller_profile_radius=profile,
+        guide_curve_radius=curve,
         axis_distance=rolling + guide * math.cos(math.radians(alpha)),
-        roller_material=random_material(rng), guide_material=random_material(rng))  # fmt: skip
+        roller_material=random_material(rng),
+        guide_material=random_material(rng),
+    )
 
 
 def sample(n: int, seed: int) -> list[tr.Case]:
@@ -70,9 +77,12 @@ def compare(standard: Any, reference: Any) -> dict[str, np.ndarray]:
     a, b = standard.peak_stress.values, reference.peak_stress.values
     found = np.isfinite(a), np.isfinite(b)
     error = np.where(found[0] & found[1], a / np.where(found[1], b, 1.0) - 1.0, np.inf)
-    return {"error": error, "present": found[0] | found[1],
-            "estimate": np.nan_to_num(standard.error_estimate.values, nan=-1.0, posinf=np.inf),
-            "slack": np.nan_to_num(reference.error_estimate.values, nan=0.0, posinf=0.0)}  # fmt: skip
+    return {
+        "error": error,
+        "present": found[0] | found[1],
+        "estimate": np.nan_to_num(standard.error_estimate.values, nan=-1.0, posinf=np.inf),
+        "slack": np.nan_to_num(reference.error_estimate.values, nan=0.0, posinf=0.0),
+    }
 
 
 def summary(peaks: dict[str, np.ndarray], keep: np.ndarray) -> dict[str, Any]:
@@ -84,8 +94,10 @@ def summary(peaks: dict[str, np.ndarray], keep: np.ndarray) -> dict[str, Any]:
     error, estimate, slack = np.abs(peaks["error"]), peaks["estimate"], peaks["slack"]
 
     def share(good: np.ndarray) -> dict[str, float]:
-        return {"of_cases": float(np.mean((good | ~present).all(axis=(1, 2))[rows])),
-                "of_peaks": float(np.mean(good[present]))}  # fmt: skip
+        return {
+            "of_cases": float(np.mean((good | ~present).all(axis=(1, 2))[rows])),
+            "of_peaks": float(np.mean(good[present])),
+        }
 
     worst = np.where(present, error, 0.0).max(axis=(1, 2))[rows]
     return {
@@ -109,21 +121,27 @@ def percentiles(values: np.ndarray) -> dict[str, float]:
     return {f"{p:g}": float(v) for p, v in zip(LEVELS, np.percentile(values, LEVELS, method="higher"), strict=True)}
 
 
-def worst_cases(cases: list[tr.Case], peaks: dict[str, np.ndarray], validity: np.ndarray, keep: np.ndarray,
-                count: int = 5) -> list[dict[str, Any]]:  # fmt: skip
+def worst_cases(
+    cases: list[tr.Case], peaks: dict[str, np.ndarray], validity: np.ndarray, keep: np.ndarray, count: int = 5
+) -> list[dict[str, Any]]:
     """The cases of `keep` with the largest error of a peak, whole enough to be solved again."""
     error = np.where(peaks["present"] & keep[:, None, None], np.abs(peaks["error"]), -1.0).reshape(len(cases), -1)
     rows = np.argsort(-error.max(axis=1), kind="stable")[:count]
     listed = []
     for i in (int(r) for r in rows if error[r].max() >= 0):
         contact, body = np.unravel_index(int(error[i].argmax()), (2, 2))
-        listed.append({
-            "index": i, "error": float(peaks["error"][i, contact, body]),
-            "estimate": float(peaks["estimate"][i, contact, body]),
-            "estimate_of_reference": float(peaks["slack"][i, contact, body]),
-            "contact": int(contact) + 1, "body": ("roller", "guide")[body],
-            "validity": [name for k, name in enumerate(VALIDITY_BITS) if validity[i] >> k & 1],
-            "case": cases[i].as_dict()})  # fmt: skip
+        listed.append(
+            {
+                "index": i,
+                "error": float(peaks["error"][i, contact, body]),
+                "estimate": float(peaks["estimate"][i, contact, body]),
+                "estimate_of_reference": float(peaks["slack"][i, contact, body]),
+                "contact": int(contact) + 1,
+                "body": ("roller", "guide")[body],
+                "validity": [name for k, name in enumerate(VALIDITY_BITS) if validity[i] >> k & 1],
+                "case": cases[i].as_dict(),
+            }
+        )
     return listed
 
 
@@ -141,7 +159,10 @@ def measure(n: int, seed: int) -> dict[str, Any]:
     ratio = (reference.semi_axis_lateral / reference.semi_axis_rolling).values
     regimes = standard.regime.attrs["flag_meanings"].split()
     return {
-        "cases": n, "seed": seed, "seconds": seconds, "conformal_cases": int(conformal.sum()),
+        "cases": n,
+        "seed": seed,
+        "seconds": seconds,
+        "conformal_cases": int(conformal.sum()),
         "regimes": {name: int(np.sum(standard.regime.values == k)) for k, name in enumerate(regimes)},
         "regimes_that_differ": int(np.sum(standard.regime.values != reference.regime.values)),
         "ellipticity_from_to": [float(np.nanmin(ratio)), float(np.nanmax(ratio))],
@@ -149,7 +170,7 @@ def measure(n: int, seed: int) -> dict[str, Any]:
         "without_conformal": summary(peaks, ~conformal),
         "worst": worst_cases(cases, peaks, validity, np.ones(n, dtype=bool)),
         "worst_without_conformal": worst_cases(cases, peaks, validity, ~conformal),
-    }  # fmt: skip
+    }
 
 
 def printable(value: Any) -> Any:

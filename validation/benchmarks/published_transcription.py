@@ -28,8 +28,10 @@ POINTS = 40  # surface points per direction
 POPSIZE = 15  # scipy's default; 3 unknowns make a population of 45
 AXES = "xyz"
 _ORDERS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)] + [
-    (i, j, 4 - i - j) for i in range(4) for j in range(4 - i)  # every fourth derivative has at least one z
-]  # fmt: skip
+    (i, j, 4 - i - j)
+    for i in range(4)
+    for j in range(4 - i)  # every fourth derivative has at least one z
+]
 
 
 @dataclass(frozen=True)
@@ -58,11 +60,9 @@ def derivatives_of_omega() -> dict:
     omega = z * sp.log(rho + z) - rho
     # factor in place of simplify, which takes minutes; rho is named once, as anybody would
     return {
-        (i, j, k): sp.lambdify(
-            (x, y, z, name), sp.factor(sp.diff(omega, x, i, y, j, z, k).subs(rho, name)), "numpy"
-        )
+        (i, j, k): sp.lambdify((x, y, z, name), sp.factor(sp.diff(omega, x, i, y, j, z, k).subs(rho, name)), "numpy")
         for i, j, k in _ORDERS
-    }  # fmt: skip
+    }
 
 
 @cache
@@ -195,9 +195,17 @@ def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
 
 
 def tractions_of_paper(
-    a: float, b: float, max_pressure: float, sine: float, cosine: float, profile_radius: float, shift: float,
-    friction: float, poisson_ratio: float, points: int = POINTS,
-) -> Contact:  # fmt: skip
+    a: float,
+    b: float,
+    max_pressure: float,
+    sine: float,
+    cosine: float,
+    profile_radius: float,
+    shift: float,
+    friction: float,
+    poisson_ratio: float,
+    points: int = POINTS,
+) -> Contact:
     """Tractions on the roller by eqs. (21)-(30), assumption 2. sine, cosine of the SIGNED contact angle; lengths in mm,
     shift = r_Delta0; omega_r cancels. The misprint of eq. (21) is set right."""
     x, y = np.linspace(-a, a, points), np.linspace(-b, b, points)
@@ -230,16 +238,30 @@ def contacts_of_case(case=None, points: int = POINTS) -> list[Contact]:
         a, b, p = (float(one[n]) for n in ("semi_axis_lateral", "semi_axis_rolling", "max_pressure"))
         mu = case.friction_coefficient
         found.append(
-            tractions_of_paper(a, b, p, sign * np.sin(angle), np.cos(angle), case.guide_profile_radius,
-                               float(ds["rolling_radius_shift"]), 0.3 if mu is None else mu, 0.33, points)
-        )  # fmt: skip
+            tractions_of_paper(
+                a,
+                b,
+                p,
+                sign * np.sin(angle),
+                np.cos(angle),
+                case.guide_profile_radius,
+                float(ds["rolling_radius_shift"]),
+                0.3 if mu is None else mu,
+                0.33,
+                points,
+            )
+        )
     return found
 
 
 def time_transcription(
-    case=None, contacts: Sequence[Contact] | None = None, sample: int = 20, seed: int = 1,
-    style: str = "printed", full: bool = False,
-) -> dict:  # fmt: skip
+    case=None,
+    contacts: Sequence[Contact] | None = None,
+    sample: int = 20,
+    seed: int = 1,
+    style: str = "printed",
+    full: bool = False,
+) -> dict:
     """Seconds the transcription needs for the peaks of one case (both contacts, one body each).
 
     Times `sample` evaluations at random points of each contact and multiplies by the evaluations the search takes
@@ -267,10 +289,15 @@ def time_transcription(
         count = evaluations_of_search(contact, seed)
         seconds, cpu, evaluations = seconds + each * count, cpu + each_cpu * count, evaluations + count
     return {
-        "seconds_per_case": seconds, "cpu_seconds_per_case": cpu, "evaluations": evaluations,
+        "seconds_per_case": seconds,
+        "cpu_seconds_per_case": cpu,
+        "evaluations": evaluations,
         "seconds_per_evaluation": seconds / evaluations,
-        "points": contacts[0].x.size, "sample": 0 if full else sample, "measured": full, "style": style,
-    }  # fmt: skip
+        "points": contacts[0].x.size,
+        "sample": 0 if full else sample,
+        "measured": full,
+        "style": style,
+    }
 
 
 if __name__ == "__main__":

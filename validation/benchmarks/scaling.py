@@ -56,17 +56,27 @@ def measure_here(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
         times.append(time.perf_counter() - start)
         cpu.append(time.process_time() - start_cpu)
     peak = peak_memory()
-    return {"outputs": outputs, "accuracy": accuracy, "cases": n, "seconds": min(times),
-            "cpu_seconds": min(cpu), "runs": len(times),
-            "peak_megabytes": peak, "grown_by_megabytes": peak - warm, "result_megabytes": ds.nbytes / 1e6,
-            "failed": int((ds.regime == 3).sum()), "threads": thread_count()}  # fmt: skip
+    return {
+        "outputs": outputs,
+        "accuracy": accuracy,
+        "cases": n,
+        "seconds": min(times),
+        "cpu_seconds": min(cpu),
+        "runs": len(times),
+        "peak_megabytes": peak,
+        "grown_by_megabytes": peak - warm,
+        "result_megabytes": ds.nbytes / 1e6,
+        "failed": int((ds.regime == 3).sum()),
+        "threads": thread_count(),
+    }
 
 
 def measure(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
     """The same in a fresh process."""
     task = json.dumps({"n": n, "outputs": outputs, "accuracy": accuracy})
-    done = subprocess.run([sys.executable, str(Path(__file__).resolve()), "--one", task],
-                          stdout=subprocess.PIPE, text=True, check=True)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, str(Path(__file__).resolve()), "--one", task], stdout=subprocess.PIPE, text=True, check=True
+    )
     return json.loads(done.stdout)
 
 
@@ -88,13 +98,18 @@ def exponent(rows: list[dict[str, Any]]) -> float:
 def show(rows: list[dict[str, Any]]) -> None:
     """Header for an empty list, else one line a row."""
     if not rows:
-        print(f"{'outputs':<20}{'accuracy':<11}{'cases':>8}{'time [s]':>11}{'CPU [s]':>10}{'CPU/case':>10}"
-              f"{'peak [MB]':>11}{'grown by':>10}{'failed':>8}")  # fmt: skip
+        print(
+            f"{'outputs':<20}{'accuracy':<11}{'cases':>8}{'time [s]':>11}{'CPU [s]':>10}{'CPU/case':>10}"
+            f"{'peak [MB]':>11}{'grown by':>10}{'failed':>8}"
+        )
     for r in rows:
-        print(f"{r['outputs']:<20}{r['accuracy']:<11}{r['cases']:>8}{r['seconds']:>11.4f}"
-              f"{r['cpu_seconds']:>10.4f}{1e3 * r['cpu_seconds'] / r['cases']:>7.3f} ms"
-              f"{r['peak_megabytes']:>11.0f}{r['grown_by_megabytes']:>10.1f}"
-              f"{r['failed']:>8}", flush=True)  # fmt: skip
+        print(
+            f"{r['outputs']:<20}{r['accuracy']:<11}{r['cases']:>8}{r['seconds']:>11.4f}"
+            f"{r['cpu_seconds']:>10.4f}{1e3 * r['cpu_seconds'] / r['cases']:>7.3f} ms"
+            f"{r['peak_megabytes']:>11.0f}{r['grown_by_megabytes']:>10.1f}"
+            f"{r['failed']:>8}",
+            flush=True,
+        )
 
 
 def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folder: Path) -> tuple[Path, Path]:
@@ -120,9 +135,12 @@ def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folde
         right.set(xlabel="Accuracy", ylabel="CPU time of a case [ms]")
         right.margins(x=0.15)
         left.legend()
-        style.head(figure, "Time grows linearly with the number of cases" if linear(by_size) else "Time and memory",
-                   f"{last['threads']} thread{'s' if last['threads'] > 1 else ''}; left and middle at standard "
-                   f"accuracy, right with {by_accuracy[0]['cases']} cases")  # fmt: skip
+        style.head(
+            figure,
+            "Time grows linearly with the number of cases" if linear(by_size) else "Time and memory",
+            f"{last['threads']} thread{'s' if last['threads'] > 1 else ''}; left and middle at standard "
+            f"accuracy, right with {by_accuracy[0]['cases']} cases",
+        )
         style.finish(figure)
         return style.save(figure, folder, "scaling")
 
@@ -135,8 +153,14 @@ def linear(by_size: list[dict[str, Any]]) -> bool:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--largest", type=int, default=10_000, help="largest number of cases, such as 100000")
-    parser.add_argument("--figure", nargs="?", type=Path, const=HERE.parents[1] / "docs" / "figures", metavar="FOLDER",
-                        help="write scaling.svg and scaling.png, to docs/figures if no folder is given")  # fmt: skip
+    parser.add_argument(
+        "--figure",
+        nargs="?",
+        type=Path,
+        const=HERE.parents[1] / "docs" / "figures",
+        metavar="FOLDER",
+        help="write scaling.svg and scaling.png, to docs/figures if no folder is given",
+    )
     parser.add_argument("--one", help=argparse.SUPPRESS)
     args = parser.parse_args()
     if args.one:

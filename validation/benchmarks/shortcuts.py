@@ -20,19 +20,28 @@ def scenes(n: int) -> dict[str, tuple[list[dict], dict]]:
     """Cases and options of each scene; n cases each."""
     rng = np.random.default_rng(1)
     friction = rng.uniform(0.05, 0.4, n)
-    plain = [{"friction_coefficient": float(f), "axial_force": float(a)}
-             for f, a in zip(friction, rng.uniform(-40, 40, n), strict=True)]  # fmt: skip
+    plain = [
+        {"friction_coefficient": float(f), "axial_force": float(a)}
+        for f, a in zip(friction, rng.uniform(-40, 40, n), strict=True)
+    ]
     heavy = [dict(case, radial_force=-float(r)) for case, r in zip(plain, np.geomspace(100, 9000, n), strict=True)]
     return {
         "nothing to spare (all cases differ)": (plain, {}),
         "no axial force: one contact": ([dict(case, axial_force=0.0) for case in plain], {}),
         "travel speed in 10 levels: mechanics once": (
-            [dict(plain[i // 10], velocity=10.0 + i % 10) for i in range(n)], {}),
-        "no friction, loads: one search": ([{"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.0,
-                                            "radial_force": -float(r)} for r in np.geomspace(50, 2000, n)], {}),
+            [dict(plain[i // 10], velocity=10.0 + i % 10) for i in range(n)],
+            {},
+        ),
+        "no friction, loads: one search": (
+            [
+                {"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.0, "radial_force": -float(r)}
+                for r in np.geomspace(50, 2000, n)
+            ],
+            {},
+        ),
         "forces only: no stress": (plain, {"outputs": ("forces",)}),
         "stop_if peak_stress > R_m (loads to 9 kN)": (heavy, {"stop_if": "peak_stress > R_m"}),
-    }  # fmt: skip
+    }
 
 
 def seconds(cases, **told) -> tuple[float, object]:

@@ -37,9 +37,18 @@ def differences(hertz, grid, friction: np.ndarray) -> dict[str, np.ndarray]:
     arm = np.sqrt(hertz.semi_axis_lateral * hertz.semi_axis_rolling).values
     shift = (grid.rolling_radius_shift - hertz.rolling_radius_shift).values[:, None]
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = {name: (grid[name] / hertz[name] - 1).values
-                 for name in ("normal_force", "max_pressure", "semi_axis_lateral", "semi_axis_rolling", "patch_area",
-                              "friction_energy_per_distance", "peak_stress")}  # fmt: skip
+        found = {
+            name: (grid[name] / hertz[name] - 1).values
+            for name in (
+                "normal_force",
+                "max_pressure",
+                "semi_axis_lateral",
+                "semi_axis_rolling",
+                "patch_area",
+                "friction_energy_per_distance",
+                "peak_stress",
+            )
+        }
         for name in ("lateral_force", "driving_force"):
             found[name] = (grid[name] - hertz[name]).values / limit
         found["spin_moment"] = (grid.spin_moment - hertz.spin_moment).values / (limit * arm)
@@ -60,8 +69,10 @@ def main() -> None:
     start = time.process_time()
     drawn = cases if args.circles else [as_parabolas(case) for case in cases]
     grid = tr.solve(drawn, OUTPUTS, accuracy=args.accuracy, contact_model=args.model, normal="halfspace")
-    print(f"{(time.process_time() - start) / len(cases):.2f} s of processor time a case; regimes that differ:",
-          int(np.sum(hertz.regime.values != grid.regime.values)))  # fmt: skip
+    print(
+        f"{(time.process_time() - start) / len(cases):.2f} s of processor time a case; regimes that differ:",
+        int(np.sum(hertz.regime.values != grid.regime.values)),
+    )
     found = differences(hertz, grid, np.array([case.friction_coefficient for case in cases]))
     inside = ((hertz.validity.values | grid.validity.values) & CONFORMAL) == 0
     ratio = (hertz.semi_axis_lateral / hertz.semi_axis_rolling).values
@@ -76,8 +87,10 @@ def main() -> None:
             part = part[np.isfinite(part)]
             if part.size:
                 print(f"    {name:30s} {np.median(part):.3f}  {np.quantile(part, 0.95):.3f}  largest {part.max():.2f}")
-        print(f"    peaks covered {100 * covered[chosen].mean():.1f} %, "
-              f"within 1 % {100 * np.mean(np.abs(found['peak_stress'][chosen]) < 0.01):.1f} %")  # fmt: skip
+        print(
+            f"    peaks covered {100 * covered[chosen].mean():.1f} %, "
+            f"within 1 % {100 * np.mean(np.abs(found['peak_stress'][chosen]) < 0.01):.1f} %"
+        )
 
 
 if __name__ == "__main__":

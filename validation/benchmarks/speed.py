@@ -25,22 +25,39 @@ def load_study(n: int, seed: int = 1) -> list[tr.Case]:
     rng = np.random.default_rng(seed)
     steel = "1.7225-normalised"
     materials = (steel, "PA6", "POM", "EN AW-7075")
-    return [tr.Case(friction_coefficient=rng.uniform(0.02, 0.4), axial_force=rng.uniform(-30, 30),
-                    motor_force=rng.uniform(-20, 20), radial_force=-rng.uniform(100, 300),
-                    roller_material=str(rng.choice(materials)), guide_material=steel) for _ in range(n)]  # fmt: skip
+    return [
+        tr.Case(
+            friction_coefficient=rng.uniform(0.02, 0.4),
+            axial_force=rng.uniform(-30, 30),
+            motor_force=rng.uniform(-20, 20),
+            radial_force=-rng.uniform(100, 300),
+            roller_material=str(rng.choice(materials)),
+            guide_material=steel,
+        )
+        for _ in range(n)
+    ]
 
 
 def geometry_study(n: int, seed: int = 2) -> list[tr.Case]:
     """Every curvature is new."""
     rng = np.random.default_rng(seed)
-    return [tr.Case(friction_coefficient=rng.uniform(0.02, 0.4), axial_force=rng.uniform(-30, 30),
-                    motor_force=rng.uniform(-20, 20), contact_angle=rng.uniform(20, 60),
-                    axis_distance=rng.uniform(15, 40), roller_profile_radius=-rng.uniform(6.2, 12),
-                    guide_curve_radius=float(rng.choice([np.inf, 220, 60, -300]))) for _ in range(n)]  # fmt: skip
+    return [
+        tr.Case(
+            friction_coefficient=rng.uniform(0.02, 0.4),
+            axial_force=rng.uniform(-30, 30),
+            motor_force=rng.uniform(-20, 20),
+            contact_angle=rng.uniform(20, 60),
+            axis_distance=rng.uniform(15, 40),
+            roller_profile_radius=-rng.uniform(6.2, 12),
+            guide_curve_radius=float(rng.choice([np.inf, 220, 60, -300])),
+        )
+        for _ in range(n)
+    ]
 
 
-def rate(cases: list[tr.Case], outputs: tuple[str, ...], accuracy: str = "standard",
-         repeats: int = 3) -> dict[str, float]:  # fmt: skip
+def rate(
+    cases: list[tr.Case], outputs: tuple[str, ...], accuracy: str = "standard", repeats: int = 3
+) -> dict[str, float]:
     """Cases per second, and processor time of a case over all threads [ms]; the best of `repeats`."""
     times, cpu = [], []
     for _ in range(repeats):

@@ -54,21 +54,32 @@ if os.environ.get("SURVIVE_LOG"):
 FLOW, RUN, DASK = "snakemake", "run", "run --scheduler local"
 ALL, HEAD, WORKER = "everything", "the main process", "one worker"
 KILLS = [
-    (FLOW, ALL, "solving"), (RUN, ALL, "solving"), (FLOW, HEAD, "solving"), (FLOW, WORKER, "solving"),
-    (DASK, ALL, "solving"), (RUN, ALL, "solving"), (DASK, WORKER, "solving"), (RUN, ALL, "gathering"),
-    (FLOW, ALL, "gathering"), (FLOW, ALL, "drawing"),
-]  # fmt: skip
+    (FLOW, ALL, "solving"),
+    (RUN, ALL, "solving"),
+    (FLOW, HEAD, "solving"),
+    (FLOW, WORKER, "solving"),
+    (DASK, ALL, "solving"),
+    (RUN, ALL, "solving"),
+    (DASK, WORKER, "solving"),
+    (RUN, ALL, "gathering"),
+    (FLOW, ALL, "gathering"),
+    (FLOW, ALL, "drawing"),
+]
 
 
 def start(place: Path, how: str) -> subprocess.Popen:
     """A run in a session of its own."""
-    words = [TOOLS / "snakemake", "--cores", "2", "--nocolor"] if how == FLOW else [
-        TOOLS / "trackroller", *how.replace("run", "run study.yaml -q", 1).split()]  # fmt: skip
+    words = (
+        [TOOLS / "snakemake", "--cores", "2", "--nocolor"]
+        if how == FLOW
+        else [TOOLS / "trackroller", *how.replace("run", "run study.yaml -q", 1).split()]
+    )
     paths = f"{place / 'spy'}:{os.environ.get('PYTHONPATH', '')}"
     env = os.environ | {"SURVIVE_LOG": str(place / "solved.log"), "PYTHONPATH": paths}
     with open(place / "told.txt", "a") as told:
-        return subprocess.Popen([str(w) for w in words], cwd=place, env=env, start_new_session=True, stdout=told,
-                                stderr=subprocess.STDOUT)  # fmt: skip
+        return subprocess.Popen(
+            [str(w) for w in words], cwd=place, env=env, start_new_session=True, stdout=told, stderr=subprocess.STDOUT
+        )
 
 
 def members(session: int) -> dict[int, str]:
@@ -80,8 +91,11 @@ def members(session: int) -> dict[int, str]:
 
 def workers(session: int) -> list[int]:
     """Jobs of the workflow, or dask's worker processes."""
-    return [pid for pid, words in members(session).items()
-            if ".snakemake/scripts/" in words or "--multiprocessing-fork" in words]  # fmt: skip
+    return [
+        pid
+        for pid, words in members(session).items()
+        if ".snakemake/scripts/" in words or "--multiprocessing-fork" in words
+    ]
 
 
 def results(place: Path) -> Path:
@@ -134,8 +148,11 @@ def prepare(study: str = STUDY) -> Path:
     for part in ("workflow", "profiles", "config"):
         shutil.copytree(ROOT / part, place / part)
     shutil.copy(ROOT / "Snakefile", place)
-    for folder, name, text in (("config", "config.yaml", "study: study.yaml\nresults: results\n"),
-                               (".", "study.yaml", study), ("spy", "sitecustomize.py", SPY)):  # fmt: skip
+    for folder, name, text in (
+        ("config", "config.yaml", "study: study.yaml\nresults: results\n"),
+        (".", "study.yaml", study),
+        ("spy", "sitecustomize.py", SPY),
+    ):
         (place / folder).mkdir(exist_ok=True)
         (place / folder / name).write_text(text)
     return place
@@ -188,8 +205,10 @@ def ride(kills: list[tuple[str, str, str]], seed: int = 1, study: str = STUDY) -
         sets = [xr.load_dataset(results(place) / "study.nc") for place in (calm, rough)]
         differ = [n for n in sets[0].variables if not _same(sets[0][n].values, sets[1][n].values)]
         again = solved_again(rough)
-        print(f"{len(kills)} kills, {sets[0]['regime'].size} cases; begun {marks(rough, b'S')}, kept before and begun "
-              f"again {again}; differing variables: {differ or 'none'}")  # fmt: skip
+        print(
+            f"{len(kills)} kills, {sets[0]['regime'].size} cases; begun {marks(rough, b'S')}, kept before and begun "
+            f"again {again}; differing variables: {differ or 'none'}"
+        )
         wrong += [f"{again} finished cases solved again"] * bool(again) + [f"different: {differ}"] * bool(differ)
         if not (results(rough) / "report.html").is_file():
             wrong.append("no report")

@@ -42,14 +42,20 @@ def check(tolerances: list[float], count: int, seed: int, model: str) -> list[di
         errors = relative_errors(result, reference)
         worst = np.max([errors[name] for name in QUANTITIES], axis=0)
         median, p95, p99 = (float(v) for v in percentiles(worst / tolerance))
-        records.append({
-            "tolerance": tolerance, "cases": len(cases), "within": float(np.mean(worst <= tolerance)),
-            "error_over_tolerance": {"median": median, "95": p95, "99": p99},
-            "within_by_quantity": {name: float(np.mean(errors[name] <= tolerance)) for name in QUANTITIES},
-            "cpu_ms": round(1e3 * seconds / len(cases), 3),
-            "elements": settings.elements if model != "sliding" else None, "force_nodes": settings.force_nodes,
-            "peak": list(vars(settings.peak).values()), "worst": [int(i) for i in np.argsort(-worst)[:5]],
-        })  # fmt: skip
+        records.append(
+            {
+                "tolerance": tolerance,
+                "cases": len(cases),
+                "within": float(np.mean(worst <= tolerance)),
+                "error_over_tolerance": {"median": median, "95": p95, "99": p99},
+                "within_by_quantity": {name: float(np.mean(errors[name] <= tolerance)) for name in QUANTITIES},
+                "cpu_ms": round(1e3 * seconds / len(cases), 3),
+                "elements": settings.elements if model != "sliding" else None,
+                "force_nodes": settings.force_nodes,
+                "peak": list(vars(settings.peak).values()),
+                "worst": [int(i) for i in np.argsort(-worst)[:5]],
+            }
+        )
     return records
 
 

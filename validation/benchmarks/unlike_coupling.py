@@ -74,10 +74,12 @@ def main() -> None:
                 r, limit = found.resultants, friction * LOAD
                 n, share = len(pressure), pressure / pressure.sum()
                 line = WIDER * ((2 * np.arange(n) + 1) / n - 1)
-                print(f"{name:22s} {'both ways' if k else 'one way':10s} F_T {r.lateral_force[0] / limit:8.4f}  "
-                      f"F_A {r.driving_force[0] / limit:8.4f}  M_R {r.spin_moment[0] / limit:8.4f}  "
-                      f"p {pressure.max():6.2f}  "
-                      f"centre {share.sum(axis=0) @ line:7.4f} {share.sum(axis=1) @ line:7.4f}")  # fmt: skip
+                print(
+                    f"{name:22s} {'both ways' if k else 'one way':10s} F_T {r.lateral_force[0] / limit:8.4f}  "
+                    f"F_A {r.driving_force[0] / limit:8.4f}  M_R {r.spin_moment[0] / limit:8.4f}  "
+                    f"p {pressure.max():6.2f}  "
+                    f"centre {share.sum(axis=0) @ line:7.4f} {share.sum(axis=1) @ line:7.4f}"
+                )
 
 
 if __name__ == "__main__":

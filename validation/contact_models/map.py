@@ -26,12 +26,16 @@ def choice_map(tolerance: float = 0.05) -> Figure:
     upper, lower = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
     _regions(upper, tolerance)
     _shares(lower)
-    handles = [Patch(facecolor=c, hatch=h, edgecolor="0.2", label=n)
-               for c, h, n in zip(SHADES, HATCHES, LABELS, strict=True)]  # fmt: skip
+    handles = [
+        Patch(facecolor=c, hatch=h, edgecolor="0.2", label=n) for c, h, n in zip(SHADES, HATCHES, LABELS, strict=True)
+    ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3)
-    style.head(figure, "The cheapest contact model that a tolerance allows",
-               f"Above: paper's roller, free, no axial force, {style.number(100 * tolerance)} % (dashed: half and "
-               "twice). Below: random designs.")  # fmt: skip
+    style.head(
+        figure,
+        "The cheapest contact model that a tolerance allows",
+        f"Above: paper's roller, free, no axial force, {style.number(100 * tolerance)} % (dashed: half and "
+        "twice). Below: random designs.",
+    )
     style.finish(figure)
     return figure
 
@@ -42,8 +46,11 @@ def _regions(axes: Axes, tolerance: float) -> None:
     from trackroller.roller.options import Options
 
     mus, angles = np.geomspace(0.02, 0.6, POINTS), np.linspace(12.0, 78.0, POINTS)
-    cases = [Case(friction_coefficient=float(mu), contact_angle=float(angle), axial_force=0, motor_force=0)
-             for angle in angles for mu in mus]  # fmt: skip
+    cases = [
+        Case(friction_coefficient=float(mu), contact_angle=float(angle), axial_force=0, motor_force=0)
+        for angle in angles
+        for mu in mus
+    ]
     table = to_table(cases, None)
     x, y = np.meshgrid(mus, angles)
 

@@ -46,9 +46,12 @@ def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
         last.set_xlabel(r"$x_\mathrm{C}$ (lateral) [mm]")
     bar = figure.colorbar(image, ax=axes, location="right", aspect=40, pad=0.01, ticks=MaxNLocator(5))
     bar.set_label(r"Friction energy density over $\mu p_\mathrm{max}$ [–]")
-    style.head(figure, "Friction across the patch",
-               f"Contact {contact}. Arrows: friction on the roller; hatched: stick; shade: dissipation per area and "
-               r"distance over $\mu p_\mathrm{max}$.")  # fmt: skip
+    style.head(
+        figure,
+        "Friction across the patch",
+        f"Contact {contact}. Arrows: friction on the roller; hatched: stick; shade: dissipation per area and "
+        r"distance over $\mu p_\mathrm{max}$.",
+    )
     style.finish(figure)
     return figure
 
@@ -62,8 +65,14 @@ def _patch(axes: Axes, one: xr.Dataset, mu: float, top: float) -> Any:
     dense = np.nan_to_num(one["friction_energy_density"].values) / scale
     levels = np.linspace(0, top, 13)
     image = axes.contourf(x, y, np.clip(dense, 0, top), levels=levels, cmap="Greys", extend="max", alpha=0.55)
-    edge = Ellipse((0, 0), 2 * float(one["semi_axis_lateral"]), 2 * float(one["semi_axis_rolling"]),
-                   facecolor="none", edgecolor="black", linewidth=0.9)  # fmt: skip
+    edge = Ellipse(
+        (0, 0),
+        2 * float(one["semi_axis_lateral"]),
+        2 * float(one["semi_axis_rolling"]),
+        facecolor="none",
+        edgecolor="black",
+        linewidth=0.9,
+    )
     axes.add_patch(edge)
     image.set_clip_path(edge)
     slip = np.hypot(one["slip_lateral"].values, one["slip_rolling"].values)

@@ -65,10 +65,13 @@ def draw_patches(case: Any, out: Path) -> list[FigureInfo]:
     infos = []
     with style.look():
         for draw, name, caption in (
-            (lambda: ladder_patches.patches(patch_fields(case)), "models-patches",
-             "Friction, stick and dissipation across contact 1 by contact model, free and driven."),
+            (
+                lambda: ladder_patches.patches(patch_fields(case)),
+                "models-patches",
+                "Friction, stick and dissipation across contact 1 by contact model, free and driven.",
+            ),
             (ladder_map.choice_map, "models-map", "Cheapest contact model within a tolerance."),
-        ):  # fmt: skip
+        ):
             try:
                 style.save(draw(), out, name)
             except OSError:  # a full disk is not the figure's fault
@@ -93,14 +96,20 @@ def patch_fields(case: Any, wanted: Sequence[tuple[float, float]] = PATCHES) -> 
 
     press = abs(case.radial_force) / np.cos(np.deg2rad(case.contact_angle))
     drives = [-float(f"{share * mu * press:.1g}") if share else 0.0 for mu, share in wanted]
-    cases = [dataclasses.replace(case, motor_force=drive, friction_coefficient=mu)
-             for (mu, _), drive in zip(wanted, drives, strict=True)]  # fmt: skip
+    cases = [
+        dataclasses.replace(case, motor_force=drive, friction_coefficient=mu)
+        for (mu, _), drive in zip(wanted, drives, strict=True)
+    ]
     parts = []
     for model in MODELS:
         ds = solve(cases, outputs=("forces", "contact", "tractions"), contact_model=model)
-        parts.append(ds.rename(case="row").assign_coords(
-            friction_coefficient=("row", [mu for mu, _ in wanted]), motor_force=("row", drives), contact_model=model,
-        ))  # fmt: skip
+        parts.append(
+            ds.rename(case="row").assign_coords(
+                friction_coefficient=("row", [mu for mu, _ in wanted]),
+                motor_force=("row", drives),
+                contact_model=model,
+            )
+        )
     # full sliding is drawn on its own number of points
     points = {n: max(p.sizes[n] for p in parts) for n in ("x", "y")}
     parts = [_resampled(p, points) for p in parts]
@@ -121,6 +130,8 @@ def map_sentences() -> list[str]:
     said = [f"Of {int(m['checked'])} random designs, auto takes"]
     parts = []
     for tolerance, shares in zip(m["tolerances"], m["shares"], strict=True):
-        parts.append(f"for {percent(float(tolerance))} sliding in {percent(shares[0])}, FASTSIM in "
-                     f"{percent(shares[1])} and the exact theory in {percent(shares[2])}")  # fmt: skip
+        parts.append(
+            f"for {percent(float(tolerance))} sliding in {percent(shares[0])}, FASTSIM in "
+            f"{percent(shares[1])} and the exact theory in {percent(shares[2])}"
+        )
     return [f"{said[0]} {'; '.join(parts)}; within the tolerance were at least {percent(float(np.min(m['met'])))}."]

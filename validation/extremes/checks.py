@@ -19,8 +19,18 @@ if TYPE_CHECKING:
 EPS = float(np.finfo(float).eps)
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
 OUTPUTS = ("forces", "contact", "peak_stress", "life")
-NEEDED = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral", "semi_axis_rolling",
-          "max_pressure", "peak_stress", "error_estimate", "life_cycles")  # fmt: skip
+NEEDED = (
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+    "max_pressure",
+    "peak_stress",
+    "error_estimate",
+    "life_cycles",
+)
 COMPARED = {"normal_force": (2, 1), "max_pressure": (0, 1), "peak_stress": (0, 1), "transmitted_force": (2, 1)}
 TURNED = ("lateral_force", "spin_moment", "spin_pole_lateral")
 # tolerances by contact model: exact sums, or patches solved by iteration on a grid
@@ -117,12 +127,17 @@ def _difference(run: Run, other: xr.Dataset, length: float, modulus: float, mirr
         y = _rows(y)
         scale = np.max(np.abs(x), axis=1, initial=0.0)
         if name == "transmitted_force":  # measured against what friction can give
-            scale = np.nansum(run.result.max_shear.values / np.maximum(run.result.max_pressure.values, 1e-300)
-                              * run.result.normal_force.values, axis=1)  # fmt: skip
+            scale = np.nansum(
+                run.result.max_shear.values
+                / np.maximum(run.result.max_pressure.values, 1e-300)
+                * run.result.normal_force.values,
+                axis=1,
+            )
         gap = np.max(np.abs(x - y), axis=1)
         if name == "peak_stress":  # a search: what lies within its own estimate is not told apart
-            known = np.nanmax(_rows(run.result.error_estimate.values) + _rows(other.error_estimate.values), axis=1,
-                              initial=0.0)  # fmt: skip
+            known = np.nanmax(
+                _rows(run.result.error_estimate.values) + _rows(other.error_estimate.values), axis=1, initial=0.0
+            )
             gap = np.maximum(gap - known * scale, 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             worst = np.fmax(worst, np.where(both & (gap > 0), gap / scale, 0.0))
@@ -234,8 +249,9 @@ def estimate(run: Run) -> Finding:
 
 
 CHECKS: dict[str, Callable[[Run], Finding]] = {
-    f.__name__: f for f in (finite, solved, residual, scaling, mirror, condition, monotone, constant, border, limit,
-                            close, estimate)}  # fmt: skip
+    f.__name__: f
+    for f in (finite, solved, residual, scaling, mirror, condition, monotone, constant, border, limit, close, estimate)
+}
 
 
 def examine(scene: Scene, model: str, accuracy: str) -> tuple[Run, list[Finding]]:

@@ -22,9 +22,20 @@ from trackroller.report.figures.style import (
 )
 
 Record = dict[str, Any]
-CHECKS = {"finite": "finite", "solved": "solved", "residual": "residual", "scaling": "units", "mirror": "mirror",
-          "condition": "cond.", "monotone": "monot.", "constant": "constant", "border": "border",
-          "limit": "limit", "close": "close", "estimate": "estimate"}  # fmt: skip
+CHECKS = {
+    "finite": "finite",
+    "solved": "solved",
+    "residual": "residual",
+    "scaling": "units",
+    "mirror": "mirror",
+    "condition": "cond.",
+    "monotone": "monot.",
+    "constant": "constant",
+    "border": "border",
+    "limit": "limit",
+    "close": "close",
+    "estimate": "estimate",
+}
 
 
 def deviation_text(value: float) -> str:
@@ -60,30 +71,44 @@ def draw_map(record: Record, out_dir: Path, model: str) -> FigureInfo:
                 axes.add_patch(_cell(j, i, str(grey), "" if f["holds"] else "xxxx"))
                 beyond = name == "solved" and f["holds"] and deviation > 0
                 shown = "beyond" if beyond else deviation_text(deviation)
-                axes.text(j, i, shown, ha="center", va="center", fontsize=6.5,
-                          fontweight="normal" if f["holds"] else "bold")  # fmt: skip
+                axes.text(
+                    j, i, shown, ha="center", va="center", fontsize=6.5, fontweight="normal" if f["holds"] else "bold"
+                )
         axes.set(xlim=(-0.5, len(names) - 0.5), ylim=(len(rows) - 0.5, -0.5))
         axes.set_xticks(range(len(names)), [CHECKS[n] for n in names], fontsize=7)
         axes.set_yticks(range(len(rows)), [r["scene"] for r in rows])
         axes.xaxis.tick_top()
         axes.tick_params(length=0)
-        head(figure, f"Extremes with the contact model {model}",
-             "largest deviation of each check, relative (finite, solved: share of cases; condition: number; estimate: "
-             "over the estimated error); darker: closer to what is tolerated on a logarithmic scale; crossed: not "
-             "met; blank: not claimed; beyond: fails where the model ends, as stated")  # fmt: skip
+        head(
+            figure,
+            f"Extremes with the contact model {model}",
+            "largest deviation of each check, relative (finite, solved: share of cases; condition: number; estimate: "
+            "over the estimated error); darker: closer to what is tolerated on a logarithmic scale; crossed: not "
+            "met; blank: not claimed; beyond: fails where the model ends, as stated",
+        )
         finish(figure)
         axes.spines[["left", "bottom"]].set_visible(False)
         save(figure, out_dir, f"extremes_{model}")
     total = sum(len(r["findings"]) for r in rows)
-    return FigureInfo(f"extremes_{model}", f"Scenes against checks, contact model {model}.",
-                      f"{total - broken} of {total} claims hold.")  # fmt: skip
+    return FigureInfo(
+        f"extremes_{model}",
+        f"Scenes against checks, contact model {model}.",
+        f"{total - broken} of {total} claims hold.",
+    )
 
 
 def _cell(j: int, i: int, colour: str, hatch: str) -> Any:
     from matplotlib.patches import Rectangle
 
-    return Rectangle((j - 0.47, i - 0.45), 0.94, 0.9, facecolor=colour, edgecolor="0.35" if hatch else colour,
-                     hatch=hatch, linewidth=0.5)  # fmt: skip
+    return Rectangle(
+        (j - 0.47, i - 0.45),
+        0.94,
+        0.9,
+        facecolor=colour,
+        edgecolor="0.35" if hatch else colour,
+        hatch=hatch,
+        linewidth=0.5,
+    )
 
 
 def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
@@ -102,25 +127,46 @@ def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
             for k in range(4):
                 if (regime == k).any():
                     seen.add(k)
-                    axes.contourf(axial, friction, (regime == k).astype(float), levels=[0.5, 1.5],
-                                  colors=[REGIME_COLOURS[k]], hatches=[REGIME_HATCHES[k]])  # fmt: skip
+                    axes.contourf(
+                        axial,
+                        friction,
+                        (regime == k).astype(float),
+                        levels=[0.5, 1.5],
+                        colors=[REGIME_COLOURS[k]],
+                        hatches=[REGIME_HATCHES[k]],
+                    )
             if np.array(fields["jamming"]).any():
-                axes.contour(axial, friction, np.array(fields["jamming"]), levels=[0.5], colors="k", linestyles="--",
-                             linewidths=1.0)  # fmt: skip
+                axes.contour(
+                    axial,
+                    friction,
+                    np.array(fields["jamming"]),
+                    levels=[0.5],
+                    colors="k",
+                    linestyles="--",
+                    linewidths=1.0,
+                )
             axes.axvline(1.0, color="k", linewidth=0.7, linestyle=":")
             axes.set(yscale="log", xlabel=r"Axial force over $|F_\mathrm{rad}|\,\tan\alpha$ [–]", title=name)
         panels[0].set_ylabel(r"Friction coefficient $\mu$ [–]")
-        handles = [Patch(facecolor=REGIME_COLOURS[k], hatch=REGIME_HATCHES[k], edgecolor="0.3",
-                         label=REGIME_LABELS[k]) for k in sorted(seen)]  # fmt: skip
+        handles = [
+            Patch(facecolor=REGIME_COLOURS[k], hatch=REGIME_HATCHES[k], edgecolor="0.3", label=REGIME_LABELS[k])
+            for k in sorted(seen)
+        ]
         figure.legend(handles=handles, loc="outside lower center", ncols=4)
-        head(figure, "Regimes around the borders",
-             "paper's roller, 200 N, alpha = 30°; dotted: lift-off without friction; above the dashed line friction "
-             "alone carries the lateral load (bit jamming)")  # fmt: skip
+        head(
+            figure,
+            "Regimes around the borders",
+            "paper's roller, 200 N, alpha = 30°; dotted: lift-off without friction; above the dashed line friction "
+            "alone carries the lateral load (bit jamming)",
+        )
         finish(figure)
         save(figure, out_dir, "extremes_regimes")
-    return FigureInfo("extremes_regimes", "Regimes over axial force and friction.",
-                      "Friction lets a contact lift at a smaller axial force, at self-locking the slightest one; "
-                      "little friction cannot drive.")  # fmt: skip
+    return FigureInfo(
+        "extremes_regimes",
+        "Regimes over axial force and friction.",
+        "Friction lets a contact lift at a smaller axial force, at self-locking the slightest one; "
+        "little friction cannot drive.",
+    )
 
 
 def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
@@ -134,19 +180,32 @@ def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
             axes.scatter(errors, np.full(len(errors), i), marker="|", color="k", s=60, linewidths=1.1)
             axes.scatter([kernel["tolerance"]], [i], marker="<", color="0.5", s=22, label=None if i else "tolerated")
             if kernel["single"] is not None:
-                axes.scatter([kernel["single"]], [i], marker="o", facecolors="none", edgecolors="k", s=22,
-                             label=None if i else "worst in single precision")  # fmt: skip
+                axes.scatter(
+                    [kernel["single"]],
+                    [i],
+                    marker="o",
+                    facecolors="none",
+                    edgecolors="k",
+                    s=22,
+                    label=None if i else "worst in single precision",
+                )
         axes.set(xscale="log", xlabel="Relative error [–]", ylim=(len(kernels) - 0.5, -0.5))
         axes.set_yticks(range(len(kernels)), [f"{k['name']}\nover {k['quantity']}" for k in kernels])
         axes.legend(loc="lower right")
-        head(figure, "Kernels against many digits",
-             "each stroke is a point of the sweep in double precision (1e-17: no difference); the 12-point rule stands "
-             "against 600 points and shows its own quadrature error, not cancellation")  # fmt: skip
+        head(
+            figure,
+            "Kernels against many digits",
+            "each stroke is a point of the sweep in double precision (1e-17: no difference); the 12-point rule stands "
+            "against 600 points and shows its own quadrature error, not cancellation",
+        )
         finish(figure)
         save(figure, out_dir, "extremes_kernels")
-    return FigureInfo("extremes_kernels", "Relative errors of kernels where cancellation lurks.",
-                      "In double precision every kernel keeps nine digits or more (the 12-point rule seven, by its "
-                      "quadrature); in single precision some closed formulas keep none.")  # fmt: skip
+    return FigureInfo(
+        "extremes_kernels",
+        "Relative errors of kernels where cancellation lurks.",
+        "In double precision every kernel keeps nine digits or more (the 12-point rule seven, by its "
+        "quadrature); in single precision some closed formulas keep none.",
+    )
 
 
 def draw_extremes(record: Record, out_dir: Path) -> list[FigureInfo]:

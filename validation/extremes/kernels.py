@@ -113,8 +113,9 @@ def depth() -> KernelError:
         exact_z, exact_r = (float(e) for e in _on_axis(mpmath.mpf(v)))
         errors.append(max(abs(s[2] - exact_z), abs(s[0] - exact_r)) / max(abs(exact_z), abs(exact_r)))
     single = _single_axis(np.array([v for v in values if v]))
-    return KernelError("plane waves and far field on the axis", "z/a", values, tuple(map(float, errors)), 1e-9,
-                       single=single)  # fmt: skip
+    return KernelError(
+        "plane waves and far field on the axis", "z/a", values, tuple(map(float, errors)), 1e-9, single=single
+    )
 
 
 def _single_axis(z: np.ndarray) -> float:
@@ -153,8 +154,9 @@ def pole_positions() -> KernelError:
     slip = Slip(sine * n, 0.75**0.5 * n, 1e9 * n, 16.0 * n, np.array(values) * sine)
     coarse, fine = (resultants(ellipse, slip, 0.3 * n, nodes=k) for k in (12, 600))
     scale = 0.3 * ellipse.normal_force
-    gaps = [np.abs(getattr(coarse, f) - getattr(fine, f)) / scale
-            for f in ("lateral_force", "driving_force", "spin_moment")]  # fmt: skip
+    gaps = [
+        np.abs(getattr(coarse, f) - getattr(fine, f)) / scale for f in ("lateral_force", "driving_force", "spin_moment")
+    ]
     worst = tuple(map(float, np.max(gaps, axis=0)))
     return KernelError("sliding integrals, 12 points", "x_spin/a", values, worst, 1e-5, "600 points")
 
@@ -170,8 +172,7 @@ def far_pole() -> KernelError:
     # int tau_y = -mu F_N (1 - <y^2>/(2 x_p^2)) with <y^2> = b^2/5 of the Hertzian pressure
     exact = -bound * (1 - 0.25 / 5 / (2 * np.array(values) ** 2))
     errors = np.abs(r.driving_force / exact - 1)
-    return KernelError("sliding integrals, far pole", "x_spin/a", values, tuple(map(float, errors)), 1e-9,
-                       "its series")  # fmt: skip
+    return KernelError("sliding integrals, far pole", "x_spin/a", values, tuple(map(float, errors)), 1e-9, "its series")
 
 
 def _corners(x, y, nu, f) -> list:
@@ -180,8 +181,13 @@ def _corners(x, y, nu, f) -> list:
     along_x = y * f.asinh(x / abs(y))
     r = f.sqrt(x * x + y * y)
     log = f.log(r)
-    return [along_y * (1 - nu) + along_x, along_x * (1 - nu) + along_y, -nu * r, y * log + x * f.atan(y / x),
-            x * log + y * f.atan(x / y)]  # fmt: skip
+    return [
+        along_y * (1 - nu) + along_x,
+        along_x * (1 - nu) + along_y,
+        -nu * r,
+        y * log + x * f.atan(y / x),
+        x * log + y * f.atan(x / y),
+    ]
 
 
 def _over_element(hx: Any, hy: Any, nu: Any, place: tuple[int, int], f: Any, pi: Any) -> list[Any]:
@@ -209,10 +215,13 @@ def _influence_errors(cases) -> tuple[tuple[float, ...], float]:
     single: list[float] = []
     for hx, hy, (i, j) in cases:
         n = max(i, j) + 1
-        found = [*displacements(hx, hy, 0.3, n, n, 0, 0)[:, j + n - 1, i + n - 1],
-                 *pressure_displacements(hx, hy, n, n, 0, 0)[:, j + n - 1, i + n - 1]]  # fmt: skip
-        exact = [float(e) for e in _over_element(mpmath.mpf(hx), mpmath.mpf(hy), mpmath.mpf(0.3), (i, j), mpmath,
-                                                 mpmath.pi)]  # fmt: skip
+        found = [
+            *displacements(hx, hy, 0.3, n, n, 0, 0)[:, j + n - 1, i + n - 1],
+            *pressure_displacements(hx, hy, n, n, 0, 0)[:, j + n - 1, i + n - 1],
+        ]
+        exact = [
+            float(e) for e in _over_element(mpmath.mpf(hx), mpmath.mpf(hy), mpmath.mpf(0.3), (i, j), mpmath, mpmath.pi)
+        ]
         low = _over_element(np.float32(hx), np.float32(hy), np.float32(0.3), (i, j), _Single, np.float32(np.pi))
         for values, out in ((found, errors), (low, single)):
             gap = [abs(float(v) - e) for v, e in zip(values, exact, strict=True)]
@@ -235,8 +244,14 @@ def kalker_edges() -> KernelError:
     values = (1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3)
     places = ((1, 0), (0, 1), (3, 2), (40, 0), (0, 40))
     found = [_influence_errors([(0.05, 0.05 * v, place) for place in places]) for v in values]
-    return KernelError("Kalker's influence functions, slender elements", "h_y/h_x", values,
-                       tuple(max(e) for e, _ in found), 1e-9, single=max(s for _, s in found))  # fmt: skip
+    return KernelError(
+        "Kalker's influence functions, slender elements",
+        "h_y/h_x",
+        values,
+        tuple(max(e) for e, _ in found),
+        1e-9,
+        single=max(s for _, s in found),
+    )
 
 
 @_digits
@@ -248,9 +263,24 @@ def von_mises_near_hydrostatic() -> KernelError:
     errors = np.abs(von_mises(state) - exact)
     x, y, z, t = state.astype(np.float32)[:, :4].T
     low = np.sqrt(np.float32(0.5) * ((x - y) ** 2 + (z - x) ** 2 + (y - z) ** 2) + np.float32(3) * t * t)
-    return KernelError("von Mises stress near a hydrostatic state", "difference of stresses", values,
-                       tuple(map(float, errors)), 1e-14, "closed form", float(np.max(np.abs(low - exact))))  # fmt: skip
+    return KernelError(
+        "von Mises stress near a hydrostatic state",
+        "difference of stresses",
+        values,
+        tuple(map(float, errors)),
+        1e-14,
+        "closed form",
+        float(np.max(np.abs(low - exact))),
+    )
 
 
-KERNELS = (axis_ratios, depth, surface_centre, pole_positions, far_pole, kalker_distance, kalker_edges,
-           von_mises_near_hydrostatic)  # fmt: skip
+KERNELS = (
+    axis_ratios,
+    depth,
+    surface_centre,
+    pole_positions,
+    far_pole,
+    kalker_distance,
+    kalker_edges,
+    von_mises_near_hydrostatic,
+)

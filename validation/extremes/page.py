@@ -39,7 +39,7 @@ NOTES = (
     "`fastsim` ends at an ellipticity of 50, `kalker` where its elements get too slender (about 1000): failed beyond.",
     "Very slender patches with the spin pole inside (a/b above 50): the search may miss a ridge of up to 5 % of the "
     "peak; the estimate owns it, `reference` finds it.",
-)  # fmt: skip
+)
 KERNEL_WORDS = (
     "*In single precision*: the worst error of the closed formula behind the kernel evaluated with 32-bit numbers at "
     "the same places. 1 means that no digit is left: these formulas cannot be had in single precision, and in double "
@@ -58,36 +58,68 @@ def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
     claims = [f["holds"] for row in record["scenes"] for f in row["findings"]]
     return [
         ("h1", "At the ends of the parameters"),
-        ("p", f"{sum(claims)} of {len(claims)} claims on {len(scenes)} edge scenes hold. A scene is a series of cases "
-              "that runs to an end of the parameters; the claims are: finite or flagged, solved, small residual, the "
-              "same in other units, the same in a mirror, well conditioned, monotone where physics says so, continuous "
-              "across borders of regimes and towards limits, and peaks within the estimated error. "
-              "`snakemake -s validation/Snakefile --cores all extremes` makes this page."),
+        (
+            "p",
+            f"{sum(claims)} of {len(claims)} claims on {len(scenes)} edge scenes hold. A scene is a series of cases "
+            "that runs to an end of the parameters; the claims are: finite or flagged, solved, small residual, the "
+            "same in other units, the same in a mirror, well conditioned, monotone where physics says so, continuous "
+            "across borders of regimes and towards limits, and peaks within the estimated error. "
+            "`snakemake -s validation/Snakefile --cores all extremes` makes this page.",
+        ),
         *[("figure", f) for f in figures],
         ("h2", "Claims not met"),
-        ("table", (("scene", "model", "check", "deviation", "tolerated", "where"), broken)) if broken
+        ("table", (("scene", "model", "check", "deviation", "tolerated", "where"), broken))
+        if broken
         else ("p", "None."),
         ("h2", "The scenes"),
         ("table", (("scene", "what", "from, to", "models"), scenes)),
         ("h2", "Kernels against many digits"),
         ("p", KERNEL_WORDS),
-        ("table", (("kernel", "from", "to", "against", "worst relative error", "tolerated", "in single precision"),
-                   [_kernel(k) for k in record["kernels"]])),
+        (
+            "table",
+            (
+                ("kernel", "from", "to", "against", "worst relative error", "tolerated", "in single precision"),
+                [_kernel(k) for k in record["kernels"]],
+            ),
+        ),
         ("h2", "Random extremes"),
         ("p", RANDOM_WORDS),
-        ("table", (("model", "cases", "regimes", "undefined numbers", "warnings", "failed, small patch",
-                    "other regime in other units", "change of normal forces in other units"),
-                   [_random(r) for r in record["random"]])),
+        (
+            "table",
+            (
+                (
+                    "model",
+                    "cases",
+                    "regimes",
+                    "undefined numbers",
+                    "warnings",
+                    "failed, small patch",
+                    "other regime in other units",
+                    "change of normal forces in other units",
+                ),
+                [_random(r) for r in record["random"]],
+            ),
+        ),
         ("h2", "To know"),
         ("list", NOTES),
-    ]  # fmt: skip
+    ]
 
 
 def _broken(record: Record) -> list[tuple[str, ...]]:
     """Claims that do not hold."""
-    return [(row["scene"], row["model"], f["check"], f"{float(f['deviation']):.2g}", f"{f['tolerance']:.2g}",
-             f"{row['quantity']} = {float(f['where']):g}")
-            for row in record["scenes"] for f in row["findings"] if not f["holds"]]  # fmt: skip
+    return [
+        (
+            row["scene"],
+            row["model"],
+            f["check"],
+            f"{float(f['deviation']):.2g}",
+            f"{f['tolerance']:.2g}",
+            f"{row['quantity']} = {float(f['where']):g}",
+        )
+        for row in record["scenes"]
+        for f in row["findings"]
+        if not f["holds"]
+    ]
 
 
 def _scenes(record: Record) -> list[tuple[str, ...]]:
@@ -106,14 +138,29 @@ def _scenes(record: Record) -> list[tuple[str, ...]]:
 
 def _kernel(k: dict[str, Any]) -> tuple[str, ...]:
     low = "" if k["single"] is None else f"{k['single']:.0e}"
-    return (k["name"], f"{k['quantity']} = {k['values'][0]:g}", f"{k['values'][-1]:g}", k["against"],
-            f"{max(k['errors']):.1e}", f"{k['tolerance']:g}", low)  # fmt: skip
+    return (
+        k["name"],
+        f"{k['quantity']} = {k['values'][0]:g}",
+        f"{k['values'][-1]:g}",
+        k["against"],
+        f"{max(k['errors']):.1e}",
+        f"{k['tolerance']:g}",
+        low,
+    )
 
 
 def _random(r: dict[str, Any]) -> tuple[Any, ...]:
     regimes = ", ".join(f"{n} {name}" for name, n in r["regimes"].items())
-    return (r["model"], r["count"], regimes, r["undefined"], r["warnings"], r["failed_small_patch"],
-            r["other_regime"], f"{r['scaling']:.1e}")  # fmt: skip
+    return (
+        r["model"],
+        r["count"],
+        regimes,
+        r["undefined"],
+        r["warnings"],
+        r["failed_small_patch"],
+        r["other_regime"],
+        f"{r['scaling']:.1e}",
+    )
 
 
 def html(record: Record, figures: Sequence[dict[str, str]], folder: Path) -> str:

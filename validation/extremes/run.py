@@ -33,11 +33,16 @@ def random_record(model: str, count: int, seed: int = SEED) -> Record:
     bad = np.array([np.isnan(ds[v].values.reshape(count, -1)).any(axis=1) for v in NEEDED]).any(axis=0) & carries
     both = (mine.regime.values < 2) & (other.regime.values == mine.regime.values)
     n, m = mine.normal_force.values[both], other.normal_force.values[both] / (7.3**2 * 0.37)
-    return {"model": model, "count": count, "regimes": dict(Counter(REGIMES[i] for i in ds.regime.values)),
-            "failed_small_patch": int(np.sum((ds.regime.values == FAILED) & _small(cases))),
-            "undefined": int(bad.sum()),
-            "warnings": warned, "other_regime": int(np.sum(mine.regime.values != other.regime.values)),
-            "scaling": float(np.max(np.abs(n - m) / np.max(n, axis=1, keepdims=True), initial=0.0))}  # fmt: skip
+    return {
+        "model": model,
+        "count": count,
+        "regimes": dict(Counter(REGIMES[i] for i in ds.regime.values)),
+        "failed_small_patch": int(np.sum((ds.regime.values == FAILED) & _small(cases))),
+        "undefined": int(bad.sum()),
+        "warnings": warned,
+        "other_regime": int(np.sum(mine.regime.values != other.regime.values)),
+        "scaling": float(np.max(np.abs(n - m) / np.max(n, axis=1, keepdims=True), initial=0.0)),
+    }
 
 
 def _small(cases: list[Record]) -> np.ndarray:
@@ -52,12 +57,18 @@ def regime_map(points: int = 61) -> Record:
     axial, friction = np.linspace(0.0, 1.3, points), np.geomspace(0.01, 2.0, points)
     maps = {}
     for name, share in (("free rolling", 0.0), ("driven, 20 N", -20.0)):
-        cases = [BASE | {"axial_force": a * 200 * math.tan(math.radians(30)), "friction_coefficient": m,
-                         "motor_force": share} for m in friction for a in axial]  # fmt: skip
+        cases = [
+            BASE
+            | {"axial_force": a * 200 * math.tan(math.radians(30)), "friction_coefficient": m, "motor_force": share}
+            for m in friction
+            for a in axial
+        ]
         ds = solve(cases, "forces")
         jam = ds.validity.values >> 4 & 1
-        maps[name] = {"regime": ds.regime.values.reshape(points, points).tolist(),
-                      "jamming": jam.reshape(points, points).tolist()}  # fmt: skip
+        maps[name] = {
+            "regime": ds.regime.values.reshape(points, points).tolist(),
+            "jamming": jam.reshape(points, points).tolist(),
+        }
     return {"axial": axial.tolist(), "friction": friction.tolist(), "maps": maps}
 
 
@@ -68,19 +79,46 @@ def run(random: dict[str, int] | None = None, points: int = 61) -> Record:
         for model in scene.models:
             solved, findings = examine(scene, model, ACCURACIES[model])
             regimes = "".join(str(r) for r in solved.regime())
-            rows.append({"scene": scene.name, "title": scene.title, "quantity": scene.quantity, "unit": scene.unit,
-                         "values": [str(v) for v in scene.values], "model": model, "regimes": regimes,
-                         "findings": [{"check": f.check, "deviation": str(f.deviation), "tolerance": f.tolerance,
-                                       "where": str(f.where), "holds": f.holds} for f in findings]})  # fmt: skip
+            rows.append(
+                {
+                    "scene": scene.name,
+                    "title": scene.title,
+                    "quantity": scene.quantity,
+                    "unit": scene.unit,
+                    "values": [str(v) for v in scene.values],
+                    "model": model,
+                    "regimes": regimes,
+                    "findings": [
+                        {
+                            "check": f.check,
+                            "deviation": str(f.deviation),
+                            "tolerance": f.tolerance,
+                            "where": str(f.where),
+                            "holds": f.holds,
+                        }
+                        for f in findings
+                    ],
+                }
+            )
     kernels = [k() for k in KERNELS]
     return {
         "scenes": rows,
-        "kernels": [{"name": k.name, "quantity": k.quantity, "values": list(k.values), "errors": list(k.errors),
-                     "tolerance": k.tolerance, "against": k.against, "single": k.single,
-                     "holds": k.holds} for k in kernels],
+        "kernels": [
+            {
+                "name": k.name,
+                "quantity": k.quantity,
+                "values": list(k.values),
+                "errors": list(k.errors),
+                "tolerance": k.tolerance,
+                "against": k.against,
+                "single": k.single,
+                "holds": k.holds,
+            }
+            for k in kernels
+        ],
         "random": [random_record(m, n) for m, n in (random or RANDOM).items()],
         "map": regime_map(points),
-    }  # fmt: skip
+    }
 
 
 def write(record: Record, path: Path) -> None:

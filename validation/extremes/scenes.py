@@ -17,15 +17,29 @@ from trackroller.roller.equilibrium.roller import LIFTED
 
 CaseDict = dict[str, Any]
 STEEL: CaseDict = {
-    "name": "steel", "youngs_modulus": 210000.0, "poisson_ratio": 0.3, "tensile_strength": 720.0,
-    "fatigue_strength_ratio": 0.5, "cycles_at_tensile_strength": 1e4, "cycles_at_fatigue_limit": 5e6,
-}  # fmt: skip
+    "name": "steel",
+    "youngs_modulus": 210000.0,
+    "poisson_ratio": 0.3,
+    "tensile_strength": 720.0,
+    "fatigue_strength_ratio": 0.5,
+    "cycles_at_tensile_strength": 1e4,
+    "cycles_at_fatigue_limit": 5e6,
+}
 BASE: CaseDict = {
-    "axis_distance": 21.75, "guide_profile_radius": 6.0, "roller_profile_radius": -7.0, "guide_curve_radius": 220.0,
-    "contact_angle": 30.0, "radial_force": -200.0, "axial_force": 30.0, "motor_force": -10.0,
-    "friction_coefficient": 0.2, "velocity": 60.0, "guide_overrollings_per_hour": 100.0, "roller_material": STEEL,
+    "axis_distance": 21.75,
+    "guide_profile_radius": 6.0,
+    "roller_profile_radius": -7.0,
+    "guide_curve_radius": 220.0,
+    "contact_angle": 30.0,
+    "radial_force": -200.0,
+    "axial_force": 30.0,
+    "motor_force": -10.0,
+    "friction_coefficient": 0.2,
+    "velocity": 60.0,
+    "guide_overrollings_per_hour": 100.0,
+    "roller_material": STEEL,
     "guide_material": STEEL,
-}  # fmt: skip
+}
 ALWAYS = ("finite", "solved", "residual", "scaling", "mirror", "condition")
 FLAT_TAN = math.tan(math.radians(30.0))
 COMPLETE = 0.2 * 200.0 / math.cos(math.radians(30.0))  # what the base case can transmit in complete slip [N]
@@ -65,9 +79,17 @@ class Scene:
     @property
     def claims(self) -> tuple[str, ...]:
         """Names of the checks that apply."""
-        more = [name for name, on in (("monotone", self.rising or self.falling), ("constant", self.constant),
-                                      ("border", self.pairs), ("limit", self.limit),
-                                      ("close", self.close)) if on]  # fmt: skip
+        more = [
+            name
+            for name, on in (
+                ("monotone", self.rising or self.falling),
+                ("constant", self.constant),
+                ("border", self.pairs),
+                ("limit", self.limit),
+                ("close", self.close),
+            )
+            if on
+        ]
         return (*ALWAYS, *more)
 
 
@@ -77,8 +99,9 @@ def _series(name: str, title: str, quantity: str, unit: str, values: Any, build:
 
 
 def _searched(name: str, title: str, quantity: str, values: Any, build: Any, span: Any, **options: Any) -> Scene:
-    return Scene(name, title, quantity, "1", tuple(map(float, values)), (), build=lambda v: BASE | build(v), span=span,
-                 **options)  # fmt: skip
+    return Scene(
+        name, title, quantity, "1", tuple(map(float, values)), (), build=lambda v: BASE | build(v), span=span, **options
+    )
 
 
 def _material(**changes: Any) -> CaseDict:
@@ -90,16 +113,26 @@ def _of_ellipticity(ratio: float) -> CaseDict:
     guide = 6.0 if ratio < 1 else 6.0 / ratio**0.5
     k_y = math.cos(math.radians(30.0)) / 20.0
     groove = 1.0 / (k_y * ratio - 1.0 / guide)
-    return {"guide_profile_radius": guide, "roller_profile_radius": groove, "guide_curve_radius": math.inf,
-            "axis_distance": 20.0 + guide * math.cos(math.radians(30.0)), "radial_force": -1e-3,
-            "axial_force": 1e-4, "motor_force": -5e-5}  # fmt: skip
+    return {
+        "guide_profile_radius": guide,
+        "roller_profile_radius": groove,
+        "guide_curve_radius": math.inf,
+        "axis_distance": 20.0 + guide * math.cos(math.radians(30.0)),
+        "radial_force": -1e-3,
+        "axial_force": 1e-4,
+        "motor_force": -5e-5,
+    }
 
 
 def _steep(angle: float) -> CaseDict:
     alpha = math.radians(angle)
     slope = min(math.tan(alpha), 1.0 / math.tan(alpha))
-    return {"contact_angle": angle, "axial_force": 60.0 * math.tan(alpha), "motor_force": 0.0,
-            "friction_coefficient": 0.2 * min(slope, 1.0)}  # fmt: skip
+    return {
+        "contact_angle": angle,
+        "axial_force": 60.0 * math.tan(alpha),
+        "motor_force": 0.0,
+        "friction_coefficient": 0.2 * min(slope, 1.0),
+    }
 
 
 def _loads(force: float) -> CaseDict:
@@ -135,98 +168,245 @@ def scenes() -> tuple[Scene, ...]:
 
 def _friction_and_load() -> tuple[Scene, ...]:
     return (
-        _series("friction to 0", "friction coefficient to 0, rolling freely", "mu", "1",
-                (1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0), lambda v: {"friction_coefficient": v, "motor_force": 0.0},
-                falling=("max_shear",), limit=True),
-        _series("friction to 2", "friction coefficient to 2", "mu", "1", (0.1, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0),
-                lambda v: {"friction_coefficient": v, "contact_angle": 60.0, "motor_force": 0.0},
-                rising=("max_shear_sum",)),
-        _series("loads", "all loads from 1 mN to 1 MN", "F_rad", "N", 10.0 ** np.arange(-3, 6.5), _loads,
-                rising=("normal_force", "max_pressure", "peak_stress"), falling=("life_cycles",)),
-        _series("no axial, no motor force", "axial and motor force to 0", "F_ax = F_motor", "N",
-                (1.0, 1e-3, 1e-6, 1e-9, 0.0), lambda v: {"axial_force": v, "motor_force": v}, limit=True),
-        _series("spin pole", "motor force from driving to braking: the spin pole crosses the patch",
-                "F_motor", "N", 40.0 * np.array([-0.999, -0.9, -0.5, -0.2, -0.05, 0, 0.05, 0.2, 0.5, 0.9, 0.999]),
-                lambda v: {"motor_force": v, "axial_force": 0.0}, rising=("rolling_radius_shift",)),
-        _searched("spin pole on the edge", "spin pole from far behind to far ahead, at the centre and on the edge",
-                  "x_spin/a", (-50, -3, *_edge(-1.0), -0.5, 0, 0.5, *_edge(1.0), 3, 50),
-                  lambda v: {"motor_force": v * COMPLETE, "axial_force": 0.0}, (-1.0, 1.0),
-                  close=True),
-    )  # fmt: skip
+        _series(
+            "friction to 0",
+            "friction coefficient to 0, rolling freely",
+            "mu",
+            "1",
+            (1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0),
+            lambda v: {"friction_coefficient": v, "motor_force": 0.0},
+            falling=("max_shear",),
+            limit=True,
+        ),
+        _series(
+            "friction to 2",
+            "friction coefficient to 2",
+            "mu",
+            "1",
+            (0.1, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0),
+            lambda v: {"friction_coefficient": v, "contact_angle": 60.0, "motor_force": 0.0},
+            rising=("max_shear_sum",),
+        ),
+        _series(
+            "loads",
+            "all loads from 1 mN to 1 MN",
+            "F_rad",
+            "N",
+            10.0 ** np.arange(-3, 6.5),
+            _loads,
+            rising=("normal_force", "max_pressure", "peak_stress"),
+            falling=("life_cycles",),
+        ),
+        _series(
+            "no axial, no motor force",
+            "axial and motor force to 0",
+            "F_ax = F_motor",
+            "N",
+            (1.0, 1e-3, 1e-6, 1e-9, 0.0),
+            lambda v: {"axial_force": v, "motor_force": v},
+            limit=True,
+        ),
+        _series(
+            "spin pole",
+            "motor force from driving to braking: the spin pole crosses the patch",
+            "F_motor",
+            "N",
+            40.0 * np.array([-0.999, -0.9, -0.5, -0.2, -0.05, 0, 0.05, 0.2, 0.5, 0.9, 0.999]),
+            lambda v: {"motor_force": v, "axial_force": 0.0},
+            rising=("rolling_radius_shift",),
+        ),
+        _searched(
+            "spin pole on the edge",
+            "spin pole from far behind to far ahead, at the centre and on the edge",
+            "x_spin/a",
+            (-50, -3, *_edge(-1.0), -0.5, 0, 0.5, *_edge(1.0), 3, 50),
+            lambda v: {"motor_force": v * COMPLETE, "axial_force": 0.0},
+            (-1.0, 1.0),
+            close=True,
+        ),
+    )
 
 
 def _geometry() -> tuple[Scene, ...]:
     r_a = 21.75 - 6.0 * math.cos(math.radians(30.0))
     return (
-        _series("ellipticity", "curvatures from 1e-5 to 1e5: a/b from above 1e3 to below 1e-3", "k_x/k_y", "1",
-                10.0 ** np.arange(-5, 5.5), _of_ellipticity,
-                reach=("kalker", "fastsim")),
-        _series("near circle", "curvatures nearly equal", "k_x/k_y - 1", "1", (1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0),
-                lambda v: _of_ellipticity(1.0 + v), limit=True),
-        _series("contact angle", "contact angle from end to end, axial force and friction in proportion", "alpha",
-                "deg", (0.01, 0.1, 1, 10, 30, 60, 80, 89, 89.9, 89.99), _steep, reach=("fastsim",)),
-        _series("outer curve to straight", "curve radius to infinity", "r_Curve", "mm",
-                (1e1, 1e2, 1e4, 1e6, 1e9, math.inf), lambda v: {"guide_curve_radius": v},
-                falling=("max_pressure",), limit=True),
-        _series("outer straight, inner straight", "curve radius +inf beside -inf", "1/r_Curve", "1/mm",
-                (1e-9, 1e-12, 0.0, -0.0, -1e-12, -1e-9), lambda v: {"guide_curve_radius": _over(v)},
-                constant=("max_pressure", "peak_stress", "slip")),
-        _series("straight to inner curve", "inner curve to just above conformity", "-r_Curve/r_A - 1", "1",
-                (1e3, 1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
-                lambda v: {"guide_curve_radius": -r_a * (1 + v), **_loads(1e-2)}, falling=("max_pressure",),
-                reach=("kalker", "fastsim")),
-        _series("close groove", "profile to just above conformity", "r_C,TR/r_C,G - 1", "1",
-                (1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
-                lambda v: {"roller_profile_radius": -6.0 * (1 + v), **_loads(1e-2)}, falling=("max_pressure",),
-                reach=("kalker", "fastsim")),
-        _series("size", "all lengths from a thousandth to a thousandfold, forces with their square", "scale", "1",
-                (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3),
-                lambda v: {k: BASE[k] * v for k in LENGTHS} | {k: BASE[k] * v * v for k in FORCES},
-                constant=("max_pressure", "peak_stress", "slip")),
-    )  # fmt: skip
+        _series(
+            "ellipticity",
+            "curvatures from 1e-5 to 1e5: a/b from above 1e3 to below 1e-3",
+            "k_x/k_y",
+            "1",
+            10.0 ** np.arange(-5, 5.5),
+            _of_ellipticity,
+            reach=("kalker", "fastsim"),
+        ),
+        _series(
+            "near circle",
+            "curvatures nearly equal",
+            "k_x/k_y - 1",
+            "1",
+            (1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0),
+            lambda v: _of_ellipticity(1.0 + v),
+            limit=True,
+        ),
+        _series(
+            "contact angle",
+            "contact angle from end to end, axial force and friction in proportion",
+            "alpha",
+            "deg",
+            (0.01, 0.1, 1, 10, 30, 60, 80, 89, 89.9, 89.99),
+            _steep,
+            reach=("fastsim",),
+        ),
+        _series(
+            "outer curve to straight",
+            "curve radius to infinity",
+            "r_Curve",
+            "mm",
+            (1e1, 1e2, 1e4, 1e6, 1e9, math.inf),
+            lambda v: {"guide_curve_radius": v},
+            falling=("max_pressure",),
+            limit=True,
+        ),
+        _series(
+            "outer straight, inner straight",
+            "curve radius +inf beside -inf",
+            "1/r_Curve",
+            "1/mm",
+            (1e-9, 1e-12, 0.0, -0.0, -1e-12, -1e-9),
+            lambda v: {"guide_curve_radius": _over(v)},
+            constant=("max_pressure", "peak_stress", "slip"),
+        ),
+        _series(
+            "straight to inner curve",
+            "inner curve to just above conformity",
+            "-r_Curve/r_A - 1",
+            "1",
+            (1e3, 1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
+            lambda v: {"guide_curve_radius": -r_a * (1 + v), **_loads(1e-2)},
+            falling=("max_pressure",),
+            reach=("kalker", "fastsim"),
+        ),
+        _series(
+            "close groove",
+            "profile to just above conformity",
+            "r_C,TR/r_C,G - 1",
+            "1",
+            (1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
+            lambda v: {"roller_profile_radius": -6.0 * (1 + v), **_loads(1e-2)},
+            falling=("max_pressure",),
+            reach=("kalker", "fastsim"),
+        ),
+        _series(
+            "size",
+            "all lengths from a thousandth to a thousandfold, forces with their square",
+            "scale",
+            "1",
+            (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3),
+            lambda v: {k: BASE[k] * v for k in LENGTHS} | {k: BASE[k] * v * v for k in FORCES},
+            constant=("max_pressure", "peak_stress", "slip"),
+        ),
+    )
 
 
 def _materials() -> tuple[Scene, ...]:
     return (
-        _series("Poisson's ratio", "Poisson's ratio of both bodies from 0 to 0.5", "nu", "1",
-                (0.0, 0.1, 0.3, 0.4, 0.49, 0.4999, 0.5 - 1e-9, 0.5),
-                lambda v: dict.fromkeys(("roller_material", "guide_material"), _material(poisson_ratio=v)),
-                rising=("max_pressure",), limit=True),
-        _series("soft guide", "stiffness of the guide over that of the roller from a millionth", "E_G/E_TR", "1",
-                10.0 ** np.arange(-6, 0.5),
-                lambda v: {"guide_material": _material(youngs_modulus=210000.0 * v), **_loads(1e-3)},
-                rising=("max_pressure", "peak_stress")),
-        _series("soft roller", "stiffness of the guide over that of the roller to a million", "E_G/E_TR", "1",
-                10.0 ** np.arange(0, 6.5),
-                lambda v: {"roller_material": _material(youngs_modulus=210000.0 / v), **_loads(1e-3)},
-                falling=("max_pressure", "peak_stress")),
-    )  # fmt: skip
+        _series(
+            "Poisson's ratio",
+            "Poisson's ratio of both bodies from 0 to 0.5",
+            "nu",
+            "1",
+            (0.0, 0.1, 0.3, 0.4, 0.49, 0.4999, 0.5 - 1e-9, 0.5),
+            lambda v: dict.fromkeys(("roller_material", "guide_material"), _material(poisson_ratio=v)),
+            rising=("max_pressure",),
+            limit=True,
+        ),
+        _series(
+            "soft guide",
+            "stiffness of the guide over that of the roller from a millionth",
+            "E_G/E_TR",
+            "1",
+            10.0 ** np.arange(-6, 0.5),
+            lambda v: {"guide_material": _material(youngs_modulus=210000.0 * v), **_loads(1e-3)},
+            rising=("max_pressure", "peak_stress"),
+        ),
+        _series(
+            "soft roller",
+            "stiffness of the guide over that of the roller to a million",
+            "E_G/E_TR",
+            "1",
+            10.0 ** np.arange(0, 6.5),
+            lambda v: {"roller_material": _material(youngs_modulus=210000.0 / v), **_loads(1e-3)},
+            falling=("max_pressure", "peak_stress"),
+        ),
+    )
 
 
 def _borders() -> tuple[Scene, ...]:
     lift = 200.0 * FLAT_TAN
     return (
-        _series("slip limit, braking", "motor force just below and above what friction can brake", "share of limit",
-                "1", _border(1.0), _brake, pairs=True),
-        _searched("slip limit, driving", "motor force just below and just above what friction can drive",
-                  "share of limit", _border(1.0, (1e-2, 1e-4, 1e-5)), lambda v: {"motor_force": -v * COMPLETE},
-                  (0.5, 1.2), pairs=True),
-        _series("lift-off without friction", "axial force just below and above lift-off", "share of limit", "1",
-                _border(_lift_share()), lambda v: {"axial_force": v * lift, "friction_coefficient":
-                0.0, "motor_force": 0.0},
-                pairs=True),
-        _searched("lift-off with friction", "axial force just below and above lift-off", "share of limit",
-                  _border(1.0, (1e-2, 1e-4, 1e-5)), lambda v: {"axial_force": v * lift, "motor_force": 0.0}, (0.1, 1.2),
-                  pairs=True),
-        _series("self-locking, no axial force", "friction across mu = tan(alpha), no axial force", "mu/tan(alpha)", "1",
-                (0.5, 0.9, 1.1, 1.5, 3.0),
-                lambda v: {"contact_angle": 11.0, "friction_coefficient": v * math.tan(math.radians(11.0)),
-                           "axial_force": 0.0, "motor_force": 0.0}),
-        _series("self-locking", "friction across mu = tan(alpha), axial force small", "mu/tan(alpha)", "1",
-                (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 3.0),
-                lambda v: {"contact_angle": 11.0, "friction_coefficient": v * math.tan(math.radians(11.0)),
-                           "axial_force": 1.0, "motor_force": 0.0}),
-    )  # fmt: skip
+        _series(
+            "slip limit, braking",
+            "motor force just below and above what friction can brake",
+            "share of limit",
+            "1",
+            _border(1.0),
+            _brake,
+            pairs=True,
+        ),
+        _searched(
+            "slip limit, driving",
+            "motor force just below and just above what friction can drive",
+            "share of limit",
+            _border(1.0, (1e-2, 1e-4, 1e-5)),
+            lambda v: {"motor_force": -v * COMPLETE},
+            (0.5, 1.2),
+            pairs=True,
+        ),
+        _series(
+            "lift-off without friction",
+            "axial force just below and above lift-off",
+            "share of limit",
+            "1",
+            _border(_lift_share()),
+            lambda v: {"axial_force": v * lift, "friction_coefficient": 0.0, "motor_force": 0.0},
+            pairs=True,
+        ),
+        _searched(
+            "lift-off with friction",
+            "axial force just below and above lift-off",
+            "share of limit",
+            _border(1.0, (1e-2, 1e-4, 1e-5)),
+            lambda v: {"axial_force": v * lift, "motor_force": 0.0},
+            (0.1, 1.2),
+            pairs=True,
+        ),
+        _series(
+            "self-locking, no axial force",
+            "friction across mu = tan(alpha), no axial force",
+            "mu/tan(alpha)",
+            "1",
+            (0.5, 0.9, 1.1, 1.5, 3.0),
+            lambda v: {
+                "contact_angle": 11.0,
+                "friction_coefficient": v * math.tan(math.radians(11.0)),
+                "axial_force": 0.0,
+                "motor_force": 0.0,
+            },
+        ),
+        _series(
+            "self-locking",
+            "friction across mu = tan(alpha), axial force small",
+            "mu/tan(alpha)",
+            "1",
+            (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 3.0),
+            lambda v: {
+                "contact_angle": 11.0,
+                "friction_coefficient": v * math.tan(math.radians(11.0)),
+                "axial_force": 1.0,
+                "motor_force": 0.0,
+            },
+        ),
+    )
 
 
 LENGTHS = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius")
@@ -255,5 +435,6 @@ def some(names: tuple[str, ...]) -> tuple[Scene, ...]:
 def thinned(scene: Scene, every: int) -> Scene:
     """The scene with every n-th case, the last included."""
     keep = sorted({*range(0, len(scene.cases), every), len(scene.cases) - 1})
-    return dataclasses.replace(scene, values=tuple(scene.values[i] for i in keep),
-                               cases=tuple(scene.cases[i] for i in keep))  # fmt: skip
+    return dataclasses.replace(
+        scene, values=tuple(scene.values[i] for i in keep), cases=tuple(scene.cases[i] for i in keep)
+    )

@@ -44,8 +44,9 @@ def _places(scene: Scene, model: str, accuracy: str) -> np.ndarray:
     best, gap = x.copy(), np.full(target.size, np.inf)
     active = np.arange(target.size)
     for _ in range(STEPS):
-        ds = solve([scene.build(float(v)) for v in x[active]], ("forces", "contact"), contact_model=model,
-                   accuracy=accuracy)  # fmt: skip
+        ds = solve(
+            [scene.build(float(v)) for v in x[active]], ("forces", "contact"), contact_model=model, accuracy=accuracy
+        )
         place = ds.spin_pole_lateral.values[:, 0] / ds.semi_axis_lateral.values[:, 0]
         # beyond the last slip the pole is as far as can be
         f = _bounded(np.where(np.isfinite(place), place, np.copysign(np.inf, x[active]))) - target[active]

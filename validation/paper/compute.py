@@ -56,8 +56,9 @@ def solved(scene: str, model: str, accuracy: str = "standard") -> xr.Dataset:
 
 def as_published(case: Case) -> xr.Dataset:
     """The published model with its own Hertz table and its one body of mean Poisson's ratio."""
-    return solve(case, outputs=("forces", "contact", "peak_stress", "life"), hertz="published",
-                 stress_bodies="published")  # fmt: skip
+    return solve(
+        case, outputs=("forces", "contact", "peak_stress", "life"), hertz="published", stress_bodies="published"
+    )
 
 
 def stress_at(scene: str, points: list[list[float]]) -> list[float]:
@@ -93,8 +94,17 @@ def results() -> dict[str, Any]:
     Keys: `ours` scene -> model -> quantities; `as_published` scene -> quantities with the published table;
     `inner` scene -> our stress at the published place of the peak; `limits` name -> our solution; `seconds` of a case.
     """
-    told = (*QUANTITIES, "peak_stress", "peak_z", "life_cycles", "friction_energy_per_distance",
-            "friction_energy_balance", "energy_residual", "transmitted_force", "stick_area_fraction")  # fmt: skip
+    told = (
+        *QUANTITIES,
+        "peak_stress",
+        "peak_z",
+        "life_cycles",
+        "friction_energy_per_distance",
+        "friction_energy_balance",
+        "energy_residual",
+        "transmitted_force",
+        "stick_area_fraction",
+    )
     known = reference()
     out: dict[str, Any] = {"ours": {}, "as_published": {}, "inner": {}, "limits": {}, "accuracy": {}}
     for scene in SCENES:
@@ -105,13 +115,16 @@ def results() -> dict[str, Any]:
     for name, entry in known["limits"].items():
         case = Case.from_dict({k: float(v) if v == "inf" else v for k, v in entry["case"].items()})
         ds = solve(case)
-        out["limits"][name] = _values(ds, (*QUANTITIES, "semi_axis_lateral", "semi_axis_rolling", "peak_stress",
-                                           "life_cycles"))  # fmt: skip
+        out["limits"][name] = _values(
+            ds, (*QUANTITIES, "semi_axis_lateral", "semi_axis_rolling", "peak_stress", "life_cycles")
+        )
     for accuracy in ("preview", "standard", "reference"):
         start = time.process_time()
         ds = solve(case_of("free"), accuracy=accuracy)
-        out["accuracy"][accuracy] = {"seconds": round(time.process_time() - start, 4),
-                                     "peak_stress": _values(ds, ("peak_stress",))["peak_stress"]}  # fmt: skip
+        out["accuracy"][accuracy] = {
+            "seconds": round(time.process_time() - start, 4),
+            "peak_stress": _values(ds, ("peak_stress",))["peak_stress"],
+        }
     return out
 
 

@@ -79,8 +79,11 @@ def bars() -> Drawn:
     """Figure 8: forces and stresses of both contacts by program."""
     figure = style.new_figure(122)
     upper, lower = figure.subplots(2, 1)
-    groups = [("normal_force", "$F_\\mathrm{N%d}$"), ("lateral_force", "$F_\\mathrm{T%d}$"),
-              ("driving_force", "$F_\\mathrm{A%d}$")]  # fmt: skip
+    groups = [
+        ("normal_force", "$F_\\mathrm{N%d}$"),
+        ("lateral_force", "$F_\\mathrm{T%d}$"),
+        ("driving_force", "$F_\\mathrm{A%d}$"),
+    ]
     stresses = [("max_pressure", "$p_\\mathrm{max,%d}$"), ("peak_stress", "$\\sigma_\\mathrm{DEH,%d}$")]
     hatches, colours = ("//", "", "", ".."), style.palette(4)
     for axes, names in ((upper, groups), (lower, stresses)):
@@ -88,8 +91,16 @@ def bars() -> Drawn:
         place = np.arange(len(labels), dtype=float)
         for k, source in enumerate(SOURCES):
             values = [_values(source, name, c) for name, _ in names for c in (0, 1)]
-            axes.bar(place + 0.2 * (k - 1.5), values, 0.19, color=colours[k], hatch=hatches[k], edgecolor="white",
-                     linewidth=0.3, label=source)  # fmt: skip
+            axes.bar(
+                place + 0.2 * (k - 1.5),
+                values,
+                0.19,
+                color=colours[k],
+                hatch=hatches[k],
+                edgecolor="white",
+                linewidth=0.3,
+                label=source,
+            )
         axes.set_xticks(place, labels)
         axes.axhline(0.0, color="black", linewidth=0.6)
     upper.set_ylabel("Force on the roller [N]")
@@ -121,10 +132,21 @@ def tractions() -> Drawn:
             values = np.where(inside, part[name].values, np.nan)
             top = 650.0 if name == "pressure" else 200.0
             colours = "YlGnBu" if name == "pressure" else "RdBu_r"
-            image = axes.contourf(part["patch_x"], part["patch_y"], values, cmap=colours,
-                                  levels=np.linspace(0.0 if name == "pressure" else -top, top, 14))  # fmt: skip
-            lines = axes.contour(part["patch_x"], part["patch_y"], values, levels=[-100, 0, 100] if row else [300, 500],
-                                 colors="black", linewidths=0.5)  # fmt: skip
+            image = axes.contourf(
+                part["patch_x"],
+                part["patch_y"],
+                values,
+                cmap=colours,
+                levels=np.linspace(0.0 if name == "pressure" else -top, top, 14),
+            )
+            lines = axes.contour(
+                part["patch_x"],
+                part["patch_y"],
+                values,
+                levels=[-100, 0, 100] if row else [300, 500],
+                colors="black",
+                linewidths=0.5,
+            )
             axes.clabel(lines, fontsize=5.5, fmt="%g")
             axes.set_aspect("equal")
             axes.set_title(f"{symbol}, {model}", loc="left", fontsize=7.5, pad=3)

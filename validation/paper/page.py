@@ -12,9 +12,14 @@ from trackroller.report.pages import Block, page_html
 from validation.paper.compute import reference, results
 
 EXPONENT = 8.966  # ln(N_k/N_Rm)/ln(R_m/sigma_D) of 1.7225: life goes with stress to this power
-ROWS = (("normal_force", "F_N [N]", 2), ("lateral_force", "F_T [N]", 2), ("driving_force", "F_A [N]", 2),
-        ("spin_moment", "M_R [N mm]", 3), ("max_pressure", "p_max [MPa]", 1),
-        ("rolling_radius_shift", "r_Delta0 [mm]", 5))  # fmt: skip
+ROWS = (
+    ("normal_force", "F_N [N]", 2),
+    ("lateral_force", "F_T [N]", 2),
+    ("driving_force", "F_A [N]", 2),
+    ("spin_moment", "M_R [N mm]", 3),
+    ("max_pressure", "p_max [MPa]", 1),
+    ("rolling_radius_shift", "r_Delta0 [mm]", 5),
+)
 
 
 def _pair(value: Any, digits: int) -> str:
@@ -43,16 +48,22 @@ def blocks(found: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Blo
 
     return [
         ("h1", "The published example, computed anew"),
-        ("p", "Wenzel, Bienefeld, Kretschmer and Kirchner published the model and a program for it (*Applied "
-              "Mechanics* 2022, 3, 692-704, CC BY 4.0). Here stands every table and figure of theirs that a "
-              "computation yields, from this software, beside what the paper, its program and CONTACT print. "
-              "`snakemake -s validation/Snakefile --cores all paper` makes this page."),
+        (
+            "p",
+            "Wenzel, Bienefeld, Kretschmer and Kirchner published the model and a program for it (*Applied "
+            "Mechanics* 2022, 3, 692-704, CC BY 4.0). Here stands every table and figure of theirs that a "
+            "computation yields, from this software, beside what the paper, its program and CONTACT print. "
+            "`snakemake -s validation/Snakefile --cores all paper` makes this page.",
+        ),
         ("h2", "Where the published numbers hold, and where they do not"),
         *verdict(found),
         ("h2", "Table 1: the case"),
         _case_table(),
-        ("p", "Scenes: nearly frictionless and free (μ = 0.0001), free with μ = 0.3, driven with 30 N and μ = 0.3. The "
-              "text of section 4 prints F_Motor = 30 N, its figures -30 N; negative drives."),
+        (
+            "p",
+            "Scenes: nearly frictionless and free (μ = 0.0001), free with μ = 0.3, driven with 30 N and μ = 0.3. The "
+            "text of section 4 prints F_Motor = 30 N, its figures -30 N; negative drives.",
+        ),
         *_force_tables(found),
         ("h2", "Table 2: discretisation, duration, accuracy"),
         *_table_2(found),
@@ -68,7 +79,7 @@ def blocks(found: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Blo
         *pictures("10"),
         ("h2", "Figure 11: equivalent stress of contact 1"),
         *pictures("11"),
-    ]  # fmt: skip
+    ]
 
 
 def verdict(found: dict[str, Any]) -> list[Block]:
@@ -88,37 +99,71 @@ def verdict(found: dict[str, Any]) -> list[Block]:
     exact = sum(driven["kalker"]["friction_energy_per_distance"])
     rows = [
         ("Forces of the model's own equations", "hold to 0.1 %", "quadrature and Hertz table only", "none"),
-        ("Stress below the surface", "holds to 0.3 %",
-         f"at the places it names we find {_pair(found['inner']['free'], 1)} MPa, it prints "
-         f"{_pair(free['peak_stress'], 1)} MPa",
-         _longer(found["inner"]["free"][0], free["peak_stress"][0])),
-        ("Peak stress with friction", "does not hold",
-         f"the maxima lie on the surface: {_pair(peaks, 1)} MPa against {_pair(free['peak_stress'], 1)} MPa (free); "
-         "its search begins 1.5 grid steps below, where its kernels still work",
-         f"{_pair(factors, 2)} times shorter"),
-        ("Table of Hertz coefficients", "holds for round patches only",
-         "linear interpolation makes p_max 0.2 % low at cos τ 0.4, 2.7 % at 0.85, 11 % at 0.97, 19 % at 0.998",
-         f"{life_factor(1.027, 1):.2f} / {life_factor(1.11, 1):.1f} / {life_factor(1.19, 1):.1f} times shorter"),
-        ("Nearly circular patches", "stops", "its table begins at cos τ = 0.1; in a design with 0.023 we find "
-         f" a = {found['limits']['nearly circular']['semi_axis_lateral'][0]:.4f} mm, "
-         f"b = {found['limits']['nearly circular']['semi_axis_rolling'][0]:.4f} mm", "-"),
-        ("Grooves wider than the rolling curvature (k_x > k_y)", "does not hold",
-         f"the long axis is laid across: spin moments {_pair(spin, 0)} % too large in one random design, the peak of "
-         f"another {100 * (heavier - 1):.0f} % too low", f"{life_factor(heavier, 1):.1f} times shorter"),
-        ("Lateral forces and moments of full sliding", "hold for large spin and little drive only",
-         f"F_T {_pair(off, 0)} % off CONTACT in the driven case; see [contact-models.md](contact-models.md)",
-         f"{_longer(max(map(max, driven['kalker']['peak_stress'])), max(map(max, driven['sliding']['peak_stress'])))}"),
-        ("Friction energy of full sliding", "does not hold",
-         f"{local:.3f} J/m by its product of shear and slip, but its forces put in {balance:.3f} J/m only; exact "
-         f"theory {exact:.3f} J/m, CONTACT {sum(contact['friction_power_per_speed']):.3f} J/m, both balanced",
-         "wear, not fatigue"),
-        ("Life of the guide in hours", "does not hold", "it divides by the length of the curve: infinite on a "
-         "straight, negative in an inner curve; overrollings per hour are an input here", "-"),
+        (
+            "Stress below the surface",
+            "holds to 0.3 %",
+            f"at the places it names we find {_pair(found['inner']['free'], 1)} MPa, it prints "
+            f"{_pair(free['peak_stress'], 1)} MPa",
+            _longer(found["inner"]["free"][0], free["peak_stress"][0]),
+        ),
+        (
+            "Peak stress with friction",
+            "does not hold",
+            f"the maxima lie on the surface: {_pair(peaks, 1)} MPa against {_pair(free['peak_stress'], 1)} MPa (free); "
+            "its search begins 1.5 grid steps below, where its kernels still work",
+            f"{_pair(factors, 2)} times shorter",
+        ),
+        (
+            "Table of Hertz coefficients",
+            "holds for round patches only",
+            "linear interpolation makes p_max 0.2 % low at cos τ 0.4, 2.7 % at 0.85, 11 % at 0.97, 19 % at 0.998",
+            f"{life_factor(1.027, 1):.2f} / {life_factor(1.11, 1):.1f} / {life_factor(1.19, 1):.1f} times shorter",
+        ),
+        (
+            "Nearly circular patches",
+            "stops",
+            "its table begins at cos τ = 0.1; in a design with 0.023 we find "
+            f" a = {found['limits']['nearly circular']['semi_axis_lateral'][0]:.4f} mm, "
+            f"b = {found['limits']['nearly circular']['semi_axis_rolling'][0]:.4f} mm",
+            "-",
+        ),
+        (
+            "Grooves wider than the rolling curvature (k_x > k_y)",
+            "does not hold",
+            f"the long axis is laid across: spin moments {_pair(spin, 0)} % too large in one random design, the peak of "
+            f"another {100 * (heavier - 1):.0f} % too low",
+            f"{life_factor(heavier, 1):.1f} times shorter",
+        ),
+        (
+            "Lateral forces and moments of full sliding",
+            "hold for large spin and little drive only",
+            f"F_T {_pair(off, 0)} % off CONTACT in the driven case; see [contact-models.md](contact-models.md)",
+            f"{_longer(max(map(max, driven['kalker']['peak_stress'])), max(map(max, driven['sliding']['peak_stress'])))}",
+        ),
+        (
+            "Friction energy of full sliding",
+            "does not hold",
+            f"{local:.3f} J/m by its product of shear and slip, but its forces put in {balance:.3f} J/m only; exact "
+            f"theory {exact:.3f} J/m, CONTACT {sum(contact['friction_power_per_speed']):.3f} J/m, both balanced",
+            "wear, not fatigue",
+        ),
+        (
+            "Life of the guide in hours",
+            "does not hold",
+            "it divides by the length of the curve: infinite on a "
+            "straight, negative in an inner curve; overrollings per hour are an input here",
+            "-",
+        ),
         ("μ = 0, full slip, lift-off", "stops", "our rows have a regime instead", "-"),
-    ]  # fmt: skip
-    return [("table", (("published", "verdict", "size", "effect on life"), rows)),
-            ("p", f"Life goes with the stress to the power {EXPONENT:.2f} for 1.7225; a factor stands for the contact "
-                  "alone. *Effect* is how much shorter life is than the published number says.")]  # fmt: skip
+    ]
+    return [
+        ("table", (("published", "verdict", "size", "effect on life"), rows)),
+        (
+            "p",
+            f"Life goes with the stress to the power {EXPONENT:.2f} for 1.7225; a factor stands for the contact "
+            "alone. *Effect* is how much shorter life is than the published number says.",
+        ),
+    ]
 
 
 def _case_table() -> Block:
@@ -131,33 +176,71 @@ def _force_tables(found: dict[str, Any]) -> list[Block]:
     for scene, told in (("frictionless", "Free, μ = 0.0001"), ("free", "Free, μ = 0.3"), ("driven", "Driven, μ = 0.3")):
         printed = known["published_program"][scene]["published"]
         contact = known["contact"].get(scene)
-        heads = ("contact 1 / 2", "published program", "ours, its options", "ours, `sliding`", "ours, `kalker`",
-                 "CONTACT")  # fmt: skip
+        heads = (
+            "contact 1 / 2",
+            "published program",
+            "ours, its options",
+            "ours, `sliding`",
+            "ours, `kalker`",
+            "CONTACT",
+        )
         rows = []
         for name, label, digits in ROWS:
-            rows.append((label, _pair(printed[name], digits), _pair(found["as_published"][scene][name], digits),
-                         *(_pair(found["ours"][scene][m][name], digits) for m in ("sliding", "kalker")),
-                         _pair(contact[name], digits) if contact else "-"))  # fmt: skip
+            rows.append(
+                (
+                    label,
+                    _pair(printed[name], digits),
+                    _pair(found["as_published"][scene][name], digits),
+                    *(_pair(found["ours"][scene][m][name], digits) for m in ("sliding", "kalker")),
+                    _pair(contact[name], digits) if contact else "-",
+                )
+            )
         peak = "peak_stress"
         top = lambda v: [max(c) for c in v]  # noqa: E731
-        rows.append(("σ_DEH,max [MPa]", _pair(printed[peak], 1), _pair(top(found["as_published"][scene][peak]), 1),
-                     *(_pair(top(found["ours"][scene][m][peak]), 1) for m in ("sliding", "kalker")),
-                     _pair(top(contact[peak]), 1) if contact else "-"))  # fmt: skip
+        rows.append(
+            (
+                "σ_DEH,max [MPa]",
+                _pair(printed[peak], 1),
+                _pair(top(found["as_published"][scene][peak]), 1),
+                *(_pair(top(found["ours"][scene][m][peak]), 1) for m in ("sliding", "kalker")),
+                _pair(top(contact[peak]), 1) if contact else "-",
+            )
+        )
         life = [min(c) for c in found["ours"][scene]["sliding"]["life_cycles"]]
         exact = [min(c) for c in found["ours"][scene]["kalker"]["life_cycles"]]
-        rows.append(("overrollings to failure", f"{printed['roller_life_cycles']:.3g} (worse contact)", "-",
-                     " / ".join(f"{v:.3g}" for v in life), " / ".join(f"{v:.3g}" for v in exact), "-"))  # fmt: skip
+        rows.append(
+            (
+                "overrollings to failure",
+                f"{printed['roller_life_cycles']:.3g} (worse contact)",
+                "-",
+                " / ".join(f"{v:.3g}" for v in life),
+                " / ".join(f"{v:.3g}" for v in exact),
+                "-",
+            )
+        )
         out += [("h3", told), ("table", (heads, rows))]
-    out.append(("p", "*Its options*: `hertz: published`, `stress_bodies: published`. CONTACT: open-source release "
-                     "2025, 60x60 and 40x40 elements extrapolated; its peaks on 40x40 elements are good to about 1 % "
-                     "on the surface. Peaks are the larger of both bodies."))  # fmt: skip
+    out.append(
+        (
+            "p",
+            "*Its options*: `hertz: published`, `stress_bodies: published`. CONTACT: open-source release "
+            "2025, 60x60 and 40x40 elements extrapolated; its peaks on 40x40 elements are good to about 1 % "
+            "on the surface. Peaks are the larger of both bodies.",
+        )
+    )
     return out
 
 
 def _table_2(found: dict[str, Any]) -> list[Block]:
     known = reference()["table_2"]
-    rows = [(f"paper, {name}", f"{entry['surface_points']} points", f"{entry['minutes']:g} min",
-             f"{entry['peak_stress']:.1f} (below the surface)") for name, entry in known.items()]  # fmt: skip
+    rows = [
+        (
+            f"paper, {name}",
+            f"{entry['surface_points']} points",
+            f"{entry['minutes']:g} min",
+            f"{entry['peak_stress']:.1f} (below the surface)",
+        )
+        for name, entry in known.items()
+    ]
     rows += [
         (
             f"ours, `{name}`",
@@ -168,9 +251,14 @@ def _table_2(found: dict[str, Any]) -> list[Block]:
         for name, entry in found["accuracy"].items()
     ]
     rows.append(("ours, at the published place", "48 plane waves and rays", "-", f"{found['inner']['free'][0]:.1f}"))
-    return [("table", (("setting", "discretisation", "time", "σ_DEH,max of contact 1 [MPa]"), rows)),
-            ("p", "Free, μ = 0.3. Ours is the CPU time of the whole case, both contacts and bodies, life included. "
-                  "More in [tradeoff.md](tradeoff.md).")]  # fmt: skip
+    return [
+        ("table", (("setting", "discretisation", "time", "σ_DEH,max of contact 1 [MPa]"), rows)),
+        (
+            "p",
+            "Free, μ = 0.3. Ours is the CPU time of the whole case, both contacts and bodies, life included. "
+            "More in [tradeoff.md](tradeoff.md).",
+        ),
+    ]
 
 
 def write_results(folder: Path) -> None:

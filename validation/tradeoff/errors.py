@@ -37,15 +37,19 @@ def relative_errors(result: xr.Dataset, reference: xr.Dataset) -> dict[str, np.n
         apart = np.hypot(*(result[q].values - reference[q].values for q in ("lateral_force", "driving_force")))
         out["friction_force"] = _largest(apart / friction)
         if "semi_axis_lateral" in result:
-            axes = [np.abs(result[q].values / reference[q].values - 1.0)
-                    for q in ("semi_axis_lateral", "semi_axis_rolling")]  # fmt: skip
+            axes = [
+                np.abs(result[q].values / reference[q].values - 1.0) for q in ("semi_axis_lateral", "semi_axis_rolling")
+            ]
             out["semi_axes"] = _largest(np.maximum(*axes))
             out["max_pressure"] = _largest(np.abs(result["max_pressure"].values / reference["max_pressure"].values - 1))
         size = np.sqrt(reference["semi_axis_lateral"].values * reference["semi_axis_rolling"].values)
         apart = np.abs(result["spin_moment"].values - reference["spin_moment"].values)
         out["spin_moment"] = _largest(apart / (friction * size))
-        for quantity, name in (("friction_energy", "friction_energy_per_distance"), ("peak_stress", "peak_stress"),
-                               ("life", "life_cycles")):  # fmt: skip
+        for quantity, name in (
+            ("friction_energy", "friction_energy_per_distance"),
+            ("peak_stress", "peak_stress"),
+            ("life", "life_cycles"),
+        ):
             if name in result and name in reference:
                 out[quantity] = _largest(np.abs(result[name].values / reference[name].values - 1.0))
     other = result["regime"].values != reference["regime"].values

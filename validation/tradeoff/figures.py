@@ -91,12 +91,13 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
     axes.margins(x=0.12, y=0.06)
     style.log_ticks(axes.xaxis, *axes.get_xlim())
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)
-    style.head(figure, f"What accuracy of the {words} costs",
-               "filled: 99 % of the designs lie below; hollow: median")  # fmt: skip
+    style.head(figure, f"What accuracy of the {words} costs", "filled: 99 % of the designs lie below; hollow: median")
     _names(axes, taken, letters)  # last: legend and title decide where the points come to lie
-    caption = (f"Error of the {words} against a converged solution of the same contact model, over the CPU time a "
-               "case. Filled marks: 99th percentile of the designs; hollow: median; rings: presets. Labels: Gauss "
-               "points, quadrature and effort of the search, or elements across the patch.")  # fmt: skip
+    caption = (
+        f"Error of the {words} against a converged solution of the same contact model, over the CPU time a "
+        "case. Filled marks: 99th percentile of the designs; hollow: median; rings: presets. Labels: Gauss "
+        "points, quadrature and effort of the search, or elements across the patch."
+    )
     return figure, style.FigureInfo(f"tradeoff_{quantity}", caption, _sentence(series, quantity, words))
 
 
@@ -111,8 +112,17 @@ def _series(axes: Axes, found: list[Record], quantity: str, colour: Any, marker:
     axes.plot(cost[front], high[front], color=colour, marker=marker, linestyle=line, label=label, zorder=3)
     axes.plot(cost[rest], high[rest], color=colour, marker=marker, linestyle="none", alpha=0.45, zorder=2)
     low = np.isfinite(middle) & (middle > 0) & (front | ~shown)
-    axes.plot(cost[low], middle[low], color=colour, marker=marker, linestyle="none", markerfacecolor="white",
-              markeredgewidth=0.7, markersize=3.0, zorder=2)  # fmt: skip
+    axes.plot(
+        cost[low],
+        middle[low],
+        color=colour,
+        marker=marker,
+        linestyle="none",
+        markerfacecolor="white",
+        markeredgewidth=0.7,
+        markersize=3.0,
+        zorder=2,
+    )
     return [(cost[i], high[i], found[i]["label"], colour) for i in np.flatnonzero(front)]
 
 
@@ -125,11 +135,20 @@ def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quan
             if (r["stage"] == "peak" and quantity not in ("peak_stress", "life")) or not 0 < high < math.inf:
                 continue
             place = 1e3 * r["cost"], high
-            axes.plot(*place, marker="o", markersize=8.5, markerfacecolor="none", linestyle="none", zorder=4,
-                      markeredgecolor="black", markeredgewidth=0.9,
-                      label=None if ringed else "taken by P(review), S(tandard), R(eference)")  # fmt: skip
-            axes.annotate(name[0].upper(), place, xytext=(-9, -9), fontsize=6.5, textcoords="offset points",
-                          fontweight="bold")  # fmt: skip
+            axes.plot(
+                *place,
+                marker="o",
+                markersize=8.5,
+                markerfacecolor="none",
+                linestyle="none",
+                zorder=4,
+                markeredgecolor="black",
+                markeredgewidth=0.9,
+                label=None if ringed else "taken by P(review), S(tandard), R(eference)",
+            )
+            axes.annotate(
+                name[0].upper(), place, xytext=(-9, -9), fontsize=6.5, textcoords="offset points", fontweight="bold"
+            )
             ringed.append(place)
     return ringed
 
@@ -161,8 +180,10 @@ def _sentence(series: dict[Any, list[Record]], quantity: str, words: str) -> str
         found = [r for r in series.get(key, []) if math.isfinite(levels(r, quantity)[2])]
         if found:
             best = min(found, key=lambda r: levels(r, quantity)[2])
-            parts.append(f"{name} reaches {style.rounded(levels(best, quantity)[2], 2)} in 99 % of the designs for "
-                         f"{style.rounded(1e3 * best['cost'], 2)} ms")  # fmt: skip
+            parts.append(
+                f"{name} reaches {style.rounded(levels(best, quantity)[2], 2)} in 99 % of the designs for "
+                f"{style.rounded(1e3 * best['cost'], 2)} ms"
+            )
     return f"The {words}: " + "; ".join(parts) + "." if parts else f"The {words} against its cost."
 
 
@@ -175,15 +196,24 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
     axes.set_yscale("log")
     colours, drawn = style.palette(len(CONVERGENCE)), 0
     for k, (key, words) in enumerate(CONVERGENCE.items()):
-        found = [r for r in summary["settings"] if (r["stage"], r["model"], r["method"]) == key[:3]
-                 and key[3] in r["errors"] and r["points"]]  # fmt: skip
+        found = [
+            r
+            for r in summary["settings"]
+            if (r["stage"], r["model"], r["method"]) == key[:3] and key[3] in r["errors"] and r["points"]
+        ]
         if len(found) < 3:
             continue
         drawn += 1
         found = sorted(found, key=lambda r: r["points"])
         told = f", order {order[key]:.1f}" if key in order else ""
-        axes.plot([r["points"] for r in found], [levels(r, key[3])[0] for r in found], color=colours[k],
-                  marker=style.MARKERS[k], linestyle=style.LINES[k % len(style.LINES)], label=words + told)  # fmt: skip
+        axes.plot(
+            [r["points"] for r in found],
+            [levels(r, key[3])[0] for r in found],
+            color=colours[k],
+            marker=style.MARKERS[k],
+            linestyle=style.LINES[k % len(style.LINES)],
+            label=words + told,
+        )
     if not drawn:
         return None
     low, high = axes.get_xlim()
@@ -192,10 +222,16 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
     axes.set_ylabel(style.with_unit("Relative error, median of the designs", "-"))
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)
     style.head(figure, "How fast the stages converge", "median error over the designs; order: slope of the line")
-    caption = ("Median error of single stages against their discretisation, with the order observed (least squares in "
-               "logarithms, points at the floor left out).")  # fmt: skip
-    return figure, style.FigureInfo("tradeoff_convergence", caption, "Quadrature in smooth pieces converges far faster "
-                                    "than grids and elements, whose order lies between one and two.")  # fmt: skip
+    caption = (
+        "Median error of single stages against their discretisation, with the order observed (least squares in "
+        "logarithms, points at the floor left out)."
+    )
+    return figure, style.FigureInfo(
+        "tradeoff_convergence",
+        caption,
+        "Quadrature in smooth pieces converges far faster "
+        "than grids and elements, whose order lies between one and two.",
+    )
 
 
 def spread(summary: dict[str, Any], ds: xr.Dataset) -> Drawn | None:
@@ -212,8 +248,13 @@ def spread(summary: dict[str, Any], ds: xr.Dataset) -> Drawn | None:
         errors = ds["error"].isel(setting=row).sel(quantity="peak_stress").values.astype(float)
         errors = np.sort(np.maximum(errors[np.isfinite(errors)], 1e-8))[::-1]
         smallest = min(smallest, 100.0 / errors.size)
-        axes.plot(errors, 100.0 * np.arange(1, errors.size + 1) / errors.size, color=colours[k],
-                  linestyle=style.LINES[k], label=name)  # fmt: skip
+        axes.plot(
+            errors,
+            100.0 * np.arange(1, errors.size + 1) / errors.size,
+            color=colours[k],
+            linestyle=style.LINES[k],
+            label=name,
+        )
     axes.axhline(1.0, color=_GREY, linewidth=0.7, linestyle=(0, (1, 2)))
     axes.text(0.02, 1.12, "1 % of the designs", fontsize=6.5, color=_GREY, transform=axes.get_yaxis_transform())
     axes.set_ylim(0.7 * smallest, 130)

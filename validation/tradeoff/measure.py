@@ -66,8 +66,9 @@ def measure(settings: Sequence[Setting], cases: Sequence[Case], model: str, bloc
 
 def _solve(setting: Setting, cases: Sequence[Case], model: str) -> xr.Dataset:
     assert setting.accuracy is not None
-    return solve(list(cases), outputs=setting.outputs, contact_model=model, accuracy=setting.accuracy,
-                 **setting.options)  # fmt: skip
+    return solve(
+        list(cases), outputs=setting.outputs, contact_model=model, accuracy=setting.accuracy, **setting.options
+    )
 
 
 def labelled(settings: Sequence[Setting], errors: np.ndarray, cost: np.ndarray, attrs: dict[str, Any]) -> xr.Dataset:
@@ -79,16 +80,27 @@ def labelled(settings: Sequence[Setting], errors: np.ndarray, cost: np.ndarray, 
 
     return xr.Dataset(
         {
-            "error": (("setting", "quantity", "design"), errors.astype(np.float32),
-                      {"long_name": "relative error against the converged reference", "units": "1",
-                       "comment": "largest over contacts and bodies; inf: other regime; NaN: not of this stage"}),
+            "error": (
+                ("setting", "quantity", "design"),
+                errors.astype(np.float32),
+                {
+                    "long_name": "relative error against the converged reference",
+                    "units": "1",
+                    "comment": "largest over contacts and bodies; inf: other regime; NaN: not of this stage",
+                },
+            ),
             "cost": ("setting", np.asarray(cost, float), {"long_name": "CPU time a case", "units": "s"}),
-            "points": ("setting", np.array([s.points for s in settings], float),
-                       {"long_name": "points or elements per length", "units": "1"}),
-            "stage": text([s.stage for s in settings]), "model": text([s.model for s in settings]),
-            "method": text([s.method for s in settings]), "label": text([s.label for s in settings]),
+            "points": (
+                "setting",
+                np.array([s.points for s in settings], float),
+                {"long_name": "points or elements per length", "units": "1"},
+            ),
+            "stage": text([s.stage for s in settings]),
+            "model": text([s.model for s in settings]),
+            "method": text([s.method for s in settings]),
+            "label": text([s.label for s in settings]),
             "ladder": text([json.dumps(s.ladder) for s in settings]),
         },
         coords={"quantity": np.array(list(QUANTITIES), dtype=object), "design": np.arange(errors.shape[2])},
         attrs=attrs,
-    )  # fmt: skip
+    )

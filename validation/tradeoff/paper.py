@@ -26,19 +26,40 @@ def paper_table() -> list[dict[str, Any]]:
     """
     rows: list[dict[str, Any]] = []
     for name, surface, volume, depths, minutes, value in PRINTED:
-        rows.append({"what": f"paper, {name}", "discretisation": f"{surface} on the surface, {volume} x {depths}",
-                     "seconds": 60.0 * minutes, "inner": value, "peak": None})  # fmt: skip
+        rows.append(
+            {
+                "what": f"paper, {name}",
+                "discretisation": f"{surface} on the surface, {volume} x {depths}",
+                "seconds": 60.0 * minutes,
+                "inner": value,
+                "peak": None,
+            }
+        )
     patches = patches_of([CASE])
     for name, surface, volume, depths, _, _ in PRINTED:
         inner, seconds = cpu(grid_peak, patches, 0, surface, depths, PUBLISHED_START, surface // volume)
         peak = grid_peak(patches, 0, surface, depths, 0.0, surface // volume)
-        rows.append({"what": f"its search, our kernels, {name}", "seconds": seconds, "inner": inner, "peak": peak,
-                     "discretisation": f"{surface} on the surface, {volume} x {depths}"})  # fmt: skip
+        rows.append(
+            {
+                "what": f"its search, our kernels, {name}",
+                "seconds": seconds,
+                "inner": inner,
+                "peak": peak,
+                "discretisation": f"{surface} on the surface, {volume} x {depths}",
+            }
+        )
     for name in ACCURACIES:
         ds = solve(CASE, accuracy=name)
         _, seconds = cpu(lambda n=name: [solve(CASE, accuracy=n) for _ in range(REPEATS)])
-        rows.append({"what": f"`{name}`", "discretisation": "see above", "seconds": seconds / REPEATS, "inner": None,
-                     "peak": float(ds.peak_stress.values[0, 0])})  # fmt: skip
+        rows.append(
+            {
+                "what": f"`{name}`",
+                "discretisation": "see above",
+                "seconds": seconds / REPEATS,
+                "inner": None,
+                "peak": float(ds.peak_stress.values[0, 0]),
+            }
+        )
     rows.append(
         {
             "what": "converged",

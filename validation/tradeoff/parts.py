@@ -132,8 +132,13 @@ def write_gathered(parts: Sequence[str], sizes_path: str, out: str) -> None:
     sizes = load_sizes(sizes_path)
     sets = [xr.load_dataset(path) for path in parts]
     ds = gather(sets, sample(max(*sizes.designs.values(), sizes.stages), sizes.seed))
-    ds.attrs.update(title="Error against cost of stages and contact models", Conventions="CF-1.11", seed=sizes.seed,
-                    paper_table=json.dumps(paper_table()), versions=json.dumps(versions()),
-                    git_commit=git_commit())  # fmt: skip
+    ds.attrs.update(
+        title="Error against cost of stages and contact models",
+        Conventions="CF-1.11",
+        seed=sizes.seed,
+        paper_table=json.dumps(paper_table()),
+        versions=json.dumps(versions()),
+        git_commit=git_commit(),
+    )
     encoding = {"error": {"zlib": True, "complevel": 4}}
     write_whole(Path(out), lambda beside: ds.to_netcdf(beside, encoding=encoding))

@@ -42,11 +42,18 @@ def design_at(u: np.ndarray) -> Case:
     curve = math.inf if bend == 0 else (1.0 if bend == 1 else -1.0) * 10 ** (1.3 + 1.7 * u[7])
     drive = min(int(3 * u[8]), 2) - 1
     return Case(
-        radial_force=-load, axial_force=load * (0.8 * u[9] - 0.4), motor_force=drive * load * 10 ** (-2 + 1.7 * u[10]),
-        friction_coefficient=u[11], contact_angle=alpha, guide_profile_radius=guide, roller_profile_radius=profile,
-        guide_curve_radius=curve, axis_distance=rolling + guide * math.cos(math.radians(alpha)),
-        roller_material=_material(u[12], u[13], u[14]), guide_material=_material(1 - u[12], u[14], u[13]),
-    )  # fmt: skip
+        radial_force=-load,
+        axial_force=load * (0.8 * u[9] - 0.4),
+        motor_force=drive * load * 10 ** (-2 + 1.7 * u[10]),
+        friction_coefficient=u[11],
+        contact_angle=alpha,
+        guide_profile_radius=guide,
+        roller_profile_radius=profile,
+        guide_curve_radius=curve,
+        axis_distance=rolling + guide * math.cos(math.radians(alpha)),
+        roller_material=_material(u[12], u[13], u[14]),
+        guide_material=_material(1 - u[12], u[14], u[13]),
+    )
 
 
 def sample(count: int, seed: int = SEED) -> list[Case]:

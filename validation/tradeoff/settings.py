@@ -14,19 +14,43 @@ ALL = ("forces", "contact", "friction_work", "peak_stress", "life")
 
 # nodes of the second pass by those of the first; scan, climb, polish, summit of the peak search
 FORCE_NODES = (4, 6, 8, 10, 12, 16, 20, 24, 32)
-QUADRATURES = {"a": (6, 6, 8, 16), "b": (6, 8, 12, 24), "c": (8, 12, 16, 32), "d": (12, 16, 24, 48),
-               "e": (16, 24, 32, 64)}  # fmt: skip
+QUADRATURES = {
+    "a": (6, 6, 8, 16),
+    "b": (6, 8, 12, 24),
+    "c": (8, 12, 16, 32),
+    "d": (12, 16, 24, 48),
+    "e": (16, 24, 32, 64),
+}
 EFFORTS = {1: (3, 1), 2: (5, 3), 3: (8, 6), 4: (12, 8), 5: (16, 12), 6: (24, 16)}
 # quadrature, effort and smallest step of the searches measured
-SEARCHES = (("a", 1, 0.05), ("a", 2, 0.05), ("a", 3, 0.015), ("b", 1, 0.05), ("b", 2, 0.015), ("b", 3, 0.015),
-            ("b", 4, 0.015), ("c", 2, 0.015), ("c", 3, 0.015), ("c", 3, 0.005), ("c", 4, 0.005), ("c", 5, 0.002),
-            ("d", 3, 0.005), ("d", 4, 0.002), ("d", 5, 0.001), ("d", 6, 0.001), ("e", 5, 0.0005))  # fmt: skip
+SEARCHES = (
+    ("a", 1, 0.05),
+    ("a", 2, 0.05),
+    ("a", 3, 0.015),
+    ("b", 1, 0.05),
+    ("b", 2, 0.015),
+    ("b", 3, 0.015),
+    ("b", 4, 0.015),
+    ("c", 2, 0.015),
+    ("c", 3, 0.015),
+    ("c", 3, 0.005),
+    ("c", 4, 0.005),
+    ("c", 5, 0.002),
+    ("d", 3, 0.005),
+    ("d", 4, 0.002),
+    ("d", 5, 0.001),
+    ("d", 6, 0.001),
+    ("e", 5, 0.0005),
+)
 ELEMENTS = {"kalker": (8, 12, 16, 20, 28, 40, 56), "fastsim": (10, 14, 20, 28, 40, 56, 80)}
 REFERENCE_ELEMENTS = {"kalker": 80, "fastsim": 160}
 FINE = PeakSettings(12, 16, 24, 48, 16, 12, 0.001, 0.0)
 # A search only ever finds too little, so the largest of several fine ones is the best known.
-REFERENCE_SEARCHES = (PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0), PeakSettings(16, 24, 32, 96, 24, 20, 5e-4, 0.0),
-                      PeakSettings(12, 16, 24, 96, 32, 24, 1e-3, 0.0))  # fmt: skip
+REFERENCE_SEARCHES = (
+    PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0),
+    PeakSettings(16, 24, 32, 96, 24, 20, 5e-4, 0.0),
+    PeakSettings(12, 16, 24, 96, 32, 24, 1e-3, 0.0),
+)
 
 
 @dataclass(frozen=True)
@@ -64,27 +88,51 @@ def searches() -> list[Setting]:
     for quadrature, effort, step in SEARCHES:
         orders = QUADRATURES[quadrature]
         peak = PeakSettings(*orders, *EFFORTS[effort], step, floor_of(step))
-        found.append(Setting("peak", "sliding", "search", f"{quadrature}{effort}", orders[2], accuracy_of(peak=peak),
-                             outputs=PEAKS, ladder={"peak": list(vars(peak).values())}))  # fmt: skip
+        found.append(
+            Setting(
+                "peak",
+                "sliding",
+                "search",
+                f"{quadrature}{effort}",
+                orders[2],
+                accuracy_of(peak=peak),
+                outputs=PEAKS,
+                ladder={"peak": list(vars(peak).values())},
+            )
+        )
     return found
 
 
 def quadratures() -> list[Setting]:
     """Quadrature of the slip integrals in the equilibrium of full sliding."""
-    return [Setting("equilibrium", "sliding", "quadrature", str(n), n, accuracy_of(n, min(n, 6)),
-                    ladder={"force_nodes": n, "coarse_nodes": min(n, 6)}) for n in FORCE_NODES]  # fmt: skip
+    return [
+        Setting(
+            "equilibrium",
+            "sliding",
+            "quadrature",
+            str(n),
+            n,
+            accuracy_of(n, min(n, 6)),
+            ladder={"force_nodes": n, "coarse_nodes": min(n, 6)},
+        )
+        for n in FORCE_NODES
+    ]
 
 
 def ellipses() -> list[Setting]:
     """Exact Hertz ellipses and those of the published table, with all that follows from them."""
-    return [Setting("ellipse", "sliding", method, method, float("nan"), accuracy_of(), {"hertz": method}, ALL)
-            for method in ("exact", "published")]  # fmt: skip
+    return [
+        Setting("ellipse", "sliding", method, method, float("nan"), accuracy_of(), {"hertz": method}, ALL)
+        for method in ("exact", "published")
+    ]
 
 
 def elements(model: str) -> list[Setting]:
     """Elements across the patch of a rolling contact model."""
-    return [Setting("elements", model, "elements", str(n), n, accuracy_of(elements=n), outputs=ALL,
-                    ladder={"elements": n}) for n in ELEMENTS[model]]  # fmt: skip
+    return [
+        Setting("elements", model, "elements", str(n), n, accuracy_of(elements=n), outputs=ALL, ladder={"elements": n})
+        for n in ELEMENTS[model]
+    ]
 
 
 def references(model: str) -> list[Accuracy]:

@@ -90,11 +90,15 @@ def ellipse_stage(cases: Sequence[Case]) -> list[Found]:
 def _hertz_input(table: CaseTable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     alpha = np.deg2rad(table.contact_angle)
     radius = rolling_radius(table.axis_distance, table.guide_profile_radius, alpha)
-    k_x, k_y = curvatures(table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, radius,
-                          alpha)  # fmt: skip
+    k_x, k_y = curvatures(
+        table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, radius, alpha
+    )
     roller, guide = table.roller, table.guide
-    return k_x, k_y, contact_modulus(roller.youngs_modulus, roller.poisson_ratio, guide.youngs_modulus,
-                                     guide.poisson_ratio)  # fmt: skip
+    return (
+        k_x,
+        k_y,
+        contact_modulus(roller.youngs_modulus, roller.poisson_ratio, guide.youngs_modulus, guide.poisson_ratio),
+    )
 
 
 def _axes(k_x: float, k_y: float, modulus: float) -> tuple[float, float]:
@@ -186,8 +190,16 @@ def _elements(patches: Patches, points: np.ndarray, count: int, few: int, kind: 
     t = sliding.tractions(patches.ellipse.take(rows), patches.slip.take(rows), patches.friction[rows], points=count + 1)
     out = np.empty((few, points.shape[1]))
     for i in range(few):
-        stress = stress_from_tractions(t.x[i], t.y[i], t.pressure[i], t.shear_lateral[i], t.shear_rolling[i],
-                                       points[i], float(patches.poisson[i]), kind)  # fmt: skip
+        stress = stress_from_tractions(
+            t.x[i],
+            t.y[i],
+            t.pressure[i],
+            t.shear_lateral[i],
+            t.shear_rolling[i],
+            points[i],
+            float(patches.poisson[i]),
+            kind,
+        )
         out[i] = von_mises(stress) / patches.ellipse.max_pressure[i]
     return out
 
@@ -219,6 +231,7 @@ def grid_peak(patches: Patches, i: int, count: int, depths: int, start: float, s
     deepest = 1.5 * float(min(t.x[0, -1], t.y[0, -1]))
     z = np.linspace(0.0, deepest, depths)
     z = z[1:] + (start - 1.0) * z[1] if start > 0 else z
-    stress = stress_on_grid(t.x[0], t.y[0], t.pressure[0], t.shear_lateral[0], t.shear_rolling[0], z,
-                            float(patches.poisson[i]))  # fmt: skip
+    stress = stress_on_grid(
+        t.x[0], t.y[0], t.pressure[0], t.shear_lateral[0], t.shear_rolling[0], z, float(patches.poisson[i])
+    )
     return float(von_mises(stress[:, ::stride, ::stride]).max())

@@ -16,8 +16,12 @@ from validation.tradeoff.errors import QUANTITIES, observed_order, percentiles, 
 from validation.tradeoff.settings import REFERENCE_ELEMENTS
 
 MOST_RUNGS = 10
-LADDERS = {("equilibrium", "sliding"): "forces", ("peak", "sliding"): "peak", ("elements", "fastsim"): "fastsim",
-           ("elements", "kalker"): "kalker"}  # fmt: skip
+LADDERS = {
+    ("equilibrium", "sliding"): "forces",
+    ("peak", "sliding"): "peak",
+    ("elements", "fastsim"): "fastsim",
+    ("elements", "kalker"): "kalker",
+}
 _JUDGED_BY = {
     "forces": (FORCE_QUANTITIES,),
     "peak": (("peak_stress",),),
@@ -51,9 +55,14 @@ def presets(chosen: dict[str, list[Record]]) -> dict[str, Record]:
     if not all(chosen.values()):
         return {}
     measured = read_ladders(chosen)
-    return {name: {part: dict(rung.settings) for part, rung in zip(("forces", "peak", "elements"),
-                                                                   preset_rungs(name, measured), strict=True) if rung}
-            for name in ACCURACIES}  # fmt: skip
+    return {
+        name: {
+            part: dict(rung.settings)
+            for part, rung in zip(("forces", "peak", "elements"), preset_rungs(name, measured), strict=True)
+            if rung
+        }
+        for name in ACCURACIES
+    }
 
 
 def _plain(value: Any) -> Any:
@@ -108,10 +117,20 @@ def orders(records: list[Record]) -> list[Record]:
             median = np.array([levels(r, quantity)[0] for r in found])
             order, fit = observed_order(points, median)
             if math.isfinite(order):
-                out.append({"stage": stage, "model": model, "method": method, "quantity": quantity,
-                            "from": float(points.min()), "to": float(points.max()), "order": round(order, 2),
-                            "fit": round(fit, 3), "coarsest": float(median[np.argmin(points)]),
-                            "finest": float(median[np.argmax(points)])})  # fmt: skip
+                out.append(
+                    {
+                        "stage": stage,
+                        "model": model,
+                        "method": method,
+                        "quantity": quantity,
+                        "from": float(points.min()),
+                        "to": float(points.max()),
+                        "order": round(order, 2),
+                        "fit": round(fit, 3),
+                        "coarsest": float(median[np.argmin(points)]),
+                        "finest": float(median[np.argmax(points)]),
+                    }
+                )
     return out
 
 
@@ -119,8 +138,11 @@ def ladder(records: list[Record], stage: str, model: str) -> list[Record]:
     """The settings that no other beats in cost and in what 99 % of the cases keep; at most ten, evenly spread."""
     name = LADDERS[stage, model]
     judged_by = {q for group in _JUDGED_BY[name] for q in group}
-    found = [r for r in records if (r["stage"], r["model"]) == (stage, model) and r["ladder"]
-             and judged_by <= set(r["errors"])]  # fmt: skip
+    found = [
+        r
+        for r in records
+        if (r["stage"], r["model"]) == (stage, model) and r["ladder"] and judged_by <= set(r["errors"])
+    ]
     if not found:
         return []
     judged = [[r["cost"], *(max(levels(r, q)[3] for q in group) for group in _JUDGED_BY[name])] for r in found]
@@ -128,9 +150,14 @@ def ladder(records: list[Record], stage: str, model: str) -> list[Record]:
     usable = np.isfinite(table).all(axis=1)
     keep = pareto_mask(np.where(np.isfinite(table), table, 1e9), ("min",) * table.shape[1], usable)
     rows = sorted(np.flatnonzero(keep), key=lambda i: table[i, 0])
-    return [{"settings": found[i]["ladder"], "cost": found[i]["cost"],
-             "errors": {q: [max(v, _FLOOR) for v in levels(found[i], q)] for q in found[i]["errors"]}}
-            for i in _thinned(rows, table)]  # fmt: skip
+    return [
+        {
+            "settings": found[i]["ladder"],
+            "cost": found[i]["cost"],
+            "errors": {q: [max(v, _FLOOR) for v in levels(found[i], q)] for q in found[i]["errors"]},
+        }
+        for i in _thinned(rows, table)
+    ]
 
 
 def _thinned(rows: list[Any], table: np.ndarray) -> list[Any]:

@@ -108,9 +108,13 @@ def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
 
 
 def solve_grid(
-    patch: GridPatch, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None,
+    patch: GridPatch,
+    slip: Slip,
+    friction,
+    elastic: Elastic,
+    settings: FastsimSettings | None = None,
     travel_speed=None,
-) -> FastsimSolution:  # fmt: skip
+) -> FastsimSolution:
     """Simplified theory for n solved patches with rigid slip w = (-phi y, xi + phi x); see the head of this file.
 
     Parameters
@@ -141,9 +145,13 @@ def solve_grid(
 
 
 def tractions(
-    patch: GridPatch, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None,
+    patch: GridPatch,
+    slip: Slip,
+    friction,
+    elastic: Elastic,
+    settings: FastsimSettings | None = None,
     travel_speed=None,
-) -> SurfaceTractions:  # fmt: skip
+) -> SurfaceTractions:
     """Pressure and shear of each element, and the slip at its centre per travel speed; see `solve_grid`."""
     settings = settings or FastsimSettings()
     law = settings.law or constant()

@@ -88,11 +88,25 @@ def _patch(a, b, scale, rigid, bend, flexibility, steps, nodes, weights, parabol
 
 
 @njit(cache=True, nogil=True)
-def _all_patches(rows, a, b, scale, rigid, bend, flexibility, travel, steps, nodes, weights, parabolic, knots, factors,
-                 totals):  # fmt: skip
+def _all_patches(
+    rows, a, b, scale, rigid, bend, flexibility, travel, steps, nodes, weights, parabolic, knots, factors, totals
+):
     for i in range(rows[0], rows[1]):
-        _patch(a[i], b[i], scale[i], rigid[i], bend[i], flexibility[i], steps, nodes, weights, parabolic,
-               knots / travel[i], factors, totals[i])  # fmt: skip
+        _patch(
+            a[i],
+            b[i],
+            scale[i],
+            rigid[i],
+            bend[i],
+            flexibility[i],
+            steps,
+            nodes,
+            weights,
+            parabolic,
+            knots / travel[i],
+            factors,
+            totals[i],
+        )
 
 
 @njit(cache=True, nogil=True)
@@ -166,9 +180,20 @@ def flexibilities(a, b, limit, rigid, shear_modulus, poisson_ratio) -> tuple[np.
 
 def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic):
     """Arrays a, b, mu p_max, rigid slips (n, 3) and flexibilities (n, 2: x, y) [mm/MPa] of n patches."""
-    a, b, p, xi, eta, phi, mu, g, nu = (np.array(v, float, order="C") for v in np.broadcast_arrays(
-        ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure, longitudinal, lateral, spin,
-        friction, elastic.shear_modulus, elastic.poisson_ratio))  # fmt: skip
+    a, b, p, xi, eta, phi, mu, g, nu = (
+        np.array(v, float, order="C")
+        for v in np.broadcast_arrays(
+            ellipse.semi_axis_lateral,
+            ellipse.semi_axis_rolling,
+            ellipse.max_pressure,
+            longitudinal,
+            lateral,
+            spin,
+            friction,
+            elastic.shear_modulus,
+            elastic.poisson_ratio,
+        )
+    )
     limit = 2.0 / 3.0 * np.pi * a * b * mu * p
     flexibility, across = flexibilities(a, b, limit, np.stack([xi, eta, phi], axis=1), g, nu)
     return a, b, mu * p, np.stack([xi, eta * across, phi], axis=1), flexibility
@@ -191,9 +216,16 @@ def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
 
 
 def solve_patch(
-    ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic,
-    settings: FastsimSettings | None = None, travel_speed=None, profile: Slip | None = None,
-) -> FastsimSolution:  # fmt: skip
+    ellipse: Ellipse,
+    longitudinal,
+    lateral,
+    spin,
+    friction,
+    elastic: Elastic,
+    settings: FastsimSettings | None = None,
+    travel_speed=None,
+    profile: Slip | None = None,
+) -> FastsimSolution:
     """Simplified theory for n patches with rigid slip w = (eta - phi y, xi + phi x).
 
     Parameters
@@ -217,8 +249,22 @@ def solve_patch(
     totals, bend = np.empty((2, a.size, 6)), _bend(profile, a, nodes)
     travel = _travel(travel_speed, settings, a.size)
     for k, steps in enumerate((settings.steps, 2 * settings.steps)):
-        rest = (a, b, scale, rigid, bend, flexibility, travel, steps, nodes, weights, settings.parabolic, law.speed,
-                law.factor, totals[k])  # fmt: skip
+        rest = (
+            a,
+            b,
+            scale,
+            rigid,
+            bend,
+            flexibility,
+            travel,
+            steps,
+            nodes,
+            weights,
+            settings.parabolic,
+            law.speed,
+            law.factor,
+            totals[k],
+        )
         share_rows(partial(_rows_of, _all_patches, rest), a.size, 8)
     force = 2.0 / 3.0 * np.pi * a * b * scale
     lack = totals[1, :, 5] / np.where(force > 0, force, 1.0)
@@ -231,14 +277,19 @@ def resultants(
 ) -> Resultants:
     """Friction forces [N] and spin moment [N mm] on the roller, shape (n,); see `solve_patch`."""
     profile = slip if settings is not None and settings.profile_slip else None
-    return solve_patch(ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic, settings,
-                       profile=profile).resultants  # fmt: skip
+    return solve_patch(
+        ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic, settings, profile=profile
+    ).resultants
 
 
 def tractions(
-    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None,
+    ellipse: Ellipse,
+    slip: Slip,
+    friction,
+    elastic: Elastic,
+    settings: FastsimSettings | None = None,
     travel_speed=None,
-) -> SurfaceTractions:  # fmt: skip
+) -> SurfaceTractions:
     """Pressure (of Hertz), shear and slip at points x points element centres; 0 outside the ellipse."""
     settings = settings or FastsimSettings()
     law = settings.law or constant()
@@ -247,11 +298,25 @@ def tractions(
     shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
     u = (2.0 * np.arange(points) + 1.0) / points - 1.0
     bend = _bend(slip if settings.profile_slip else None, a, u)
-    rest = (a, b, scale, rigid, bend, flexibility, _travel(travel_speed, settings, a.size), points, settings.parabolic,
-            law.speed, law.factor, shear, moved)  # fmt: skip
+    rest = (
+        a,
+        b,
+        scale,
+        rigid,
+        bend,
+        flexibility,
+        _travel(travel_speed, settings, a.size),
+        points,
+        settings.parabolic,
+        law.speed,
+        law.factor,
+        shear,
+        moved,
+    )
     share_rows(partial(_rows_of, _all_fields, rest), a.size, 4)
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - u[:, None] ** 2, 0.0))
     pressure = np.broadcast_to(ellipse.max_pressure, a.shape)[:, None, None] * root
     stick = (root > 0) & (moved[:, 0] == 0.0) & (moved[:, 1] == 0.0)
-    return SurfaceTractions(a[:, None] * u, b[:, None] * u, pressure, shear[:, 0], shear[:, 1], moved[:, 0],
-                            moved[:, 1], stick)  # fmt: skip
+    return SurfaceTractions(
+        a[:, None] * u, b[:, None] * u, pressure, shear[:, 0], shear[:, 1], moved[:, 0], moved[:, 1], stick
+    )

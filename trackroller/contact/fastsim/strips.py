@@ -145,23 +145,45 @@ def _field(p, place, along, spin, flexibility, friction, knots, factors, shear, 
 
 
 @njit(cache=True, nogil=True)
-def strip_sums(rows, pressure, x, sides, half, along, spin, flexibility, friction, travel, steps, knots, factors,
-               totals):  # fmt: skip
+def strip_sums(
+    rows, pressure, x, sides, half, along, spin, flexibility, friction, travel, steps, knots, factors, totals
+):
     for i in range(rows[0], rows[1]):
         for j in range(x.shape[1]):
             place = (x[i, j], sides[i, 0], sides[i, 1], half[i])
-            _strip(pressure[i, :, j].copy(), place, along[i, j], spin[i], flexibility[i, j], friction[i], steps,
-                   knots / travel[i], factors, totals[i])  # fmt: skip
+            _strip(
+                pressure[i, :, j].copy(),
+                place,
+                along[i, j],
+                spin[i],
+                flexibility[i, j],
+                friction[i],
+                steps,
+                knots / travel[i],
+                factors,
+                totals[i],
+            )
 
 
 @njit(cache=True, nogil=True)
-def strip_fields(rows, pressure, x, sides, half, along, spin, flexibility, friction, travel, knots, factors, shear,
-                 slip):  # fmt: skip
+def strip_fields(
+    rows, pressure, x, sides, half, along, spin, flexibility, friction, travel, knots, factors, shear, slip
+):
     for i in range(rows[0], rows[1]):
         for j in range(x.shape[1]):
             place = (x[i, j], sides[i, 0], sides[i, 1], half[i])
-            _field(pressure[i, :, j].copy(), place, along[i, j], spin[i], flexibility[i, j], friction[i],
-                   knots / travel[i], factors, shear[i, :, :, j], slip[i, :, :, j])  # fmt: skip
+            _field(
+                pressure[i, :, j].copy(),
+                place,
+                along[i, j],
+                spin[i],
+                flexibility[i, j],
+                friction[i],
+                knots / travel[i],
+                factors,
+                shear[i, :, :, j],
+                slip[i, :, :, j],
+            )
 
 
 @njit(cache=True)

@@ -79,8 +79,27 @@ def _solve(problem: Problem, traction, control, report):
     return traction, slip, bound
 
 
-def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel, height, share, speeds, values,
-               control, traction, slip, stick, report):  # fmt: skip
+def _one_patch(
+    a,
+    b,
+    scale,
+    ratio,
+    poisson,
+    coupling,
+    along,
+    lateral,
+    spin,
+    travel,
+    height,
+    share,
+    speeds,
+    values,
+    control,
+    traction,
+    slip,
+    stick,
+    report,
+):
     """Solve one patch; `traction` is the start. ratio = mu p_max / G, coupling = K / mu."""
     ny, nx = height.shape
     report[:] = 0.0
@@ -95,8 +114,20 @@ def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, trav
     driver = rigid if coupling == 0.0 else rigid + coupling * coupling_slip(height, hx, hy)
     problem = Problem(functions, driver, np.ascontiguousarray(height), ratio * travel, speeds, values)
     found, moved, bound = _solve(problem, traction[0] + 1j * traction[1], control, report)
-    _sums(reals(found), reals(moved), reals(rigid), reals(driver), height, bound, 1.0 / functions.own, share, a, b,
-          stick, report)  # fmt: skip
+    _sums(
+        reals(found),
+        reals(moved),
+        reals(rigid),
+        reals(driver),
+        height,
+        bound,
+        1.0 / functions.own,
+        share,
+        a,
+        b,
+        stick,
+        report,
+    )
     report[:3] *= scale
     report[[POWER, WORK, PRESSURE_WORK]] *= scale * ratio
     traction[0], traction[1] = found.real, found.imag
@@ -107,8 +138,27 @@ def _one_patch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, trav
     slip[0], slip[1] = ratio * moved.real, ratio * moved.imag
 
 
-def solve_batch(a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel, height, share, speeds, values,
-                control, traction, slip, stick, report):  # fmt: skip
+def solve_batch(
+    a,
+    b,
+    scale,
+    ratio,
+    poisson,
+    coupling,
+    along,
+    lateral,
+    spin,
+    travel,
+    height,
+    share,
+    speeds,
+    values,
+    control,
+    traction,
+    slip,
+    stick,
+    report,
+):
     """Patches i = 0..n-1, one per thread at a time.
 
     a, b [mm], scale = mu p_max [MPa], ratio = mu p_max / G, nu, K / mu, lateral [-], spin [1/mm]: (n,);

@@ -100,8 +100,26 @@ def multiply(field, p, q, leading, hy, rolling, work, product):
 
 
 @njit(cache=True, nogil=True)
-def solve(value, slips, derivative, turn, falls, rho, first, count, p, q, leading, hy, rolling, tolerance, factors,
-          basis, work, step):  # fmt: skip
+def solve(
+    value,
+    slips,
+    derivative,
+    turn,
+    falls,
+    rho,
+    first,
+    count,
+    p,
+    q,
+    leading,
+    hy,
+    rolling,
+    tolerance,
+    factors,
+    basis,
+    work,
+    step,
+):
     """Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES into `step`; how many products.
 
     slips, first, count : `column_slips` and `column_ranges`; derivative, turn : of `jacobian`, turn if friction

@@ -33,8 +33,9 @@ class KalkerLaw:
     number depends on what else is solved.
     """
 
-    def __init__(self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None,
-                 curve_radius=None) -> None:  # fmt: skip
+    def __init__(
+        self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None, curve_radius=None
+    ) -> None:
         self.elastic, self.settings = elastic, settings or KalkerSettings()
         self.travel = None if travel_speed is None else np.asarray(travel_speed, float)
         self.curve = None if curve_radius is None else np.asarray(curve_radius, float)
@@ -82,11 +83,17 @@ class KalkerLaw:
                 continue
             where = rows[pick]
             start = np.stack([self._starts[keys[i]][0] for i in pick]).astype(float) if started else None
-            parts.append(solve_patch(
-                ellipse.take(pick), creep.take(pick), friction[pick], self.elastic.take(where),
-                dataclasses.replace(settings, steps=SHORT_STEPS) if cut else settings, start,
-                None if self.travel is None else self.travel[where],
-            ))  # fmt: skip
+            parts.append(
+                solve_patch(
+                    ellipse.take(pick),
+                    creep.take(pick),
+                    friction[pick],
+                    self.elastic.take(where),
+                    dataclasses.replace(settings, steps=SHORT_STEPS) if cut else settings,
+                    start,
+                    None if self.travel is None else self.travel[where],
+                )
+            )
             picks.append(pick)
         solution = parts[0] if len(parts) == 1 else joined(parts, np.argsort(np.concatenate(picks)))
         kept = zip(solution.traction.astype(np.float32), creep.longitudinal, strict=True)
@@ -113,8 +120,17 @@ class KalkerLaw:
 
     def kept(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray) -> PatchSolution:
         """As `solve`, but a solution that the last such call found for the same patches is not found again."""
-        content = np.stack([rows, slip.sine, slip.shift, ellipse.semi_axis_lateral, ellipse.max_pressure,
-                            np.broadcast_to(friction, len(rows))], axis=1)  # fmt: skip
+        content = np.stack(
+            [
+                rows,
+                slip.sine,
+                slip.shift,
+                ellipse.semi_axis_lateral,
+                ellipse.max_pressure,
+                np.broadcast_to(friction, len(rows)),
+            ],
+            axis=1,
+        )
         keys = [row.tobytes() for row in content]
         if self._kept is None or not all(key in self._kept[0] for key in keys):
             self._kept = {key: i for i, key in enumerate(keys)}, self.solve(ellipse, slip, friction, rows)

@@ -99,8 +99,22 @@ class _Newton:
         if leap:
             hold(self.held, slip, self.rho, reals(self.value), self.derivative, self.turn)
         step = np.empty_like(self.value)
-        products = solve(self.value, self.slips, self.derivative, self.turn, self.falls, self.rho, self.first,
-                         self.count, *self.kernel, tolerance, self.factors, self.basis, self.work, step)  # fmt: skip
+        products = solve(
+            self.value,
+            self.slips,
+            self.derivative,
+            self.turn,
+            self.falls,
+            self.rho,
+            self.first,
+            self.count,
+            *self.kernel,
+            tolerance,
+            self.factors,
+            self.basis,
+            self.work,
+            step,
+        )
         return step, self.multiply(step), products + 1
 
     def search(self, at: _State, step: np.ndarray, change: np.ndarray) -> tuple[_State, float]:

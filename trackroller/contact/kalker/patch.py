@@ -35,12 +35,30 @@ def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel
     stick = np.zeros((n, elements, elements), bool)
     control = np.array([settings.tolerance, settings.steps, settings.krylov])
     given: tuple[Any, ...] = (
-        a, b, scale, scale / elastic.shear_modulus, elastic.poisson_ratio, coupling, creep.along(x), creep.lateral,
-        creep.spin, travel,
-    )  # fmt: skip
+        a,
+        b,
+        scale,
+        scale / elastic.shear_modulus,
+        elastic.poisson_ratio,
+        coupling,
+        creep.along(x),
+        creep.lateral,
+        creep.spin,
+        travel,
+    )
     for rows, own, share_own in _by_cells(height, share, n):
-        arguments: Any = (*(v[rows] for v in given), own, share_own, law.speed, law.factor, control, traction[rows],
-                          slip[rows], stick[rows], report[rows])  # fmt: skip
+        arguments: Any = (
+            *(v[rows] for v in given),
+            own,
+            share_own,
+            law.speed,
+            law.factor,
+            control,
+            traction[rows],
+            slip[rows],
+            stick[rows],
+            report[rows],
+        )
         batch.solve_batch(*arguments)
     return slip, stick, report
 
@@ -90,9 +108,20 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + _centre(ellipse) * value[:, 1]], axis=1)
     good = fine[:, batch.RESIDUAL] <= settings.tolerance
     return PatchSolution(
-        Resultants(value[:, 0], value[:, 1], value[:, 2]), traction, slip, stick, fine[:, batch.STICK], work, pressed,
-        energy, error, fine[:, batch.RESIDUAL], fine[:, batch.STEPS], fine[:, batch.PRODUCTS], good,
-    )  # fmt: skip
+        Resultants(value[:, 0], value[:, 1], value[:, 2]),
+        traction,
+        slip,
+        stick,
+        fine[:, batch.STICK],
+        work,
+        pressed,
+        energy,
+        error,
+        fine[:, batch.RESIDUAL],
+        fine[:, batch.STEPS],
+        fine[:, batch.PRODUCTS],
+        good,
+    )
 
 
 def _full(value, n: int) -> np.ndarray:
@@ -103,16 +132,22 @@ def _full(value, n: int) -> np.ndarray:
 def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np.ndarray, Elastic]:
     n = np.size(ellipse.semi_axis_lateral)
     if not isinstance(ellipse, GridPatch):
-        ellipse = Ellipse(*(_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling,
-                                                  ellipse.max_pressure)))  # fmt: skip
+        ellipse = Ellipse(
+            *(_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure))
+        )
     g, nu, k = (_full(v, n) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling))
     return ellipse, _full(friction, n), Elastic(g, nu, k)
 
 
 def solve_patch(
-    ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings | None = None,
-    start: np.ndarray | None = None, travel_speed=None,
-) -> PatchSolution:  # fmt: skip
+    ellipse: Ellipse,
+    creep: Creepage,
+    friction,
+    elastic: Elastic,
+    settings: KalkerSettings | None = None,
+    start: np.ndarray | None = None,
+    travel_speed=None,
+) -> PatchSolution:
     """Tractions, slip and resultants of n patches in steady rolling with friction.
 
     Parameters
@@ -139,8 +174,11 @@ def solve_patch(
     for i in range(0, max(n, 1), BLOCK):
         rows = slice(i, i + BLOCK)
         first = None if start is None else start[rows]
-        parts.append(_solve_block(ellipse.take(rows), creep.take(rows), friction[rows], elastic.take(rows),
-                                  travel[rows], settings, first))  # fmt: skip
+        parts.append(
+            _solve_block(
+                ellipse.take(rows), creep.take(rows), friction[rows], elastic.take(rows), travel[rows], settings, first
+            )
+        )
     return parts[0] if len(parts) == 1 else joined(parts, slice(None))
 
 
@@ -169,22 +207,30 @@ def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> Surface
     slip = np.where(inside, solution.slip, 0.0)
     stick = inside & solution.stick
     return SurfaceTractions(
-        ellipse.semi_axis_lateral[:, None] * u, ellipse.semi_axis_rolling[:, None] * v,
-        ellipse.max_pressure[:, None, None] * root, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], stick,
-    )  # fmt: skip
+        ellipse.semi_axis_lateral[:, None] * u,
+        ellipse.semi_axis_rolling[:, None] * v,
+        ellipse.max_pressure[:, None, None] * root,
+        shear[:, 0],
+        shear[:, 1],
+        slip[:, 0],
+        slip[:, 1],
+        stick,
+    )
 
 
 def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> SurfaceTractions:
     """As `to_tractions`: means over the elements of a patch whose pressure was solved, perhaps with more of them."""
     elements = solution.traction.shape[-1]
     share = solution.traction / np.maximum(patch.heights(elements), 1e-300)[:, None]  # over mu p
-    share, slip, stick = (np.repeat(v, patch.shape[1] // elements, axis=-1)
-                          for v in (share, solution.slip, solution.stick))  # fmt: skip
+    share, slip, stick = (
+        np.repeat(v, patch.shape[1] // elements, axis=-1) for v in (share, solution.slip, solution.stick)
+    )
     bound, loaded = friction[:, None, None] * patch.pressure, patch.pressure > 0
     shear = np.where(loaded[:, None], share * bound[:, None], 0.0)
     slip = np.where(loaded[:, None], slip, 0.0)
-    return SurfaceTractions(patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1],
-                            loaded & stick)  # fmt: skip
+    return SurfaceTractions(
+        patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], loaded & stick
+    )
 
 
 def tractions(

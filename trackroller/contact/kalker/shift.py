@@ -32,9 +32,15 @@ class ShiftSolution:
 
 
 def shift_patch(
-    ellipse: Ellipse, lateral: float, rolling: float, turn: float, friction: float, elastic: Elastic,
-    elements: int = 40, tolerance: float = 1e-8,
-) -> ShiftSolution:  # fmt: skip
+    ellipse: Ellipse,
+    lateral: float,
+    rolling: float,
+    turn: float,
+    friction: float,
+    elastic: Elastic,
+    elements: int = 40,
+    tolerance: float = 1e-8,
+) -> ShiftSolution:
     """Tractions of one patch after a rigid shift from rest under constant pressure.
 
     Parameters
@@ -48,9 +54,16 @@ def shift_patch(
 
     Validity: one step from rest, so that slip never turns on its way; exact for shifts in one direction.
     """
-    a, b, p, g, nu = (float(np.ravel(v)[0]) for v in (
-        ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure, elastic.shear_modulus,
-        elastic.poisson_ratio))  # fmt: skip
+    a, b, p, g, nu = (
+        float(np.ravel(v)[0])
+        for v in (
+            ellipse.semi_axis_lateral,
+            ellipse.semi_axis_rolling,
+            ellipse.max_pressure,
+            elastic.shear_modulus,
+            elastic.poisson_ratio,
+        )
+    )
     height, share = unit_cells(elements, elements)
     unit = (2.0 * np.arange(elements) + 1.0) / elements - 1.0
     x, y = a * unit[None, :], b * unit[:, None]

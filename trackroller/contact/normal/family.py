@@ -176,9 +176,13 @@ class Family:
         return Box(max(low, self.limits[0]), min(high, self.limits[1]), half)
 
     def _pressure(
-        self, box: Box, load: float, shape: tuple[int, int], start: np.ndarray | None = None,
+        self,
+        box: Box,
+        load: float,
+        shape: tuple[int, int],
+        start: np.ndarray | None = None,
         lift: np.ndarray | None = None,
-    ) -> NormalSolution:  # fmt: skip
+    ) -> NormalSolution:
         x, y, hx, hy = box.grid(*shape)
         gap = self.gap.field(x, y)
         return solve_normal(gap if lift is None else gap + lift, hx, hy, load, start=start)

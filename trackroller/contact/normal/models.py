@@ -67,8 +67,9 @@ class _OnGrid:
         contour = np.full(len(rows), None)
         contour[:] = [self.patches.contour(row, sine) for row, sine in zip(rows.tolist(), slip.sine, strict=True)]
         turning = slip.turning if isinstance(slip, DetailedSlip) else np.zeros(len(rows))
-        return DetailedSlip(slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius, slip.shift, turning,
-                            contour)  # fmt: skip
+        return DetailedSlip(
+            slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius, slip.shift, turning, contour
+        )
 
     def _remember(self, patch: GridPatch, slip: Slip, rows: np.ndarray) -> None:
         for row, sine, residual in zip(rows, slip.sine, patch.residual, strict=True):
@@ -91,8 +92,9 @@ class GridSlidingModel(_OnGrid):
         self.spin_model, self.friction_law, self.travel = spin_model, law, travel_speed
 
     def _solved(self, patch, slip, friction, rows) -> normal_sliding.SlidingPatches:
-        return normal_sliding.solve_sliding(patch, slip, friction, self.spin_model, self.friction_law,
-                                            self.travel[rows])  # fmt: skip
+        return normal_sliding.solve_sliding(
+            patch, slip, friction, self.spin_model, self.friction_law, self.travel[rows]
+        )
 
     def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
         """Tractions on the grid of elements."""
@@ -108,8 +110,9 @@ class GridSlidingModel(_OnGrid):
 class GridFastsimModel(_OnGrid):
     """Kalker's simplified theory, strip by strip over solved patches."""
 
-    def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
-                 profile_slip: bool = False) -> None:  # fmt: skip
+    def __init__(
+        self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray, profile_slip: bool = False
+    ) -> None:
         from trackroller.contact.fastsim import FastsimSettings
         from trackroller.contact.fastsim import grid as fastsim_grid
 
@@ -118,14 +121,16 @@ class GridFastsimModel(_OnGrid):
         self.settings = FastsimSettings(steps=6 * patches.elements // 5, law=law, profile_slip=profile_slip)
 
     def _solved(self, patch, slip, friction, rows):
-        return self._grid.solve_grid(patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings,
-                                     self.travel[rows])  # fmt: skip
+        return self._grid.solve_grid(
+            patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings, self.travel[rows]
+        )
 
     def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
         """Tractions on the grid of elements."""
         patch = self.patch(ellipse, slip, rows)
-        return self._grid.tractions(patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings,
-                                    self.travel[rows])  # fmt: skip
+        return self._grid.tractions(
+            patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings, self.travel[rows]
+        )
 
     def power(self, ellipse, slip, friction, rows) -> Works:
         """Dissipation per distance travelled."""
@@ -138,8 +143,9 @@ class GridKalkerModel(_OnGrid):
 
     refines = False
 
-    def __init__(self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray,
-                 profile_slip: bool = False) -> None:  # fmt: skip
+    def __init__(
+        self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray, profile_slip: bool = False
+    ) -> None:
         from trackroller.contact.kalker import KalkerSettings
         from trackroller.contact.kalker.law import KalkerLaw
 
@@ -197,9 +203,14 @@ GridModel = GridSlidingModel | GridFastsimModel | GridKalkerModel
 
 
 def grid_model(
-    name: str, patches: Patches, elastic: Elastic, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray,
+    name: str,
+    patches: Patches,
+    elastic: Elastic,
+    spin_model: str,
+    law: FrictionLaw,
+    travel_speed: np.ndarray,
     profile_slip: bool = False,
-) -> GridModel:  # fmt: skip
+) -> GridModel:
     """The contact model `name` on solved patches."""
     if name == "sliding":
         return GridSlidingModel(patches, spin_model, law, travel_speed)

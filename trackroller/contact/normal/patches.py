@@ -74,8 +74,9 @@ class Patches:
         if problem is not None and not any(self._places[i, 1] and self._places[i, 2] for i in range(len(modulus))):
             raise problem
 
-    def at(self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True,
-           pressing: Pressing | None = None) -> GridPatch:  # fmt: skip
+    def at(
+        self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True, pressing: Pressing | None = None
+    ) -> GridPatch:
         """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`."""
         n = len(load)
         found: dict[int, np.ndarray] = {}

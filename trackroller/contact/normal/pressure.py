@@ -84,9 +84,14 @@ def lift(shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: fl
 
 
 def solve_normal(
-    gap: np.ndarray, hx: float, hy: float, load: float, material: np.ndarray | None = None,
-    start: np.ndarray | None = None, tolerance: float = TOLERANCE,
-) -> NormalSolution:  # fmt: skip
+    gap: np.ndarray,
+    hx: float,
+    hy: float,
+    load: float,
+    material: np.ndarray | None = None,
+    start: np.ndarray | None = None,
+    tolerance: float = TOLERANCE,
+) -> NormalSolution:
     """Pressure, patch and approach under a load.
 
     Parameters

@@ -47,9 +47,13 @@ def _slip_of(x: np.ndarray, patch: GridPatch, slip: Slip, i: int, model: int) ->
 
 
 def solve_sliding(
-    patch: GridPatch, slip: Slip, friction: np.ndarray, spin_model: str = "skewed", law: FrictionLaw | None = None,
+    patch: GridPatch,
+    slip: Slip,
+    friction: np.ndarray,
+    spin_model: str = "skewed",
+    law: FrictionLaw | None = None,
     travel_speed: np.ndarray | float = 1.0,
-) -> SlidingPatches:  # fmt: skip
+) -> SlidingPatches:
     """Friction of n sliding patches, tau = -mu f(|v|) p v/|v|.
 
     Parameters
@@ -109,6 +113,13 @@ def tractions(
         along, offset = _slip_of(patch.x[i], patch, slip, i, model)
         slip_x[i] = slip.sine[i] * (patch.y[i][:, None] - offset) / slip.rolling_radius[i]
         slip_y[i] = along / slip.rolling_radius[i]
-    return SurfaceTractions(patch.x, patch.y, patch.pressure, found.shear_lateral, found.shear_rolling,
-                            np.where(loaded, slip_x, 0.0), np.where(loaded, slip_y, 0.0),
-                            np.zeros(loaded.shape, bool))  # fmt: skip
+    return SurfaceTractions(
+        patch.x,
+        patch.y,
+        patch.pressure,
+        found.shear_lateral,
+        found.shear_rolling,
+        np.where(loaded, slip_x, 0.0),
+        np.where(loaded, slip_y, 0.0),
+        np.zeros(loaded.shape, bool),
+    )

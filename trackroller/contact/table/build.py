@@ -47,8 +47,9 @@ def solve_exact(g, nu, rho, angle, kappa=0.0, elements=40, start=None):
     settings = kalker.KalkerSettings(elements=elements, tolerance=1e-6)
     s = kalker.solve_patch(ellipse, kalker.Creepage(xi, np.zeros_like(xi), phi), mu, elastic, settings, start)
     r = s.resultants
-    return np.stack([r.lateral_force / FRICTION, r.driving_force / FRICTION, r.spin_moment / FRICTION,
-                     s.stick_fraction], axis=1), s.traction  # fmt: skip
+    return np.stack(
+        [r.lateral_force / FRICTION, r.driving_force / FRICTION, r.spin_moment / FRICTION, s.stick_fraction], axis=1
+    ), s.traction
 
 
 def complete_sliding(g: np.ndarray, angle: np.ndarray, nodes: int = 48) -> np.ndarray:
@@ -102,8 +103,10 @@ def _mirrored(angles, values, axis=1):
     first = np.take(values, range(GHOSTS - 1, -1, -1), axis)
     last = np.take(values, range(-1, -GHOSTS - 1, -1), axis)
     more = step * np.arange(1, GHOSTS + 1)
-    return (np.concatenate([angles[0] - more[::-1], angles, angles[-1] + more]),
-            np.concatenate([first, values, last], axis=axis))  # fmt: skip
+    return (
+        np.concatenate([angles[0] - more[::-1], angles, angles[-1] + more]),
+        np.concatenate([first, values, last], axis=axis),
+    )
 
 
 def _log_ratios(count: int) -> np.ndarray:
@@ -132,9 +135,14 @@ def like_table(tell=print):
     values = values.reshape(RHO + 1, THETA, RATIO, POISSON, 4)
     # the parabola through three Poisson's ratios, on the four nodes that a cubic spline asks for
     four = np.linspace(0.0, 0.5, 4)
-    weights = np.stack([(four - nu[1]) * (four - nu[2]) / ((nu[0] - nu[1]) * (nu[0] - nu[2])),
-                        (four - nu[0]) * (four - nu[2]) / ((nu[1] - nu[0]) * (nu[1] - nu[2])),
-                        (four - nu[0]) * (four - nu[1]) / ((nu[2] - nu[0]) * (nu[2] - nu[1]))], axis=1)  # fmt: skip
+    weights = np.stack(
+        [
+            (four - nu[1]) * (four - nu[2]) / ((nu[0] - nu[1]) * (nu[0] - nu[2])),
+            (four - nu[0]) * (four - nu[2]) / ((nu[1] - nu[0]) * (nu[1] - nu[2])),
+            (four - nu[0]) * (four - nu[1]) / ((nu[2] - nu[0]) * (nu[2] - nu[1])),
+        ],
+        axis=1,
+    )
     theta, values = _mirrored(theta, np.einsum("mn,rtgnf->rtgmf", weights, values))
     return (rho, theta, log_g, four), values
 
@@ -195,8 +203,13 @@ def sample(n: int, seed: int) -> dict[str, np.ndarray]:
     g = np.exp(rng.uniform(np.log(table.RATIOS[0]), np.log(table.RATIOS[1]), n))
     size = 10 ** rng.uniform(-1, np.log10(table.LARGEST_COUPLING), n)
     kappa = np.where(np.arange(n) % 2, rng.choice([-1, 1], n) * size, 0.0)
-    return {"g": g, "nu": rng.uniform(0, 0.5, n), "rho": rng.uniform(0.02, 0.98, n),
-            "angle": rng.uniform(-np.pi / 2, np.pi / 2, n), "kappa": kappa}  # fmt: skip
+    return {
+        "g": g,
+        "nu": rng.uniform(0, 0.5, n),
+        "rho": rng.uniform(0.02, 0.98, n),
+        "angle": rng.uniform(-np.pi / 2, np.pi / 2, n),
+        "kappa": kappa,
+    }
 
 
 def measure(n: int, seed: int, elements: int = 40) -> dict[str, np.ndarray]:
@@ -205,8 +218,15 @@ def measure(n: int, seed: int, elements: int = 40) -> dict[str, np.ndarray]:
     exact, _ = solve_exact(s["g"], s["nu"], s["rho"], s["angle"], s["kappa"], elements)
     ellipse, xi, phi, mu, elastic = problem(s["g"], s["nu"], s["rho"], s["angle"], s["kappa"])
     t = table.solve_patch(ellipse, xi, phi, mu, elastic)
-    found = np.stack([t.resultants.lateral_force / mu, t.resultants.driving_force / mu, t.resultants.spin_moment / mu,
-                      t.stick_fraction], axis=1)  # fmt: skip
+    found = np.stack(
+        [
+            t.resultants.lateral_force / mu,
+            t.resultants.driving_force / mu,
+            t.resultants.spin_moment / mu,
+            t.stick_fraction,
+        ],
+        axis=1,
+    )
     return {**s, "error": found - exact, "exact": exact}
 
 

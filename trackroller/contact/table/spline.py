@@ -114,8 +114,10 @@ class Tables:
 
 
 def _read_spline(stored_arrays, name: str) -> Spline:
-    arrays = [np.ascontiguousarray(stored_arrays[f"{name}_{part}"], float)
-              for part in ("knots_0", "knots_1", "knots_2", "knots_3", "values")]  # fmt: skip
+    arrays = [
+        np.ascontiguousarray(stored_arrays[f"{name}_{part}"], float)
+        for part in ("knots_0", "knots_1", "knots_2", "knots_3", "values")
+    ]
     return Spline(tuple(arrays[:4]), arrays[4])
 
 
@@ -212,5 +214,11 @@ def like_forces(like: Spline, d: Dimensionless, along: np.ndarray) -> np.ndarray
     rho, angle = _polar(along, d.across)
     side, theta = np.sign(d.across), np.abs(angle)
     v = evaluate(like, np.stack([rho, theta, np.log(np.clip(d.g, *RATIOS)), d.poisson], axis=1)).T
-    return np.stack([side * rho * np.cos(theta) * v[0], np.sign(along) * rho * np.sin(theta) * v[1],
-                     side * rho * np.cos(theta) * v[2], v[3]])  # fmt: skip
+    return np.stack(
+        [
+            side * rho * np.cos(theta) * v[0],
+            np.sign(along) * rho * np.sin(theta) * v[1],
+            side * rho * np.cos(theta) * v[2],
+            v[3],
+        ]
+    )

@@ -41,8 +41,10 @@ def _relative(name: str) -> Callable[[xr.Dataset, xr.Dataset], xr.DataArray]:
 def _of_capacity(ds: xr.Dataset, ref: xr.Dataset) -> xr.DataArray:
     capacity = ref["friction_coefficient"] * ref["normal_force"]
     arm = np.sqrt(ref["semi_axis_lateral"] * ref["semi_axis_rolling"])
-    sizes = [abs(ds[n] - ref[n]) / s for n, s in (("lateral_force", capacity), ("driving_force", capacity),
-                                                     ("spin_moment", capacity * arm))]  # fmt: skip
+    sizes = [
+        abs(ds[n] - ref[n]) / s
+        for n, s in (("lateral_force", capacity), ("driving_force", capacity), ("spin_moment", capacity * arm))
+    ]
     worst = sizes[0]
     for size in sizes[1:]:
         worst = worst.where(worst > size, size)
@@ -62,15 +64,25 @@ FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi
 ENERGY = "friction_energy_per_distance"
 QUANTITIES = (
     Quantity("normal_force", "normal forces", "Normal force", _relative("normal_force"), ("normal_force",)),
-    Quantity("friction_force", "friction forces and spin moment (over what friction can carry)",
-             r"Friction over $\mu F_\mathrm{N}$", _of_capacity, FORCES),
+    Quantity(
+        "friction_force",
+        "friction forces and spin moment (over what friction can carry)",
+        r"Friction over $\mu F_\mathrm{N}$",
+        _of_capacity,
+        FORCES,
+    ),
     Quantity("friction_energy", "friction energy (local product)", "Friction energy", _work(ENERGY), (ENERGY,)),
-    Quantity("friction_energy_balance", "friction energy from the resultants", "Friction energy,\nresultants:",
-             _work("friction_energy_balance"), (ENERGY, "friction_energy_balance")),
+    Quantity(
+        "friction_energy_balance",
+        "friction energy from the resultants",
+        "Friction energy,\nresultants:",
+        _work("friction_energy_balance"),
+        (ENERGY, "friction_energy_balance"),
+    ),
     Quantity("peak_stress", "peak stress", "Peak stress", _relative("peak_stress"), ("peak_stress",)),
     Quantity("life", "life", "Life", _relative("life"), ("life",)),
     Quantity("stick", "stick (share of the patch)", "Stick", _stick, ("stick_area_fraction",)),
-)  # fmt: skip
+)
 
 
 def errors(paired: xr.Dataset) -> xr.Dataset:

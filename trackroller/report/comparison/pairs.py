@@ -18,11 +18,27 @@ if TYPE_CHECKING:
 
 MODEL = "contact_model"
 INPUTS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, "material_pair", *(o for o in OPTION_FACTORS if o != MODEL))
-RESULTS = ("regime", "normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral",
-           "semi_axis_rolling", "friction_energy_per_distance", "friction_energy_balance", "peak_stress",
-           "stick_area_fraction", "roller_life_hours", "guide_life_hours", "life_cycles")  # fmt: skip
-LIVES = (("roller_life_hours", "life of the roller", "h"), ("guide_life_hours", "life of the guide", "h"),
-         ("life_cycles", "life", "overrollings"))  # fmt: skip
+RESULTS = (
+    "regime",
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+    "friction_energy_per_distance",
+    "friction_energy_balance",
+    "peak_stress",
+    "stick_area_fraction",
+    "roller_life_hours",
+    "guide_life_hours",
+    "life_cycles",
+)
+LIVES = (
+    ("roller_life_hours", "life of the roller", "h"),
+    ("guide_life_hours", "life of the guide", "h"),
+    ("life_cycles", "life", "overrollings"),
+)
 
 
 def pairs(ds: xr.Dataset) -> xr.Dataset | None:
@@ -97,8 +113,9 @@ def _matched_rows(ds: xr.Dataset, columns: Mapping[str, np.ndarray], models: lis
     return rows[:, np.argsort(rows[-1], kind="stable")]
 
 
-def _sorted_out(ds: xr.Dataset, order: tuple[str, ...], models: list[str], rows: np.ndarray,
-                columns: Mapping[str, np.ndarray]) -> xr.Dataset:  # fmt: skip
+def _sorted_out(
+    ds: xr.Dataset, order: tuple[str, ...], models: list[str], rows: np.ndarray, columns: Mapping[str, np.ndarray]
+) -> xr.Dataset:
     import xarray as xr
 
     data: dict[str, Any] = {}
@@ -119,10 +136,13 @@ def _sorted_out(ds: xr.Dataset, order: tuple[str, ...], models: list[str], rows:
     out = xr.Dataset(data, coords={MODEL: models, **coords})
     study = read_study(ds)
     out.attrs = {
-        "reference": models[-1], "factors": json.dumps(_factors(study, inputs, order)), "grid": int(MODEL in order),
-        "left": int(ds["regime"].size - (~lacking).sum()), "life": "",
+        "reference": models[-1],
+        "factors": json.dumps(_factors(study, inputs, order)),
+        "grid": int(MODEL in order),
+        "left": int(ds["regime"].size - (~lacking).sum()),
+        "life": "",
         "base": json.dumps(study.get("base", {}), default=str),
-    }  # fmt: skip
+    }
     return _with_life(out)
 
 
@@ -164,6 +184,7 @@ def spin(inputs: Mapping[str, np.ndarray]) -> np.ndarray:
     alpha = np.deg2rad(inputs["contact_angle"])
     r_a = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
     with np.errstate(divide="ignore", invalid="ignore"):
-        k_x, k_y = curvatures(inputs["roller_profile_radius"], inputs["guide_profile_radius"],
-                              inputs["guide_curve_radius"], r_a, alpha)  # fmt: skip
+        k_x, k_y = curvatures(
+            inputs["roller_profile_radius"], inputs["guide_profile_radius"], inputs["guide_curve_radius"], r_a, alpha
+        )
         return np.asarray(np.sin(alpha) / r_a * 4.0 / (k_x + k_y))

@@ -53,12 +53,16 @@ def overview(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
     reference, number = paired.attrs["reference"], paired.sizes["design"]
     left = f" {paired.attrs['left']} cases have no partner and are left out." if paired.attrs["left"] else ""
     if not number:
-        return [f"The contact models cannot be compared: no design was solved with {reference} and another model. "
-                "A grid, a nested design or a table has such pairs; a sample that draws the model not."]  # fmt: skip
+        return [
+            f"The contact models cannot be compared: no design was solved with {reference} and another model. "
+            "A grid, a nested design or a table has such pairs; a sample that draws the model not."
+        ]
     found = errors(paired)
-    said = [f"Errors are taken against {_exact(reference)} where both models roll, in {_designs(number)} that differ "
-            f"in nothing but the model; good enough means within {percent(tolerance)}, at a level "
-            f"of a factor in 9 of 10 designs; in brackets the errors.{left}"]  # fmt: skip
+    said = [
+        f"Errors are taken against {_exact(reference)} where both models roll, in {_designs(number)} that differ "
+        f"in nothing but the model; good enough means within {percent(tolerance)}, at a level "
+        f"of a factor in 9 of 10 designs; in brackets the errors.{left}"
+    ]
     models = map(str, found["contact_model"].values)
     return said + [_shares(found.sel(contact_model=m), paired, m, tolerance) for m in models]
 
@@ -138,8 +142,10 @@ def _shares(one: xr.Dataset, paired: xr.Dataset, model: str, tolerance: float) -
     """One sentence of all designs: how many are within the tolerance in each quantity."""
     compared = _compared(one)
     if compared < FEWEST:
-        return (f"{NAMES[model]}: too little to compare, for {compared or 'none'} of "
-                f"{_designs(paired.sizes['design'])} rolls.")  # fmt: skip
+        return (
+            f"{NAMES[model]}: too little to compare, for {compared or 'none'} of "
+            f"{_designs(paired.sizes['design'])} rolls."
+        )
     parts = []
     for q in measured(one):
         e = _rolling(one[q.name])
@@ -191,8 +197,9 @@ def levels_kept(along: Groups, e: np.ndarray, tolerance: float = GOOD) -> str:
     along : groups of the designs
     e : error of every design [1], shape (n,), NaN where none is
     """
-    known = np.array([np.isfinite(e[along.index == k]).any() or np.isposinf(e[along.index == k]).any()
-                      for k in range(len(along))])  # fmt: skip
+    known = np.array(
+        [np.isfinite(e[along.index == k]).any() or np.isposinf(e[along.index == k]).any() for k in range(len(along))]
+    )
     at = np.flatnonzero(known)
     keeps = np.array([np.mean(e[(along.index == k) & ~np.isnan(e)] <= tolerance) >= MOST for k in at])
     if not keeps.any():
@@ -246,8 +253,14 @@ def _by_spin(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
             )
         if clauses:
             said.append(f"{text}: {'; '.join(clauses)}")
-    return [f"{NAMES[model]} by spin φρ (spin creepage by radius of curvature), within {percent(tolerance)}: "
-            f"at {'. At '.join(said)}."] if said else []  # fmt: skip
+    return (
+        [
+            f"{NAMES[model]} by spin φρ (spin creepage by radius of curvature), within {percent(tolerance)}: "
+            f"at {'. At '.join(said)}."
+        ]
+        if said
+        else []
+    )
 
 
 def telling_factors(one: xr.Dataset, tolerance: float = GOOD) -> list[str]:

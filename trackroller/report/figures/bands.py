@@ -60,14 +60,18 @@ def bands(ds: xr.Dataset, output: str = "") -> tuple[Figure, style.FigureInfo] |
         first.set_yscale("log")
         style.log_ticks(first.yaxis, *first.get_ylim())
     figure.supylabel(style.with_unit(words.upper(shown.long_name), shown.units), fontsize=7.5)
-    style.head(figure, f"{words.upper(shown.long_name)} against each factor",
-               "Line: median; dark band: middle half; light band: 5 to 95 % of the cases.")  # fmt: skip
+    style.head(
+        figure,
+        f"{words.upper(shown.long_name)} against each factor",
+        "Line: median; dark band: middle half; light band: 5 to 95 % of the cases.",
+    )
     style.finish(figure)
     said.sort(key=lambda pair: -pair[0])
     kept = f"{int(np.isfinite(shown.values).sum())} of {shown.values.size} cases"
     left = ", ".join(f"{n} {why}" for why, n in shown.excluded.items())
-    caption = (f"{words.upper(shown.long_name)} against each factor while all others vary over the study; {kept}"
-               + (f", left out: {left}." if left else "."))  # fmt: skip
+    caption = f"{words.upper(shown.long_name)} against each factor while all others vary over the study; {kept}" + (
+        f", left out: {left}." if left else "."
+    )
     sentence = words.upper("; ".join(text for _, text in said[:2])) + "."
     return figure, style.FigureInfo(f"bands-{shown.name}", caption, sentence)
 

@@ -111,8 +111,10 @@ def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
         set_axis(axes[-1, column], shown.x)
     words = f"Lines: medians of all designs that roll; bands: 5 to 95 %; dotted: {percent(GOOD)}."
     close(figure, handles, "Where the cheaper contact models miss most", words, 2)
-    caption = ("Error of the cheaper contact models over spin (spin creepage by radius of curvature) and over the "
-               "factors that matter most, all else as it varies.")  # fmt: skip
+    caption = (
+        "Error of the cheaper contact models over spin (spin creepage by radius of curvature) and over the "
+        "factors that matter most, all else as it varies."
+    )
     return figure, style.FigureInfo("models-error-factors", caption, "")
 
 
@@ -120,10 +122,15 @@ def forces(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     """Normal and lateral force and spin moment of both contacts by model."""
     from matplotlib.lines import Line2D
 
-    wanted = [(n, label) for n, label in (
-        ("normal_force", "Normal force\n" + r"$F_\mathrm{N}$ [N]"),
-        ("lateral_force", "Lateral force\n" + r"$F_\mathrm{T}$ [N]"),
-        ("spin_moment", "Spin moment\n" + r"$M_\mathrm{R}$ [N·mm]")) if n in paired]  # fmt: skip
+    wanted = [
+        (n, label)
+        for n, label in (
+            ("normal_force", "Normal force\n" + r"$F_\mathrm{N}$ [N]"),
+            ("lateral_force", "Lateral force\n" + r"$F_\mathrm{T}$ [N]"),
+            ("spin_moment", "Spin moment\n" + r"$M_\mathrm{R}$ [N·mm]"),
+        )
+        if n in paired
+    ]
     shown = frame(paired, hold=True)
     if shown is None or not wanted:
         return None
@@ -137,8 +144,9 @@ def forces(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
         mark = Line2D([], [], color="0.3", marker="o", linestyle="", markersize=3.5, markerfacecolor=face)
         handles[f"contact {contact}"] = mark
     close(figure, handles, "Forces by contact model", _told(shown, "Rolling only."))
-    return figure, style.FigureInfo("models-forces", "Normal and lateral force and spin moment by contact model.",
-                                    gap(found, "normal_force"))  # fmt: skip
+    return figure, style.FigureInfo(
+        "models-forces", "Normal and lateral force and spin moment by contact model.", gap(found, "normal_force")
+    )
 
 
 def _of_contact(one: xr.Dataset, name: str, contact: int) -> xr.DataArray:
@@ -167,8 +175,10 @@ def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
         top = float(np.nanmax(values))
         style.log_ticks(axes[0, 0].yaxis, max(float(values[values > 0].min()), top / 39), top)
     close(figure, handles, "Friction energy by contact model", _told(shown, "Rolling only."), 2)
-    caption = ("Friction energy of both contacts per distance. The local product is the published one; from the "
-               "resultants is the work that drive and tilting forces put in.")  # fmt: skip
+    caption = (
+        "Friction energy of both contacts per distance. The local product is the published one; from the "
+        "resultants is the work that drive and tilting forces put in."
+    )
     return figure, style.FigureInfo("models-energy", caption, gap(found, "friction_energy"))
 
 
@@ -181,8 +191,9 @@ def stick(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     handles = _lines(shown, axes[0], lambda one: 100.0 * one["stick_area_fraction"].max("contact"))
     words = _told(shown, "The larger share of the two contacts; the rest of the patch slips.")
     close(figure, handles, "Stick and slip by contact model", words)
-    return figure, style.FigureInfo("models-stick", "Share of the patch that sticks, by contact model.",
-                                    gap(found, "stick"))  # fmt: skip
+    return figure, style.FigureInfo(
+        "models-stick", "Share of the patch that sticks, by contact model.", gap(found, "stick")
+    )
 
 
 def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
@@ -217,5 +228,6 @@ def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
         style.log_ticks(axes[-1, 0].yaxis, float(lived.min()), float(lived.max()))
     words = _told(shown, "The more loaded of the two contacts.")
     close(figure, handles, "Peak stress and life by contact model", words)
-    return figure, style.FigureInfo("models-peak-life", "Peak von Mises stress and life by contact model.",
-                                    gap(found, "peak_stress"))  # fmt: skip
+    return figure, style.FigureInfo(
+        "models-peak-life", "Peak von Mises stress and life by contact model.", gap(found, "peak_stress")
+    )

@@ -155,8 +155,9 @@ def axis_label(name: str) -> str:
     return derived[name] if name in DERIVED else style.factor_label(name)
 
 
-def line(axes: Axes, x: Groups, band: np.ndarray, model: str, hollow: bool = False, shade: bool = False,
-         **more: Any) -> Any:  # fmt: skip
+def line(
+    axes: Axes, x: Groups, band: np.ndarray, model: str, hollow: bool = False, shade: bool = False, **more: Any
+) -> Any:
     """Median of a model over the groups, and its band where asked for."""
     look = LOOKS[model] | more
     at = x.at if x.ordered else x.at + 0.14 * (list(LOOKS).index(model) - 1)
@@ -172,8 +173,14 @@ def line(axes: Axes, x: Groups, band: np.ndarray, model: str, hollow: bool = Fal
 
 def close(figure: Figure, handles: dict[str, Any], title: str, words: str, columns: int = 3) -> Figure:
     """The figure with its legend (label -> line) and its heading."""
-    figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=columns, handlelength=2.6,
-                  columnspacing=1.2)  # fmt: skip
+    figure.legend(
+        list(handles.values()),
+        list(handles),
+        loc="outside lower center",
+        ncols=columns,
+        handlelength=2.6,
+        columnspacing=1.2,
+    )
     style.head(figure, title, words)
     style.finish(figure)
     return figure

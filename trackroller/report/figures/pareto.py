@@ -25,8 +25,11 @@ def _objectives(front: xr.Dataset) -> list[tuple[str, str]]:
 
 def _given(front: xr.Dataset) -> str:
     """A warning where conditions of use are among the factors: their best value is nobody's to choose."""
-    given = [n.replace("_", " ") for n in front.attrs["factors"].split(", ")
-             if n in CONDITIONS or "load" in n or "drive" in n]  # fmt: skip
+    given = [
+        n.replace("_", " ")
+        for n in front.attrs["factors"].split(", ")
+        if n in CONDITIONS or "load" in n or "drive" in n
+    ]
     told = f" Treated as free to choose, though set by the use: {words.listing(given)}." if given else ""
     models = [style.long_name(n) for n in front.attrs["factors"].split(", ") if n in OPTION_FACTORS]
     if models:
@@ -60,8 +63,10 @@ def pareto_front(front: xr.Dataset) -> Drawn:
     style.finish(figure)
     wanted = words.listing([f"{front[n].attrs.get('long_name') or style.long_name(n)} {_WAYS[w]}" for n, w in goals])
     limits = f" where {front.attrs['constraints']}" if front.attrs.get("constraints") else ""
-    caption = (f"Pareto set for {wanted}; {front.sizes['row']} allowed designs of {front.attrs['rows']}{limits}. Left "
-               f"out: {front.attrs['excluded']}.{_given(front)}")  # fmt: skip
+    caption = (
+        f"Pareto set for {wanted}; {front.sizes['row']} allowed designs of {front.attrs['rows']}{limits}. Left "
+        f"out: {front.attrs['excluded']}.{_given(front)}"
+    )
     return figure, style.FigureInfo("pareto-front", caption, words.pareto(front))
 
 
@@ -82,8 +87,17 @@ def _trade(axes: Any, front: xr.Dataset, across: tuple[str, str], upwards: tuple
         order = np.argsort(xs[shown])
         step = {"max": "steps-pre", "min": "steps-post"}[up_x]
         axes.plot(xs[shown][order], ys[shown][order], color=colours[3], linewidth=0.8, drawstyle=step)
-    axes.scatter(xs[shown], ys[shown], s=14, color=colours[3], marker="D", edgecolor="0.1", linewidth=0.5, zorder=3,
-                 label="Pareto set")  # fmt: skip
+    axes.scatter(
+        xs[shown],
+        ys[shown],
+        s=14,
+        color=colours[3],
+        marker="D",
+        edgecolor="0.1",
+        linewidth=0.5,
+        zorder=3,
+        label="Pareto set",
+    )
     for name, set_scale, values in ((x, axes.set_xscale, xs[finite]), (y, axes.set_yscale, ys[finite])):
         if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
             set_scale("log")
@@ -119,20 +133,25 @@ def parallel(front: xr.Dataset) -> Drawn:
         axes.vlines(j, 0.0, 1.0, color="0.3", linewidth=0.7, zorder=3)
         axes.annotate(high, (j, 1.0), xytext=(0, 3), textcoords="offset points", ha="center", fontsize=6)
         axes.annotate(low, (j, 0.0), xytext=(0, -8), textcoords="offset points", ha="center", fontsize=6)
-    axes.set_xticks(range(len(names)), [_label(front, n) for n in names], rotation=35, ha="right",
-                    rotation_mode="anchor")  # fmt: skip
+    axes.set_xticks(
+        range(len(names)), [_label(front, n) for n in names], rotation=35, ha="right", rotation_mode="anchor"
+    )
     axes.tick_params(axis="x", pad=9, length=0)
     axes.set_yticks([])
     axes.set_ylim(-0.06, 1.08)
     axes.grid(visible=False)
     leading = front[goals[0]].attrs.get("long_name", goals[0])
-    style.head(figure, "Parallel coordinates of the best designs",
-               f"Dark to bright: falling {leading}; grey: other designs.")  # fmt: skip
+    style.head(
+        figure, "Parallel coordinates of the best designs", f"Dark to bright: falling {leading}; grey: other designs."
+    )
     style.finish(figure)
     axes.spines["left"].set_visible(False)
     axes.spines["bottom"].set_visible(False)
-    return figure, style.FigureInfo("pareto-parallel", "The Pareto set over factors and objectives, each axis "
-                                    "from its least to its largest value.", _common(front, factors, best))  # fmt: skip
+    return figure, style.FigureInfo(
+        "pareto-parallel",
+        "The Pareto set over factors and objectives, each axis from its least to its largest value.",
+        _common(front, factors, best),
+    )
 
 
 def _common(front: xr.Dataset, factors: list[str], best: np.ndarray) -> str:
@@ -204,8 +223,20 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
     left.plot(q[50.0], place, color="0.1", marker="|", markersize=7, linestyle="none", label="median")
     b10 = part["b10"].values[rank]
     error = np.abs(np.stack([b10 - part["b10_low"].values[rank], part["b10_high"].values[rank] - b10]))
-    left.errorbar(b10, place, xerr=error, color=colours[3], marker="D", markersize=3.5, linestyle="none", capsize=1.5,
-                  elinewidth=0.8, markeredgecolor="0.1", markeredgewidth=0.4, label="B10")  # fmt: skip
+    left.errorbar(
+        b10,
+        place,
+        xerr=error,
+        color=colours[3],
+        marker="D",
+        markersize=3.5,
+        linestyle="none",
+        capsize=1.5,
+        elinewidth=0.8,
+        markeredgecolor="0.1",
+        markeredgewidth=0.4,
+        label="B10",
+    )
     left.set_xscale("log")
     style.log_ticks(left.xaxis, *left.get_xlim())
     left.set_yticks(place, [words.upper(words.point_words(table, int(p))) for p in rank])
@@ -215,8 +246,17 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
         share = 100 * table["probability"].sel(regime=regime).values[rank]
         if not share.any():
             continue
-        right.barh(place, share, 0.62, left=start, color=style.REGIME_COLOURS[i], hatch=style.REGIME_HATCHES[i],
-                   edgecolor="0.15", linewidth=0.5, label=style.REGIME_LABELS[i])  # fmt: skip
+        right.barh(
+            place,
+            share,
+            0.62,
+            left=start,
+            color=style.REGIME_COLOURS[i],
+            hatch=style.REGIME_HATCHES[i],
+            edgecolor="0.15",
+            linewidth=0.5,
+            label=style.REGIME_LABELS[i],
+        )
         start = start + share
     right.set_xlabel("share of cases [%]")
     right.set_xlim(0, max(5.0, 1.1 * float(start.max())))
@@ -228,7 +268,9 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
     style.finish(figure)
     inner = words.listing([style.long_name(n) for n in table.attrs["inner_factors"].split(", ")])
     own = float(table.attrs.get("log_life_scatter", 0.0))
-    caption = (f"Design points by falling B10, each with the same {table.attrs['inner_samples']} samples of {inner}. "
-               "Whiskers: 95 % intervals. Lives of the rolling cases; the share of the others on the right."
-               + (" B10 holds the material's own scatter of life as well." if own > 0 else ""))  # fmt: skip
+    caption = (
+        f"Design points by falling B10, each with the same {table.attrs['inner_samples']} samples of {inner}. "
+        "Whiskers: 95 % intervals. Lives of the rolling cases; the share of the others on the right."
+        + (" B10 holds the material's own scatter of life as well." if own > 0 else "")
+    )
     return figure, style.FigureInfo(f"robustness-{output}", caption, words.robustness(table, output))

@@ -24,12 +24,25 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 Drawn = tuple["Figure", style.FigureInfo] | None
 MAX_BARS = 12
-FIRST = ("roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_life_cycles", "friction_power",
-         "roller_peak_stress", "guide_peak_stress", "max_pressure", "friction_energy")  # fmt: skip
+FIRST = (
+    "roller_life_hours",
+    "roller_life_cycles",
+    "guide_life_hours",
+    "guide_life_cycles",
+    "friction_power",
+    "roller_peak_stress",
+    "guide_peak_stress",
+    "max_pressure",
+    "friction_energy",
+)
 AXIS = {
-    "S1": "share of variance, alone", "ST": "share of variance", "first": "share of variance, alone",
-    "main_share": "share of variance, alone", "mu_star": "mean absolute effect μ*", "effect": "change over the range",
-}  # fmt: skip
+    "S1": "share of variance, alone",
+    "ST": "share of variance",
+    "first": "share of variance, alone",
+    "main_share": "share of variance, alone",
+    "mu_star": "mean absolute effect μ*",
+    "effect": "change over the range",
+}
 
 
 def main_outputs(sens: xr.Dataset, count: int) -> list[str]:
@@ -62,8 +75,16 @@ def tornado(sens: xr.Dataset, output: str) -> Drawn:
     place = np.arange(len(ranks))[::-1].astype(float)
     second = {r.factor: r for r in words.order(sens, output, "S1")} if index == "ST" else {}
     high = 0.38 if second else 0.62
-    _bars(axes, place + (high / 2 if second else 0), ranks, high, colours[0], "",
-          "with interactions" if second else AXIS[index], index not in words.SIGNED)  # fmt: skip
+    _bars(
+        axes,
+        place + (high / 2 if second else 0),
+        ranks,
+        high,
+        colours[0],
+        "",
+        "with interactions" if second else AXIS[index],
+        index not in words.SIGNED,
+    )
     if second:
         alone = [second[r.factor] for r in ranks if r.factor in second]
         at = np.array([p for p, r in zip(place, ranks, strict=True) if r.factor in second]) - high / 2
@@ -77,8 +98,10 @@ def tornado(sens: xr.Dataset, output: str) -> Drawn:
     axes.set_xlabel(AXIS[index] + unit)
     style.head(figure, f"{title(sens, output)}: what decides it")
     style.finish(figure)
-    caption = (f"{_told(index)} of each factor on {words.of_output(sens, output)}; whiskers: 95 % "
-               f"intervals. {sens.attrs.get('treatment', '')}.")  # fmt: skip
+    caption = (
+        f"{_told(index)} of each factor on {words.of_output(sens, output)}; whiskers: 95 % "
+        f"intervals. {sens.attrs.get('treatment', '')}."
+    )
     return figure, style.FigureInfo(f"tornado-{output}", caption, words.tornado(sens, output))
 
 
@@ -95,8 +118,9 @@ def _bars(axes, place, ranks, height, colour, hatch, label, shares) -> None:  # 
     axes.barh(place, value, height, color=colour, hatch=hatch, edgecolor="0.15", linewidth=0.6, label=label)
     good = np.isfinite(error).all(axis=0)
     if good.any():
-        axes.errorbar(value[good], place[good], xerr=error[:, good], fmt="none", ecolor="0.1", capsize=1.8,
-                      linewidth=0.9)  # fmt: skip
+        axes.errorbar(
+            value[good], place[good], xerr=error[:, good], fmt="none", ecolor="0.1", capsize=1.8, linewidth=0.9
+        )
 
 
 def overview(sens: xr.Dataset) -> Drawn:
@@ -113,8 +137,13 @@ def overview(sens: xr.Dataset) -> Drawn:
     rank = np.argsort(-np.nan_to_num(table).mean(axis=1))
     names = [words.upper(str(n)) for n in sens["factor_name"].values[rank]]
     outputs = [words.upper(str(n)) for n in sens["output_name"].values[keep]]
-    figure = _heat(table[rank].T, outputs, names, "relative to the largest" if index in ("mu_star", "effect")
-                   else AXIS[index], "Influence on every output")  # fmt: skip
+    figure = _heat(
+        table[rank].T,
+        outputs,
+        names,
+        "relative to the largest" if index in ("mu_star", "effect") else AXIS[index],
+        "Influence on every output",
+    )
     caption = f"{_told(index)} of every factor (columns) on every output (rows)."
     return figure, style.FigureInfo("influence-overview", caption, words.overview(sens))
 
@@ -127,8 +156,15 @@ def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, he
     image = axes.imshow(table, cmap="Greys", vmin=0.0, vmax=limit, aspect="auto")
     for (i, j), value in np.ndenumerate(table):
         if np.isfinite(value):
-            axes.text(j, i, f"{value:.2f}".removeprefix("0") if abs(value) < 10 else f"{value:.3g}", ha="center",
-                      va="center", fontsize=6, color="white" if value > 0.6 * limit else "0.1")  # fmt: skip
+            axes.text(
+                j,
+                i,
+                f"{value:.2f}".removeprefix("0") if abs(value) < 10 else f"{value:.3g}",
+                ha="center",
+                va="center",
+                fontsize=6,
+                color="white" if value > 0.6 * limit else "0.1",
+            )
     axes.set_yticks(range(len(rows)), rows)
     axes.set_xticks(range(len(columns)), columns, rotation=40, ha="right", rotation_mode="anchor")
     axes.tick_params(length=0)
@@ -151,8 +187,14 @@ def convergence(sens: xr.Dataset, output: str) -> Drawn:
         one = part.sel(factor=rank.factor)
         size, low, high = one["sample_size"].values, one[f"{index}_course_low"], one[f"{index}_course_high"]
         axes.fill_between(size, low, high, color=colour, alpha=0.15, linewidth=0)
-        axes.plot(size, one[f"{index}_course"], color=colour, marker=style.MARKERS[i], label=words.upper(rank.name),
-                  linestyle=style.LINES[i % len(style.LINES)])  # fmt: skip
+        axes.plot(
+            size,
+            one[f"{index}_course"],
+            color=colour,
+            marker=style.MARKERS[i],
+            label=words.upper(rank.name),
+            linestyle=style.LINES[i % len(style.LINES)],
+        )
     axes.set_xscale("log", base=2)
     axes.set_xticks(part["sample_size"].values, [str(n) for n in part["sample_size"].values])
     axes.minorticks_off()
@@ -185,9 +227,19 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
     for i, (rank, colour) in enumerate(_ranked(sens, output)):
         j = int(np.flatnonzero(part["factor"].values == rank.factor)[0])
         half = np.abs([[rank.value - rank.low], [rank.high - rank.value]])
-        axes.errorbar(x[j], y[j], xerr=half if np.isfinite(half).all() else None, color=colour, capsize=1.5,
-                      marker=style.MARKERS[i % len(style.MARKERS)], linestyle="none", markeredgecolor="0.15",
-                      markeredgewidth=0.5, elinewidth=0.7, label=words.upper(rank.name))  # fmt: skip
+        axes.errorbar(
+            x[j],
+            y[j],
+            xerr=half if np.isfinite(half).all() else None,
+            color=colour,
+            capsize=1.5,
+            marker=style.MARKERS[i % len(style.MARKERS)],
+            linestyle="none",
+            markeredgecolor="0.15",
+            markeredgewidth=0.5,
+            elinewidth=0.7,
+            label=words.upper(rank.name),
+        )
     unit = effect_unit(sens, output)
     axes.set_xlabel(f"mean absolute effect μ* [{unit}]")
     axes.set_ylabel(f"spread of the effects σ [{unit}]")
@@ -196,8 +248,10 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
     figure.legend(loc="outside lower center", ncols=2)
     style.head(figure, f"{title(sens, output)}: elementary effects")
     style.finish(figure)
-    caption = ("Elementary effects over each factor's whole range: to the right a factor matters; above the lines "
-               "its effect depends on where one is. Whiskers: 95 % intervals.")  # fmt: skip
+    caption = (
+        "Elementary effects over each factor's whole range: to the right a factor matters; above the lines "
+        "its effect depends on where one is. Whiskers: 95 % intervals."
+    )
     return figure, style.FigureInfo(f"morris-{output}", caption, words.morris(sens, output))
 
 
@@ -224,8 +278,13 @@ def interactions(sens: xr.Dataset, output: str) -> Drawn:
     table = np.where(np.triu(np.ones_like(table, dtype=bool)), np.abs(table), np.nan)
     names = [words.upper(str(n)) for n in part["factor_name"].values]
     unit = effect_unit(sens, output) if name == "interaction" else "share of variance"
-    figure = _heat(table, names, names, f"{unit} [–]" if name != "interaction" else f"size [{unit}]",
-                   f"{title(sens, output)}: interactions")  # fmt: skip
+    figure = _heat(
+        table,
+        names,
+        names,
+        f"{unit} [–]" if name != "interaction" else f"size [{unit}]",
+        f"{title(sens, output)}: interactions",
+    )
     caption = "Off the diagonal what two factors do together beyond the sum of both; on it each factor alone."
     if fitted:
         caption += " Approximate: from a polynomial fitted to the sample."

@@ -122,8 +122,14 @@ def _effect_lines(axes: Axes, view: StudyView, found: list[Effect]) -> None:
             place += 0.7 * label.count("\n") * 0.5
         place += 1.6
         line = "-" if view.numeric(factor) else "none"  # nothing lies between two materials
-        axes.plot(10.0**means, spots, color=colours[i % len(colours)], marker=style.MARKERS[i % 10], linewidth=1.0,
-                  linestyle=line)  # fmt: skip
+        axes.plot(
+            10.0**means,
+            spots,
+            color=colours[i % len(colours)],
+            marker=style.MARKERS[i % 10],
+            linewidth=1.0,
+            linestyle=line,
+        )
         ticks += spots
         names += labels
     axes.set_yticks(ticks, names)

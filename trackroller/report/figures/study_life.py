@@ -57,8 +57,13 @@ def series(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any],
     else:
         from matplotlib.patheffects import Normal, Stroke
 
-        axes.plot(*binned_median(rows[x], rows[y]), color=colour, linestyle=look.get("linestyle", "-"), zorder=4,
-                  path_effects=[Stroke(linewidth=3.2, foreground="white"), Normal()])  # fmt: skip
+        axes.plot(
+            *binned_median(rows[x], rows[y]),
+            color=colour,
+            linestyle=look.get("linestyle", "-"),
+            zorder=4,
+            path_effects=[Stroke(linewidth=3.2, foreground="white"), Normal()],
+        )
     rolling = (rows["regime"] == 0) if "regime" in rows else np.ones(len(rows), dtype=bool)
     marks(axes, rows, x, y, colour, marker, 14 if line else 7, rolling)
 
@@ -68,8 +73,17 @@ def marks(axes: Axes, rows: pd.DataFrame, x: str, y: str, colour: Any, marker: s
     filled = np.broadcast_to(np.asarray(filled, dtype=bool), len(rows))
     for chosen, face in ((filled, colour), (~filled, "white")):
         part = rows[chosen]
-        axes.scatter(part[x], part[y], s=size, marker=marker, facecolor=face, edgecolor=colour, linewidth=0.8, zorder=3,
-                     rasterized=len(part) > 500)  # fmt: skip
+        axes.scatter(
+            part[x],
+            part[y],
+            s=size,
+            marker=marker,
+            facecolor=face,
+            edgecolor=colour,
+            linewidth=0.8,
+            zorder=3,
+            rasterized=len(part) > 500,
+        )
 
 
 def binned_median(x: pd.Series, y: pd.Series, bins: int = 6) -> tuple[np.ndarray, np.ndarray]:
@@ -115,8 +129,10 @@ def hollow_entry(rows: pd.DataFrame) -> list[tuple[str, dict[str, Any]]]:
 
 def drive_entries(drives: list[Any]) -> list[tuple[str, dict[str, Any]]]:
     """Legend entries of motor forces, told apart by dashes."""
-    return [(style.level_text("motor_force", d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
-            for j, d in enumerate(drives)]  # fmt: skip
+    return [
+        (style.level_text("motor_force", d), {"color": "0.2", "linestyle": style.LINES[j % 6]})
+        for j, d in enumerate(drives)
+    ]
 
 
 def life_against_friction(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:

@@ -168,10 +168,17 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
     _shade_lift_off(panels, rows, x, view.grid)
     panels[-1].set_xlabel(style.factor_label(x))
     entries: list[tuple[str, dict[str, Any]]] = [
-        (f"contact {c}", {"color": colours[c - 1], "marker": "os"[c - 1], "linestyle": "none",
-                          "markerfacecolor": colours[0] if c == 1 else "none"})
+        (
+            f"contact {c}",
+            {
+                "color": colours[c - 1],
+                "marker": "os"[c - 1],
+                "linestyle": "none",
+                "markerfacecolor": colours[0] if c == 1 else "none",
+            },
+        )
         for c in (1, 2)
-    ]  # fmt: skip
+    ]
     if drive and view.grid:
         entries += drive_entries(drives)
     legend(figure, entries, columns=2)

@@ -36,21 +36,48 @@ UNITS = {
     "N mm": "N·mm",
 }
 SYMBOLS = {
-    "A_T": r"$A_\mathrm{T}$", "r_C,G": r"$r_\mathrm{C,G}$", "r_C,TR": r"$r_\mathrm{C,TR}$",
-    "r_Curve": r"$r_\mathrm{Curve}$", "alpha": r"$\alpha$", "F_rad": r"$F_\mathrm{rad}$",
-    "F_ax": r"$F_\mathrm{ax}$", "F_Motor": r"$F_\mathrm{Motor}$", "mu": r"$\mu$", "v": r"$v$",
+    "A_T": r"$A_\mathrm{T}$",
+    "r_C,G": r"$r_\mathrm{C,G}$",
+    "r_C,TR": r"$r_\mathrm{C,TR}$",
+    "r_Curve": r"$r_\mathrm{Curve}$",
+    "alpha": r"$\alpha$",
+    "F_rad": r"$F_\mathrm{rad}$",
+    "F_ax": r"$F_\mathrm{ax}$",
+    "F_Motor": r"$F_\mathrm{Motor}$",
+    "mu": r"$\mu$",
+    "v": r"$v$",
     "n_G": r"$n_\mathrm{G}$",
-}  # fmt: skip
+}
 
 _RC: dict[Any, Any] = {
-    "font.size": 7.5, "axes.titlesize": 8.0, "axes.labelsize": 7.5, "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0, "legend.fontsize": 7.0, "legend.title_fontsize": 7.0, "figure.titlesize": 8.5,
-    "axes.linewidth": 0.7, "lines.linewidth": 1.2, "lines.markersize": 4.0, "grid.linewidth": 0.4,
-    "xtick.major.width": 0.7, "ytick.major.width": 0.7, "xtick.minor.width": 0.5, "ytick.minor.width": 0.5,
-    "xtick.major.size": 3.0, "ytick.major.size": 3.0, "hatch.linewidth": 0.6, "patch.linewidth": 0.6,
-    "font.family": ["DejaVu Sans"], "mathtext.fontset": "dejavusans", "axes.formatter.use_mathtext": True,
-    "legend.frameon": False, "svg.fonttype": "path", "svg.hashsalt": "trackroller", "savefig.dpi": 300,
-}  # fmt: skip
+    "font.size": 7.5,
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 7.5,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 7.0,
+    "legend.title_fontsize": 7.0,
+    "figure.titlesize": 8.5,
+    "axes.linewidth": 0.7,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 4.0,
+    "grid.linewidth": 0.4,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "xtick.minor.width": 0.5,
+    "ytick.minor.width": 0.5,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "hatch.linewidth": 0.6,
+    "patch.linewidth": 0.6,
+    "font.family": ["DejaVu Sans"],
+    "mathtext.fontset": "dejavusans",
+    "axes.formatter.use_mathtext": True,
+    "legend.frameon": False,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "trackroller",
+    "savefig.dpi": 300,
+}
 
 
 @dataclass(frozen=True)
@@ -126,8 +153,9 @@ def _set_title(figure: Figure) -> None:
         return
     figure.draw_without_rendering()
     top = room.get_window_extent().transformed(figure.transFigure.inverted()).y1
-    figure.text(0.015, top, title, ha="left", va="top", fontsize=7.5, fontweight="bold", linespacing=1.17,
-                in_layout=False)  # fmt: skip
+    figure.text(
+        0.015, top, title, ha="left", va="top", fontsize=7.5, fontweight="bold", linespacing=1.17, in_layout=False
+    )
     figure._trackroller_title = ""  # type: ignore[attr-defined]
 
 

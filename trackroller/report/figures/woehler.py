@@ -39,8 +39,9 @@ def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np
     rule : life rule beyond the knee
     """
     t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
-    return fatigue.allowable_stress(cycles, *line_of(material), rule, failure_probability=probability,
-                                    scatter_cycles=t_n, scatter_stress=t_s)  # fmt: skip
+    return fatigue.allowable_stress(
+        cycles, *line_of(material), rule, failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s
+    )
 
 
 def scatters(material: Mapping[str, Any]) -> bool:
@@ -86,8 +87,9 @@ def _materials(view: StudyView) -> dict[str, dict[str, Any]]:
     return {name: dict(m) for name, m in found.items() if isinstance(m, Mapping) and all(f in m for f in _FIELDS)}
 
 
-def _points(view: StudyView, body: str, known: Mapping[str, Any], rule: str
-            ) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:  # fmt: skip
+def _points(
+    view: StudyView, body: str, known: Mapping[str, Any], rule: str
+) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """For each material: stress [MPa], life [1] and whether it rolls, of every case that has a life."""
     table, column = view.table, f"life_cycles_{body}"
     if column not in table:
@@ -123,31 +125,80 @@ def _ends(points: list, materials: list) -> tuple[float, float]:
     return max(low / 2, 1.0), top
 
 
-def _draw(axes: Axes, material: Mapping[str, Any], rule: str, stress: np.ndarray, life: np.ndarray, rolls: np.ndarray,
-          colour: Any, marker: str, ends: tuple[float, float]) -> int:  # fmt: skip
+def _draw(
+    axes: Axes,
+    material: Mapping[str, Any],
+    rule: str,
+    stress: np.ndarray,
+    life: np.ndarray,
+    rolls: np.ndarray,
+    colour: Any,
+    marker: str,
+    ends: tuple[float, float],
+) -> int:
     """One material's lines and points; how many of them lie beyond the axis."""
     at = np.geomspace(*ends, 400)
     axes.plot(at, curve(material, rule, 0.5, at), color=colour, linewidth=1.0, zorder=2)
     if scatters(material):
         for probability in fatigue.PROBABILITIES:
             if probability != 0.5:
-                axes.plot(at, curve(material, rule, probability, at), color=colour, linewidth=0.8,
-                          linestyle=_STYLE[probability], zorder=2)  # fmt: skip
+                axes.plot(
+                    at,
+                    curve(material, rule, probability, at),
+                    color=colour,
+                    linewidth=0.8,
+                    linestyle=_STYLE[probability],
+                    zorder=2,
+                )
     strength, limit, first, knee = line_of(material)
-    axes.plot([first, knee], [strength, limit], color="0.1", marker="|", markersize=9, markeredgewidth=0.9,
-              linestyle="none", zorder=3)  # fmt: skip
+    axes.plot(
+        [first, knee],
+        [strength, limit],
+        color="0.1",
+        marker="|",
+        markersize=9,
+        markeredgewidth=0.9,
+        linestyle="none",
+        zorder=3,
+    )
     use = np.flatnonzero(rolls if rolls.any() else np.isfinite(stress))
     far = use[life[use] > ends[1]]
     use = use[life[use] <= ends[1]]
     if use.size:
         middle = use[np.argsort(life[use])[use.size // 2]]
         use = use[:: -(-use.size // MAX_POINTS)]
-        axes.scatter(life[use], stress[use], s=8, marker=marker, color=colour, alpha=0.35, linewidth=0, zorder=3,
-                     rasterized=use.size > 500)  # fmt: skip
-        axes.scatter(life[middle], stress[middle], s=30, marker=marker, facecolor="white", edgecolor="0.1",
-                     linewidth=0.9, zorder=5)  # fmt: skip
-    axes.scatter(np.full(far.size, ends[1]), stress[far], s=9, marker=">", facecolor="white", edgecolor=colour,
-                 linewidth=0.5, clip_on=False, zorder=4)  # fmt: skip
+        axes.scatter(
+            life[use],
+            stress[use],
+            s=8,
+            marker=marker,
+            color=colour,
+            alpha=0.35,
+            linewidth=0,
+            zorder=3,
+            rasterized=use.size > 500,
+        )
+        axes.scatter(
+            life[middle],
+            stress[middle],
+            s=30,
+            marker=marker,
+            facecolor="white",
+            edgecolor="0.1",
+            linewidth=0.9,
+            zorder=5,
+        )
+    axes.scatter(
+        np.full(far.size, ends[1]),
+        stress[far],
+        s=9,
+        marker=">",
+        facecolor="white",
+        edgecolor=colour,
+        linewidth=0.5,
+        clip_on=False,
+        zorder=4,
+    )
     return int(far.size)
 
 
@@ -162,15 +213,18 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, A
     ends = {"color": "0.1", "marker": "|", "markersize": 8, **none}
     entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", ends))
     if any(scatters(known[n]) for n in names):
-        entries += [(f"{100 * p:.0f} % fail", {"color": "0.3", "linestyle": _STYLE.get(p, "-")})
-                    for p in fatigue.PROBABILITIES]  # fmt: skip
+        entries += [
+            (f"{100 * p:.0f} % fail", {"color": "0.3", "linestyle": _STYLE.get(p, "-")}) for p in fatigue.PROBABILITIES
+        ]
     return entries
 
 
 def _info(shown: list, known: Mapping[str, Any], rule: str, beyond: int) -> style.FigureInfo:
-    caption = ("Woehler lines of the materials (failure probability 50 %, and 10 and 90 % where the material gives its "
-               "scatter) with the peak von Mises stress (MPa) and the life in overrollings of every case. "
-               f"{fatigue.CONVENTIONS[rule]}.")  # fmt: skip
+    caption = (
+        "Woehler lines of the materials (failure probability 50 %, and 10 and 90 % where the material gives its "
+        "scatter) with the peak von Mises stress (MPa) and the life in overrollings of every case. "
+        f"{fatigue.CONVENTIONS[rule]}."
+    )
     left = sum(int((~rolls).sum()) for _, points in shown[:1] for _, _, rolls in points.values())
     if left and any(rolls.any() for _, points in shown for _, _, rolls in points.values()):
         caption += f" {left} cases in full slip or lift-off are not drawn."
@@ -200,13 +254,16 @@ def _sentence(body: str, points: Mapping[str, Any], known: Mapping[str, Any]) ->
     for name in points:
         if scatters(known[name]):
             k = fatigue.woehler_exponent(*line_of(known[name]))
-            t_n = float(fatigue.scatter_ranges(k, known[name].get("scatter_in_cycles"),
-                                               known[name].get("scatter_in_stress"))[0])  # fmt: skip
+            t_n = float(
+                fatigue.scatter_ranges(k, known[name].get("scatter_in_cycles"), known[name].get("scatter_in_stress"))[0]
+            )
             ranges[name] = t_n**-0.5
     if ranges:
         name = min(ranges, key=lambda n: ranges[n])
-        text += (f" By the scatter of {name} one in ten has failed at {style.rounded(ranges[name], 2)} times the life "
-                 "of the 50 % line.")  # fmt: skip
+        text += (
+            f" By the scatter of {name} one in ten has failed at {style.rounded(ranges[name], 2)} times the life "
+            "of the 50 % line."
+        )
     return text
 
 

@@ -53,7 +53,7 @@ FEATURES = {
     "wedge": "mu/tan(alpha), at most 3",
     "arc": "ln of the half-width a over the radius of the guide's contour times sin(2 alpha)",
     "coupling": "asinh of K/mu",
-}  # fmt: skip
+}
 PEAK_FEATURES = ("spin", "friction", "ellipticity", "angle", "arc", "coupling")  # of them, for the peak stress
 
 
@@ -63,8 +63,12 @@ def features(table: CaseTable) -> np.ndarray:
     sine, cosine, mu = np.sin(alpha), np.cos(alpha), table.friction_coefficient
     r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, alpha)
     k_x, k_y = curvatures(table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, r_a, alpha)
-    bodies = (table.roller.youngs_modulus, table.roller.poisson_ratio,
-              table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
+    bodies = (
+        table.roller.youngs_modulus,
+        table.roller.poisson_ratio,
+        table.guide.youngs_modulus,
+        table.guide.poisson_ratio,
+    )
     elastic = Elastic.of_pair(*bodies)
     with np.errstate(divide="ignore", invalid="ignore"):
         normal = np.abs(table.radial_force) / (2.0 * cosine)
@@ -76,11 +80,20 @@ def features(table: CaseTable) -> np.ndarray:
         spin = sine / r_a * arm * elastic.shear_modulus * square * c11 / (mu * normal)
         wedge = mu / np.tan(alpha)
         axial = np.abs(table.axial_force) * cosine / (np.abs(table.radial_force) * sine)
-        return np.stack([
-            np.log(spin), np.log(mu), np.log(g), np.log(wedge), np.log(np.maximum(1.0 - axial, 0.02)),
-            np.abs(table.motor_force) / (mu * 2.0 * normal), np.minimum(wedge, 3.0),
-            np.log(a / (table.guide_profile_radius * np.sin(2.0 * alpha))), np.arcsinh(elastic.coupling / mu),
-        ], axis=1)  # fmt: skip
+        return np.stack(
+            [
+                np.log(spin),
+                np.log(mu),
+                np.log(g),
+                np.log(wedge),
+                np.log(np.maximum(1.0 - axial, 0.02)),
+                np.abs(table.motor_force) / (mu * 2.0 * normal),
+                np.minimum(wedge, 3.0),
+                np.log(a / (table.guide_profile_radius * np.sin(2.0 * alpha))),
+                np.arcsinh(elastic.coupling / mu),
+            ],
+            axis=1,
+        )
 
 
 def monomials(x: np.ndarray) -> np.ndarray:
@@ -172,8 +185,12 @@ def _by_table(options: Options) -> bool:
 
     ASSUME: materials as like as the table holds them; with others `kalker` at `preview` is the dearer, not the worse.
     """
-    return options.settings.name == "preview" and not {*options.outputs} & {"peak_stress", "life", "tractions",
-                                                                         "subsurface"}  # fmt: skip
+    return options.settings.name == "preview" and not {*options.outputs} & {
+        "peak_stress",
+        "life",
+        "tractions",
+        "subsurface",
+    }
 
 
 def choose(table: CaseTable, options: Options) -> np.ndarray:

@@ -65,8 +65,14 @@ class Probe(_Rows):
         """ln of the larger share that sticks, |x_spin|/a of the nearer pole, larger |F_T|/(mu F_N); shape (n, 3)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             grip = np.abs(self.lateral_force / self.normal_force).max(axis=1) / self.friction
-            return np.stack([np.log(np.clip(self.stick.max(axis=1), 1e-3, 1.0)),
-                             np.minimum(self.pole.min(axis=1), FARTHEST_POLE), grip], axis=1)  # fmt: skip
+            return np.stack(
+                [
+                    np.log(np.clip(self.stick.max(axis=1), 1e-3, 1.0)),
+                    np.minimum(self.pole.min(axis=1), FARTHEST_POLE),
+                    grip,
+                ],
+                axis=1,
+            )
 
 
 def _solve(table: CaseTable, options: Options, model: str) -> tuple[Any, Equilibrium]:
@@ -85,8 +91,13 @@ def probe(table: CaseTable, options: Options) -> Probe:
     two = lambda v: np.concatenate([v, v])  # noqa: E731
     sine = np.sin(loads.contact_angle)
     shape = type(loads.shape)(two(loads.shape.lateral), two(loads.shape.rolling), two(loads.shape.pressure))
-    slip = Slip(np.concatenate([sine, -sine]), two(np.cos(loads.contact_angle)), two(loads.guide_profile_radius),
-                two(loads.rolling_radius), two(balance.shift))  # fmt: skip
+    slip = Slip(
+        np.concatenate([sine, -sine]),
+        two(np.cos(loads.contact_angle)),
+        two(loads.guide_profile_radius),
+        two(loads.rolling_radius),
+        two(balance.shift),
+    )
     patches, rows = shape.at(balance.normal_force.T.reshape(-1)), np.tile(np.arange(n), 2)
     stick, rolling = np.zeros(2 * n), np.flatnonzero(two(balance.regime == ROLLING))
     found = scene.model.look_up(patches.take(rolling), slip.take(rolling), two(loads.friction)[rolling], rows[rolling])
@@ -94,8 +105,18 @@ def probe(table: CaseTable, options: Options) -> Probe:
     a, b = patches.semi_axis_lateral, patches.semi_axis_rolling
     with np.errstate(divide="ignore", invalid="ignore"):
         arm, pole = np.sqrt(a * b).reshape(2, n).T, np.abs(slip.pole_lateral / a).reshape(2, n).T
-    return Probe(balance.regime, balance.converged, balance.normal_force, f.lateral_force, f.driving_force,
-                 f.spin_moment, arm, pole, stick.reshape(2, n).T, loads.friction)  # fmt: skip
+    return Probe(
+        balance.regime,
+        balance.converged,
+        balance.normal_force,
+        f.lateral_force,
+        f.driving_force,
+        f.spin_moment,
+        arm,
+        pole,
+        stick.reshape(2, n).T,
+        loads.friction,
+    )
 
 
 def force_error(table: CaseTable, options: Options, model: str, exact: Probe) -> np.ndarray:

@@ -145,8 +145,10 @@ def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         a, b = a / (rows := np.max(np.abs(a), axis=2))[:, :, None], b / rows
         columns = np.max(np.abs(a), axis=1)
         a = a / columns[:, None, :]
-        cross = np.stack([np.cross(a[:, :, 1], a[:, :, 2]), np.cross(a[:, :, 2], a[:, :, 0]),
-                          np.cross(a[:, :, 0], a[:, :, 1])], axis=1)  # fmt: skip
+        cross = np.stack(
+            [np.cross(a[:, :, 1], a[:, :, 2]), np.cross(a[:, :, 2], a[:, :, 0]), np.cross(a[:, :, 0], a[:, :, 1])],
+            axis=1,
+        )
         x = np.einsum("mij,mj->mi", cross, b) / np.sum(a[:, :, 0] * cross[:, 0], axis=1)[:, None] / columns
     return np.where(np.isfinite(x), x, np.nan)
 
@@ -165,8 +167,10 @@ def digits_of_forces(roller: Roller, w, normal, f, residual) -> np.ndarray:
         return unsure
     taken, turned = f[1].sum(axis=0)[small], roller.torque(f)[small]
     inward = np.where(w[small] > 0, -1.0, 1.0)
-    moved = [roller.contact(roller.shift(w[small] + inward * step, small), normal[:, small], True, small)
-             for step in (roller.step * (1 - np.abs(w[small])), EPS)]  # fmt: skip
+    moved = [
+        roller.contact(roller.shift(w[small] + inward * step, small), normal[:, small], True, small)
+        for step in (roller.step * (1 - np.abs(w[small])), EPS)
+    ]
     given = roller.friction[small] * normal[:, small].sum(axis=0)
     noise = 4.0 * EPS * roller.torque_scale[small]
     share = np.zeros(small.size)

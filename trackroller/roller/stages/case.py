@@ -39,8 +39,12 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
     per_body, errors = [], []
     for j, m in enumerate((table.roller, table.guide)):
         column = lambda a: a[:, None]  # noqa: E731
-        line = (column(m.tensile_strength), column(m.fatigue_limit), column(m.cycles_at_tensile_strength),
-                column(m.cycles_at_fatigue_limit))  # fmt: skip
+        line = (
+            column(m.tensile_strength),
+            column(m.fatigue_limit),
+            column(m.cycles_at_tensile_strength),
+            column(m.cycles_at_fatigue_limit),
+        )
         per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], *line, rule=options.life_rule))
         exponent = fatigue.woehler_exponent(*line)
         if options.life_rule == "haibach":  # the flatter line below the fatigue limit
@@ -58,8 +62,16 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
     """Cases (n,) where the slip of the sliding model vanishes well apart from its spin pole, see `pole_split`."""
     alpha = np.deg2rad(table.contact_angle)
-    split = [pole_split(v["semi_axis_lateral"][:, k], sign * np.sin(alpha), np.cos(alpha), table.guide_profile_radius,
-                        v["rolling_radius_shift"]) for k, sign in ((0, 1.0), (1, -1.0))]  # fmt: skip
+    split = [
+        pole_split(
+            v["semi_axis_lateral"][:, k],
+            sign * np.sin(alpha),
+            np.cos(alpha),
+            table.guide_profile_radius,
+            v["rolling_radius_shift"],
+        )
+        for k, sign in ((0, 1.0), (1, -1.0))
+    ]
     with np.errstate(invalid="ignore"):
         return np.maximum(*split) > 0.1
 
@@ -70,8 +82,10 @@ def validity(table: CaseTable, block: Block) -> None:
     bit = {name: 1 << i for i, name in enumerate(VALIDITY_BITS)}
     r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, r_g, alpha)
-    smallest = np.min(np.abs([table.roller_profile_radius, r_g, r_a / np.cos(alpha),
-                              table.guide_curve_radius / np.cos(alpha)]), axis=0)  # fmt: skip
+    smallest = np.min(
+        np.abs([table.roller_profile_radius, r_g, r_a / np.cos(alpha), table.guide_curve_radius / np.cos(alpha)]),
+        axis=0,
+    )
     a = np.max(v["semi_axis_lateral"], axis=1)
     size = np.maximum(a, np.max(v["semi_axis_rolling"], axis=1))
     strength = np.minimum(table.roller.tensile_strength, table.guide.tensile_strength)

@@ -37,8 +37,16 @@ def halfspace_model(
     table: CaseTable, options: Options, rolling_radius: np.ndarray, law: FrictionLaw, travel_speed: np.ndarray
 ) -> GridModel:
     """The contact model on solved patches for the cases of `table`; r_A [mm], travel speed [mm/s], (n,)."""
-    columns = np.stack([table.guide_profile_radius, table.roller_profile_radius, np.deg2rad(table.contact_angle),
-                        rolling_radius, table.guide_curve_radius], axis=1).tolist()  # fmt: skip
+    columns = np.stack(
+        [
+            table.guide_profile_radius,
+            table.roller_profile_radius,
+            np.deg2rad(table.contact_angle),
+            rolling_radius,
+            table.guide_curve_radius,
+        ],
+        axis=1,
+    ).tolist()
 
     def gaps(row: int, side: int):
         guide, roller = str(table.guide_profile[row]), str(table.roller_profile[row])
@@ -47,12 +55,23 @@ def halfspace_model(
         key = (guide, roller, *columns[row], side)
         return key, lambda: gap(*key)
 
-    bodies = (table.roller.youngs_modulus, table.roller.poisson_ratio,
-              table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
+    bodies = (
+        table.roller.youngs_modulus,
+        table.roller.poisson_ratio,
+        table.guide.youngs_modulus,
+        table.guide.poisson_ratio,
+    )
     elements = 2 * -(-options.settings.elements // 2)
     patches = Patches(gaps, contact_modulus(*bodies), elements)
-    return grid_model(options.contact_model, patches, Elastic.of_pair(*bodies), options.spin_model, law, travel_speed,
-                      "profile" in options.slip_terms)  # fmt: skip
+    return grid_model(
+        options.contact_model,
+        patches,
+        Elastic.of_pair(*bodies),
+        options.spin_model,
+        law,
+        travel_speed,
+        "profile" in options.slip_terms,
+    )
 
 
 def contact(results: Results, patch: GridPatch, conformal: int) -> None:
@@ -126,8 +145,9 @@ def _refined(results: Results, flat: int, times: int) -> GridLoad:
     one = np.array([flat])
     patch = results.ellipse.take(one)
     long = bool(patch.semi_axis_rolling[0] * patch.shape[1] > patch.semi_axis_lateral[0] * patch.shape[0])
-    t = results.scene.model.surface(patch.refined(times if long else 1, times), results.slip.take(one),
-                                    results.friction[one], results.rows[one])  # fmt: skip
+    t = results.scene.model.surface(
+        patch.refined(times if long else 1, times), results.slip.take(one), results.friction[one], results.rows[one]
+    )
     return GridLoad(t.x[0], t.y[0], np.stack([t.shear_lateral[0], t.shear_rolling[0], t.pressure[0]], axis=-1))
 
 

@@ -36,8 +36,12 @@ def prepare(table: CaseTable, options: Options) -> Scene:
     alpha = np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, alpha)
     k_x, k_y = curvatures(table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, r_a, alpha)
-    bodies = (table.roller.youngs_modulus, table.roller.poisson_ratio,
-              table.guide.youngs_modulus, table.guide.poisson_ratio)  # fmt: skip
+    bodies = (
+        table.roller.youngs_modulus,
+        table.roller.poisson_ratio,
+        table.guide.youngs_modulus,
+        table.guide.poisson_ratio,
+    )
     hertz = shape(k_x, k_y, contact_modulus(*bodies), options.hertz)
     turning = None
     if "curve" in options.slip_terms:
@@ -50,11 +54,29 @@ def prepare(table: CaseTable, options: Options) -> Scene:
     if options.normal == "halfspace":
         model = stages_grid.halfspace_model(table, options, r_a, law, travel)
     else:
-        model = contact_model(options.contact_model, options.settings, Elastic.of_pair(*bodies), options.spin_model,
-                              law, travel, options.slip_terms)  # fmt: skip
-    loads = eq.Loads(table.radial_force, table.axial_force, table.motor_force, table.friction_coefficient, alpha,
-                     table.guide_profile_radius, r_a, hertz, model.difference_step, model.residual,
-                     falling=not law.is_constant, at_high_speed=law.at_high_speed)  # fmt: skip
+        model = contact_model(
+            options.contact_model,
+            options.settings,
+            Elastic.of_pair(*bodies),
+            options.spin_model,
+            law,
+            travel,
+            options.slip_terms,
+        )
+    loads = eq.Loads(
+        table.radial_force,
+        table.axial_force,
+        table.motor_force,
+        table.friction_coefficient,
+        alpha,
+        table.guide_profile_radius,
+        r_a,
+        hertz,
+        model.difference_step,
+        model.residual,
+        falling=not law.is_constant,
+        at_high_speed=law.at_high_speed,
+    )
     bare = options.shortcuts and bool(is_frictionless(table).all())
     twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
     return Scene(table, loads, model, Mirror(twins), bare, len(table), turning)
@@ -120,10 +142,15 @@ def steep_friction(results: Results, options: Options) -> None:
     r, g = table.roller, table.guide
     shear = Elastic.of_pair(r.youngs_modulus, r.poisson_ratio, g.youngs_modulus, g.poisson_ratio).shear_modulus
     fall = law_of(table.friction_law[0]).steepest_fall * table.velocity * (1000.0 / 60.0)
-    plain = 0.5 * (np.abs(loads.radial_force) / np.cos(loads.contact_angle)
-                   + np.abs(loads.axial_force) / np.sin(loads.contact_angle))  # fmt: skip
-    pressure = np.where(results.regime == eq.FAILED, loads.shape.pressure * np.cbrt(plain),
-                        np.max(results.values["max_pressure"], axis=1))  # fmt: skip
+    plain = 0.5 * (
+        np.abs(loads.radial_force) / np.cos(loads.contact_angle)
+        + np.abs(loads.axial_force) / np.sin(loads.contact_angle)
+    )
+    pressure = np.where(
+        results.regime == eq.FAILED,
+        loads.shape.pressure * np.cbrt(plain),
+        np.max(results.values["max_pressure"], axis=1),
+    )
     with np.errstate(invalid="ignore"):
         steep = loads.friction * pressure * fall / shear > 1.0
     results.bits |= np.where(steep, validity_bit("steep_friction"), 0).astype(np.int32)
@@ -193,8 +220,15 @@ def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) ->
 def tractions(results: Results, options: Options) -> None:
     """Pressure, shear, slip and friction energy over the patches."""
     t = surface_tractions(results)
-    fields = {"patch_x": t.x, "patch_y": t.y, "pressure": t.pressure, "shear_lateral": t.shear_lateral,
-              "shear_rolling": t.shear_rolling, "slip_lateral": t.slip_lateral, "slip_rolling": t.slip_rolling,
-              "friction_energy_density": np.hypot(t.shear_lateral, t.shear_rolling)
-              * np.hypot(t.slip_lateral, t.slip_rolling)}  # fmt: skip
+    fields = {
+        "patch_x": t.x,
+        "patch_y": t.y,
+        "pressure": t.pressure,
+        "shear_lateral": t.shear_lateral,
+        "shear_rolling": t.shear_rolling,
+        "slip_lateral": t.slip_lateral,
+        "slip_rolling": t.slip_rolling,
+        "friction_energy_density": np.hypot(t.shear_lateral, t.shear_rolling)
+        * np.hypot(t.slip_lateral, t.slip_rolling),
+    }
     results.values.update({name: results.full(value) for name, value in fields.items()})

@@ -36,8 +36,15 @@ class Scene:
         """The slip with the turning of the rollers `rows` in the curve, where that counts."""
         if self.turning is None:
             return slip
-        return DetailedSlip(slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius, slip.shift,
-                            self.turning[rows], np.full(len(rows), None))  # fmt: skip
+        return DetailedSlip(
+            slip.sine,
+            slip.cosine,
+            slip.guide_profile_radius,
+            slip.rolling_radius,
+            slip.shift,
+            self.turning[rows],
+            np.full(len(rows), None),
+        )
 
     def law(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
         """The contact law of the equilibrium."""
@@ -69,9 +76,13 @@ class Results:
         two = lambda v: np.concatenate([v, v])  # noqa: E731
         sine = np.sin(scene.loads.contact_angle)
         ellipse = type(s)(two(s.lateral), two(s.rolling), two(s.pressure)).at(normal)
-        slip = Slip(np.concatenate([sine, -sine]), two(np.cos(scene.loads.contact_angle)),
-                    two(scene.loads.guide_profile_radius), two(scene.loads.rolling_radius),
-                    two(balance.shift))  # fmt: skip
+        slip = Slip(
+            np.concatenate([sine, -sine]),
+            two(np.cos(scene.loads.contact_angle)),
+            two(scene.loads.guide_profile_radius),
+            two(scene.loads.rolling_radius),
+            two(balance.shift),
+        )
         slip = scene.kinematics(slip, np.tile(np.arange(scene.n), 2))
         friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
         if isinstance(scene.model, GridModel):
@@ -80,9 +91,18 @@ class Results:
         unmet, met = scene.model.state(scene.n)
         rolls = balance.regime == eq.ROLLING
         converged = balance.converged & (met | ~rolls)
-        out = cls(scene, balance, balance.regime, converged, ellipse, slip, two(friction),
-                  np.isfinite(normal), np.where(balance.jamming, JAMMING, 0).astype(np.int32),
-                  np.zeros(scene.n, bool))  # fmt: skip
+        out = cls(
+            scene,
+            balance,
+            balance.regime,
+            converged,
+            ellipse,
+            slip,
+            two(friction),
+            np.isfinite(normal),
+            np.where(balance.jamming, JAMMING, 0).astype(np.int32),
+            np.zeros(scene.n, bool),
+        )
         out.values["residual"] = np.where(rolls, np.fmax(balance.residual, unmet), balance.residual)
         return out
 
@@ -115,8 +135,12 @@ def surface_tractions(results: Results) -> SurfaceTractions:
         asked = mirror.asked(good)
         slip = results.slip.take(asked)
         rolling = replace(slip, shift=np.where(results.slides_along[asked] == 0, slip.shift, 0.0))
-        t = mirror.spread_surface(good, results.scene.model.surface(
-            results.ellipse.take(asked), rolling, results.friction[asked], results.rows[asked]))  # fmt: skip
+        t = mirror.spread_surface(
+            good,
+            results.scene.model.surface(
+                results.ellipse.take(asked), rolling, results.friction[asked], results.rows[asked]
+            ),
+        )
         mu, along = results.friction[good], results.slides_along[good]
         full = (along != 0)[:, None, None]
         results.surface = replace(

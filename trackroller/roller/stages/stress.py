@@ -25,8 +25,13 @@ from trackroller.roller.stop import holds, parse_condition
 def _patches(results: Results, options: Options, slip: Slip | None = None) -> np.ndarray:
     good = results.good
     slip = results.slip if slip is None else slip
-    return patch_rows(results.ellipse.take(good), slip.take(good), results.friction[good],
-                      sliding.spin_model_index(options.spin_model), results.slides_along[good])  # fmt: skip
+    return patch_rows(
+        results.ellipse.take(good),
+        slip.take(good),
+        results.friction[good],
+        sliding.spin_model_index(options.spin_model),
+        results.slides_along[good],
+    )
 
 
 def _poisson(results: Results, options: Options) -> np.ndarray:
@@ -90,8 +95,13 @@ def peak_stress(results: Results, options: Options) -> None:
     error = peak.error
     if isinstance(results.scene.model, TableModel):
         error = error + results.scene.model.peak_error(results.friction[asked])[:, None]
-    found = {"peak_stress": (peak.stress * scale, 1.0), "peak_x": (side * peak.x, -1.0), "peak_y": (peak.y, 1.0),
-             "peak_z": (peak.z, 1.0), "error_estimate": (error, 1.0)}  # fmt: skip
+    found = {
+        "peak_stress": (peak.stress * scale, 1.0),
+        "peak_x": (side * peak.x, -1.0),
+        "peak_y": (peak.y, 1.0),
+        "peak_z": (peak.z, 1.0),
+        "error_estimate": (error, 1.0),
+    }
     for name, (value, sign) in found.items():
         full = np.full((2 * results.scene.n, 2), np.nan)
         full[good] = mirror.spread(good, value, sign)
@@ -127,8 +137,9 @@ def _peaks(patches: np.ndarray, ratios: np.ndarray, fields: np.ndarray | None, o
         first, number = distinct_rows(np.hstack([patches, ratios]))
     peak = find_peaks(patches[first], ratios[first], options.settings.peak)
     scale = length[:, None]
-    return Peak(peak.stress[number], peak.x[number] * scale, peak.y[number] * scale, peak.z[number] * scale,
-                peak.error[number])  # fmt: skip
+    return Peak(
+        peak.stress[number], peak.x[number] * scale, peak.y[number] * scale, peak.z[number] * scale, peak.error[number]
+    )
 
 
 def subsurface(results: Results, options: Options) -> None:
@@ -165,8 +176,9 @@ def subsurface(results: Results, options: Options) -> None:
                 else:
                     one = NO_FIELD if fields is None else fields[row]
                     parts = stress_parts(rows[row], points, order, order, one)
-                    s = p * (parts[:, 0] + nu[flat, body] * parts[:, 1]
-                             + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3]))  # fmt: skip
+                    s = p * (
+                        parts[:, 0] + nu[flat, body] * parts[:, 1] + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3])
+                    )
                 v[f"stress_{plane}"][i, :, j, body] = s.T.reshape(6, depth_points, m)
                 v[f"von_mises_{plane}"][i, j, body] = von_mises(s).reshape(depth_points, m)
             v["xz_x"][i, j, body], v["yz_y"][i, j, body] = across, along

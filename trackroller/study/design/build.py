@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from trackroller.study.config import Study
 
 MAX_CASES = 20_000_000
-_GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius",
-             "contact_angle")  # fmt: skip
+_GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
 _DEFAULT_MATERIAL = "1.7225-normalised"
 
 
@@ -100,10 +99,12 @@ def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
     dataset = xr.Dataset(data, coords)
     shape = design.meta.get("shape") if design.method == "grid" else None
     dataset.attrs = {
-        "study": study.name, "design": design.method, "seed": study.config.seed,
+        "study": study.name,
+        "design": design.method,
+        "seed": study.config.seed,
         "factors": json.dumps(list(design.factors)),
         "grid_shape": json.dumps(list(shape) if shape is not None else None),
-    }  # fmt: skip
+    }
     return dataset
 
 

@@ -169,10 +169,17 @@ def _nested(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str
 
 
 DRAW: dict[str, Callable[..., Drawn]] = {
-    "grid": _grid, "lhs": _lhs, "sobol": _sobol, "saltelli": _saltelli, "morris": _morris, "nested": _nested,
-    **{m: (lambda free, n, seed, settings, m=m: _coded(free, m))
-       for m in ("central_composite", "box_behnken", "plackett_burman")},
-}  # fmt: skip
+    "grid": _grid,
+    "lhs": _lhs,
+    "sobol": _sobol,
+    "saltelli": _saltelli,
+    "morris": _morris,
+    "nested": _nested,
+    **{
+        m: (lambda free, n, seed, settings, m=m: _coded(free, m))
+        for m in ("central_composite", "box_behnken", "plackett_burman")
+    },
+}
 
 
 def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarray, dict[str, Any]]:

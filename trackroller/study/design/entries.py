@@ -21,8 +21,10 @@ from trackroller.study.design.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 OPTION_FACTORS: dict[str, tuple[str, ...]] = {
-    "contact_model": CONTACT_MODELS, "spin_model": SPIN_MODELS, "normal": NORMAL,
-}  # fmt: skip
+    "contact_model": CONTACT_MODELS,
+    "spin_model": SPIN_MODELS,
+    "normal": NORMAL,
+}
 MAX_LEVELS = 1_000_000
 FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 
@@ -49,8 +51,12 @@ def base_value(key: Any, value: Any) -> Any:
 
 def _material_name(value: Any, where: str) -> str:
     if not isinstance(value, str) or not value:
-        raise InputError(where, value, "the name of a material in the database",
-                         "Put your own into config/materials.yaml (`trackroller materials add`).")  # fmt: skip
+        raise InputError(
+            where,
+            value,
+            "the name of a material in the database",
+            "Put your own into config/materials.yaml (`trackroller materials add`).",
+        )
     return value
 
 
@@ -62,8 +68,12 @@ def _mapping(name: str, value: Any, where: str) -> str:
     try:
         text = mapping_text(name, value)
         if name == "friction_law" and not text and (own := at_rest(value)) is not None:
-            raise InputError(name, "a table of one value", "a table whose friction changes with the slip speed",
-                             f"Leave it out and give friction_coefficient: {own:g}.")  # fmt: skip
+            raise InputError(
+                name,
+                "a table of one value",
+                "a table whose friction changes with the slip speed",
+                f"Leave it out and give friction_coefficient: {own:g}.",
+            )
         return text
     except InputError as exc:
         field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"

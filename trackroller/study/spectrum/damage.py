@@ -20,8 +20,12 @@ _BCB, _CB = ("block", "contact", "body"), ("contact", "body")
 
 
 def _line(material: Material) -> tuple[float, float, float, float]:
-    return (material.tensile_strength, material.fatigue_limit,
-            material.cycles_at_tensile_strength, material.cycles_at_fatigue_limit)  # fmt: skip
+    return (
+        material.tensile_strength,
+        material.fatigue_limit,
+        material.cycles_at_tensile_strength,
+        material.cycles_at_fatigue_limit,
+    )
 
 
 def running_cycles(overrollings: np.ndarray, stress: np.ndarray, regime: np.ndarray) -> np.ndarray:
@@ -55,9 +59,13 @@ def damage_per_shift(
         t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
         if probability == 0.5 or t_n or t_s:
             life[..., i] = fatigue.life_cycles(
-                stress[..., i], *_line(material), rule,
-                failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s,
-            )  # fmt: skip
+                stress[..., i],
+                *_line(material),
+                rule,
+                failure_probability=probability,
+                scatter_cycles=t_n,
+                scatter_stress=t_s,
+            )
     return life, fatigue.block_damage(cycles, life)
 
 
@@ -118,8 +126,11 @@ def _labelled(
         "body": solved["body"],
     }
     if scattered is not None:
-        coords["probability"] = ("probability", list(spectrum.failure_probabilities),
-                                 {"units": "1", "long_name": "failure probability"})  # fmt: skip
+        coords["probability"] = (
+            "probability",
+            list(spectrum.failure_probabilities),
+            {"units": "1", "long_name": "failure probability"},
+        )
         meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
         variables["life_shifts_at_probability"] = (("probability", *_CB), scattered, meta)
     for name in ("regime", "converged", "validity"):
@@ -169,6 +180,7 @@ def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
     names = ds["block"].values
     if np.isnan(ds["overrollings"].sel(body=body).values[unknown]).all():
         return "give guide_overrollings_per_hour, or guide_overrollings of each block"
-    listed = ", ".join(f"'{name}' ({REGIMES[int(r)]})" for name, r in
-                       zip(names[unknown], ds["regime"].values[unknown], strict=True))  # fmt: skip
+    listed = ", ".join(
+        f"'{name}' ({REGIMES[int(r)]})" for name, r in zip(names[unknown], ds["regime"].values[unknown], strict=True)
+    )
     return f"no stress in {listed}"

@@ -30,8 +30,15 @@ from trackroller.materials.yaml_file import parse_mapping, read_text
 from trackroller.parameters import SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
 
-LOAD_FIELDS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity",
-               "guide_curve_radius", "guide_overrollings_per_hour")  # fmt: skip
+LOAD_FIELDS = (
+    "radial_force",
+    "axial_force",
+    "motor_force",
+    "friction_coefficient",
+    "velocity",
+    "guide_curve_radius",
+    "guide_overrollings_per_hour",
+)
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
 OPTIONS = tuple(name for name in SOLVE_OPTIONS if name not in ("outputs", "stop_if", "shortcuts"))
 FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", *OPTIONS)
@@ -79,8 +86,12 @@ class Spectrum:
         if isinstance(blocks, str):
             blocks = _table((folder or Path()) / blocks)
         if not isinstance(blocks, list) or not blocks:
-            raise InputError("blocks", blocks, "a list of blocks that is not empty, or the name of a CSV",
-                             "Write - {name: loaded, distance: 4000, radial_force: -300}.")  # fmt: skip
+            raise InputError(
+                "blocks",
+                blocks,
+                "a list of blocks that is not empty, or the name of a CSV",
+                "Write - {name: loaded, distance: 4000, radial_force: -300}.",
+            )
         base = values.get("base") or {}
         if not isinstance(base, Mapping):
             raise InputError("base", base, "a mapping of case fields to values")
@@ -115,8 +126,12 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
         if key in BLOCK_FIELDS:
             continue
         if key in FIELDS:
-            raise InputError(f"{where}.{key}", entry[key], "the roller is the same in all blocks of a spectrum",
-                             "Give it under `base`.")  # fmt: skip
+            raise InputError(
+                f"{where}.{key}",
+                entry[key],
+                "the roller is the same in all blocks of a spectrum",
+                "Give it under `base`.",
+            )
         raise unknown_name(f"{where}: field", str(key), BLOCK_FIELDS)
     if "distance" not in entry:
         raise InputError(f"{where}.distance", None, "the distance travelled per shift in m is wanted")
@@ -127,8 +142,12 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     except InputError as error:
         at = where if error.field in loads else "base"
         raise InputError(f"{at}.{error.field}", error.value, error.allowed, error.remedy) from None
-    return Block(name, case, _number(f"{where}.distance", entry["distance"]),
-                 None if overrollings is None else _number(f"{where}.guide_overrollings", overrollings))  # fmt: skip
+    return Block(
+        name,
+        case,
+        _number(f"{where}.distance", entry["distance"]),
+        None if overrollings is None else _number(f"{where}.guide_overrollings", overrollings),
+    )
 
 
 def _number(name: str, value: Any, open_lower: bool = False) -> float:
