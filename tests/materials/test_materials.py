@@ -333,7 +333,7 @@ def test_impossible_values_are_refused_by_name_wherever_they_stand(user, db, fie
         ("- a\n- b", ("own.yaml", "mapping")),
         ("materials: {PA6: [", ("own.yaml", "YAML", "line")),
         ("materials: !!python/object/apply:os.getcwd []", ("own.yaml", "YAML")),
-        ("materials: {PA6: {description: 2024-13-45}}", ("own.yaml", "YAML")),
+        ("materials: {PA6: {description: 030}}", ("own.yaml", "ambiguous", "030")),
         ("materials: &a {PA6: *a}", ("own.yaml", "itself")),
         ("materials: " + "[" * 5000, ("own.yaml", "YAML")),
     ],

@@ -9,13 +9,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap
+from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.entries import TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
+from trackroller.materials.yaml_file import needs_quotes, read_text
 
 HEADER = """\
 # Your own materials and friction coefficients, laid over the built-in ones.
@@ -51,22 +54,13 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
         raise InputError(
             f"material '{name}'", None, "it must have at least one value", f"Give one of {', '.join(PROPERTIES)}."
         )
-    text = _read(path)
+    text = read_text(path, "materials file") if path.exists() else HEADER
     builtin = read_database(None)
     build_database(text, str(path), over=builtin)  # a file that is broken already is not touched
     text = _with_entry(text, path, name, _entry(values), replace)
     material = build_database(text, str(path), over=builtin).material(name)
     _write_at_once(path, text)
     return material
-
-
-def _read(path: Path) -> str:
-    if not path.exists():
-        return HEADER
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError("materials file", str(path), f"it must be a readable text ({error})") from None
 
 
 def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -97,9 +91,6 @@ def _plain(value: Any) -> Any:
 
 def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace: bool) -> str:
     """The text with the material in it."""
-    from ruamel.yaml import YAML
-    from ruamel.yaml.comments import CommentedMap
-
     editor = YAML()
     editor.preserve_quotes = True
     editor.width = 4096
@@ -150,8 +141,6 @@ def _without_empty_section(text: str) -> str:
 
 def _block(entry: Mapping[str, Any]) -> Any:
     """Entry as ruamel's mappings, each value on one line."""
-    from ruamel.yaml.comments import CommentedMap
-
     block = CommentedMap()
     for key, value in entry.items():
         if isinstance(value, Mapping):
@@ -165,15 +154,9 @@ def _block(entry: Mapping[str, Any]) -> Any:
 
 def _text(value: Any) -> Any:
     """A text in quotes where YAML 1.1 would read something else, such as 1.4301, yes or 1:30."""
-    from ruamel.yaml.scalarstring import DoubleQuotedScalarString
-
     if not isinstance(value, str):
         return value
-    try:
-        same = yaml.safe_load(value) == value
-    except yaml.YAMLError:
-        same = False
-    return value if same else DoubleQuotedScalarString(value)
+    return DoubleQuotedScalarString(value) if needs_quotes(value) else value
 
 
 def _write_at_once(path: Path, text: str) -> None:

@@ -8,11 +8,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
+from trackroller.materials.yaml_file import parse_yaml, read_text
 
 BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
@@ -54,11 +53,7 @@ def _cached(user_file: str | None, modified: int, size: int) -> MaterialDatabase
     database = build_database(_builtin_text(), BUILTIN)
     if user_file is None:
         return database
-    try:
-        text = Path(user_file).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError("materials file", user_file, f"it must be a readable text ({error})") from error
-    return build_database(text, user_file, over=database)
+    return build_database(read_text(user_file, "materials file"), user_file, over=database)
 
 
 def _builtin_text() -> str:
@@ -89,27 +84,9 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
     return MaterialDatabase(materials, friction, (*(over.files if over else ()), file))
 
 
-def _parsed(text: str, file: str) -> Any:
-    """Plain data of a YAML text, or an `InputError` that tells the line."""
-    try:
-        data = yaml.safe_load(text)
-        if file != BUILTIN:
-            _refuse_repeated_keys(yaml.compose(text, Loader=yaml.SafeLoader), file)
-    except InputError:
-        raise
-    except RecursionError:
-        allowed = "it must be YAML that is not nested deeply and does not hold itself"
-        raise InputError("materials file", file, allowed) from None
-    except (yaml.YAMLError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        remedy = "Mend the line; texts with ': ' or ' #' in them need quotes."
-        raise InputError("materials file", file, f"it must be YAML: {reason}", remedy) from None
-    return data
-
-
 def _sections(text: str, file: str) -> dict[str, Any]:
     """The checked sections of a file, empty where it has none."""
-    data = _parsed(text, file)
+    data = parse_yaml(text, f"materials file {file}")
     data = {} if data is None else data
     if not isinstance(data, Mapping):
         allowed = f"its top level must be a mapping with {', '.join(SECTIONS)}"
@@ -126,22 +103,3 @@ def _sections(text: str, file: str) -> dict[str, Any]:
             raise InputError(f"{file}: {section}", value, f"it must be {form}")
         result[section] = value
     return result
-
-
-def _refuse_repeated_keys(node: Any, file: str) -> None:
-    """YAML lets the last of two equal keys win silently: here it is an error."""
-    if isinstance(node, yaml.MappingNode):
-        seen: set[str] = set()
-        for key, value in node.value:
-            if key.value in seen:
-                raise InputError(
-                    f"{file}, line {key.start_mark.line + 1}",
-                    key.value,
-                    "the name stands twice at the same place",
-                    "Keep one of them.",
-                )
-            seen.add(key.value)
-            _refuse_repeated_keys(value, file)
-    elif isinstance(node, yaml.SequenceNode):
-        for value in node.value:
-            _refuse_repeated_keys(value, file)

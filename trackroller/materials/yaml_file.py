@@ -1,107 +1,155 @@
-"""Reading users' YAML: data only, and every way it can be wrong told in one line."""
+"""Read and write the YAML files of users: one guarded loader for every such file of the program.
+
+The text is YAML 1.2 (core schema). A scalar without quotes that YAML 1.1 reads differently, such as `030`, `1:30`,
+`3_0` or `yes`, is refused with what to write instead. Values are counted while they are composed, aliases in full, so
+that a small file cannot grow into millions of values.
+"""
 
 from __future__ import annotations
 
-import re
+import io
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.representer import SafeRepresenter
 
 from trackroller.errors import InputError
+from trackroller.materials.yaml_composer import TAG, Composer, plain_scalar
 
 MAX_BYTES = 5_000_000  # a study file larger than this is a table and belongs into a CSV
-MAX_NODES = 500_000
-
-
-class _Loader(yaml.SafeLoader):
-    """Safe loader that refuses keys written twice and reads 1e4 and inf as the numbers they are."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        seen = set()
-        for key_node, _ in node.value:
-            key = key_node.value if isinstance(key_node, yaml.ScalarNode) else None
-            if key is not None and key in seen:
-                line = key_node.start_mark.line + 1
-                raise InputError(str(key), f"line {line}", "each key may stand once", "Remove one of them.")
-            seen.add(key)
-        return super().construct_mapping(node, deep)
-
-
-_Loader.yaml_implicit_resolvers = {k: list(v) for k, v in yaml.SafeLoader.yaml_implicit_resolvers.items()}
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float",
-    re.compile(r"^[-+]?(?:[0-9]+(?:\.[0-9]*)?[eE][-+]?[0-9]+|\.[0-9]+[eE][-+]?[0-9]+)$"),
-    list("-+0123456789."),
-)
 
 
 def read_text(path: Path | str, what: str) -> str:
-    """Text of a user's file; raises `InputError` for a file that is missing, too large or not UTF-8."""
+    """Return the text of a user's file.
+
+    Parameters
+    ----------
+    path : Path or str
+        The file.
+    what : str
+        What the file is, for messages.
+
+    Returns
+    -------
+    str
+        The text, without a byte-order mark.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, no regular file, too large, unreadable or not UTF-8.
+    """
     path = Path(path)
     try:
         if path.is_dir():
-            raise InputError(what, str(path), "a file is wanted, this is a folder")
-        data = path.read_bytes()
+            raise InputError(what, str(path), "a file; this is a folder", "Give the path of a file.")
+        if path.exists() and not path.is_file():
+            raise InputError(what, str(path), "a regular file; this is a device or a pipe", "Give the path of a file.")
+        if path.stat().st_size > MAX_BYTES:
+            raise InputError(
+                what,
+                str(path),
+                f"a file of at most {MAX_BYTES // 1_000_000} MB",
+                "Put many cases into a CSV file and use design: table.",
+            )
+        return path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
-        raise InputError(what, str(path), "the file does not exist", "Check the path.") from None
-    except (OSError, ValueError) as exc:
-        raise InputError(what, str(path), f"the file cannot be read ({exc})") from None
-    if len(data) > MAX_BYTES:
-        raise InputError(what, str(path), f"at most {MAX_BYTES // 1_000_000} MB")
-    try:
-        return data.decode("utf-8-sig")
+        raise InputError(what, str(path), "a file that exists", "Check the path.") from None
     except UnicodeDecodeError as exc:
-        raise InputError(what, str(path), f"the file is not UTF-8 text (byte {exc.start})") from None
+        remedy = "Save the file as UTF-8."
+        raise InputError(what, str(path), f"UTF-8 text (byte {exc.start} is not)", remedy) from None
+    except (OSError, ValueError) as exc:
+        raise InputError(what, str(path), f"a readable file ({exc})", "Check path and rights.") from None
+
+
+def parse_yaml(text: str, what: str) -> Any:
+    """Return the plain data of a YAML text.
+
+    Parameters
+    ----------
+    text : str
+        One YAML document.
+    what : str
+        What the text is, for messages.
+
+    Returns
+    -------
+    dict, list, str, int, float, bool or None
+
+    Raises
+    ------
+    InputError
+        With the line, if the text is not YAML, is ambiguous, holds a key twice, an unknown tag, too many values or
+        too deep a nesting.
+    """
+    try:
+        return Composer(YAML(typ="safe").parse(io.StringIO(text)), what).document()
+    except InputError:
+        raise
+    except MarkedYAMLError as exc:
+        mark = exc.problem_mark or exc.context_mark
+        where = f"line {mark.line + 1}" if mark else "the file"
+        reason = " ".join(str(exc.problem or exc).split())
+        raise InputError(
+            what, where, f"YAML: {reason}", "Mend the line; texts with ': ' or ' #' need quotes."
+        ) from None
+    except (YAMLError, ValueError, RecursionError) as exc:
+        reason = " ".join(str(exc).split())[:200]
+        raise InputError(what, "the file", f"YAML: {reason}", "Save it as plain UTF-8 text.") from None
 
 
 def parse_mapping(text: str, what: str) -> dict[str, Any]:
-    """A mapping from YAML text; raises `InputError` with the line for text that is none."""
-    try:
-        data = yaml.load(text, Loader=_Loader)  # a SafeLoader
-    except InputError:
-        raise
-    except yaml.MarkedYAMLError as exc:
-        where = f"line {exc.problem_mark.line + 1}" if exc.problem_mark else "the file"
-        raise InputError(what, where, f"this is not YAML: {exc.problem or exc}") from None
-    except (yaml.YAMLError, ValueError, TypeError, OverflowError) as exc:
-        raise InputError(what, "the file", f"this is not YAML: {str(exc).splitlines()[0]}") from None
-    except RecursionError:
-        raise InputError(what, "the file", "this is nested too deeply") from None
+    """Return the mapping of a YAML text; see `parse_yaml`.
+
+    Raises
+    ------
+    InputError
+        Also if the top level is not a mapping from texts.
+    """
+    data = parse_yaml(text, what)
     if not isinstance(data, dict):
-        raise InputError(what, type(data).__name__, "a mapping of keys to values is wanted")
-    _refuse_bombs(data, what)
+        raise InputError(
+            what, type(data).__name__, "a mapping of keys to values", "Write lines of the form 'key: value'."
+        )
     for key in data:
         if not isinstance(key, str):
-            raise InputError(what, key, "keys are texts")
+            raise InputError(what, key, "keys that are texts", "Put the key in quotes.")
     return data
 
 
 def read_mapping(path: Path | str, what: str = "file") -> dict[str, Any]:
-    """A mapping from a user's YAML file (see `read_text` and `parse_mapping`)."""
+    """Return the mapping of a user's YAML file; see `read_text` and `parse_mapping`."""
     return parse_mapping(read_text(path, what), what)
 
 
-def _refuse_bombs(data: Any, what: str) -> None:
-    """Aliases may repeat a value, but not blow a small file up to millions of values, nor hold themselves."""
-    sizes: dict[int, int] = {}
-    open_nodes: set[int] = set()
+def write_yaml(data: Mapping[str, Any]) -> str:
+    """Return plain data as YAML text that `parse_yaml` reads as the same data."""
+    writer = YAML(typ="safe", pure=True)
+    writer.Representer = _Representer
+    writer.default_flow_style, writer.sort_base_mapping_type_on_output = False, False
+    writer.allow_unicode = True
+    out = io.StringIO()
+    writer.dump(dict(data), out)
+    return out.getvalue()
 
-    def size(node: Any) -> int:
-        if not isinstance(node, (dict, list, tuple, set)):
-            return 1
-        if id(node) in open_nodes:
-            raise InputError(what, "alias", "a value may not contain itself")
-        if id(node) not in sizes:
-            open_nodes.add(id(node))
-            children = [*node.keys(), *node.values()] if isinstance(node, dict) else list(node)
-            sizes[id(node)] = 1 + sum(size(child) for child in children)
-            open_nodes.discard(id(node))
-        return sizes[id(node)]
 
+def needs_quotes(text: str) -> bool:
+    """Return whether a text without quotes would be refused or read as something else."""
     try:
-        total = size(data)
-    except RecursionError:
-        raise InputError(what, "the file", "this is nested too deeply") from None
-    if total > MAX_NODES:
-        raise InputError(what, f"{total} values", f"at most {MAX_NODES} values (aliases counted in full)")
+        return plain_scalar(text) != text
+    except ValueError:
+        return True
+
+
+class _Representer(SafeRepresenter):
+    """Writes texts in quotes wherever the reader would not take them as texts."""
+
+    def represent_text(self, text: str) -> Any:
+        """Return the node of a text."""
+        return self.represent_scalar(f"{TAG}str", text, style='"' if needs_quotes(text) else None)
+
+
+_Representer.add_representer(str, _Representer.represent_text)

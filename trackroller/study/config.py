@@ -9,12 +9,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from trackroller.contact.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
-from trackroller.materials.yaml_file import parse_mapping, read_text
+from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
 from trackroller.parameters import (
     ACCURACIES,
     DEFAULT_OUTPUTS,
@@ -234,7 +233,7 @@ class Study:
             from trackroller.study.design.build import table_path
 
             data["table"] = str(Path(table_path(self)).resolve())
-        return yaml.safe_dump(data, sort_keys=False, allow_unicode=True)
+        return write_yaml(data)
 
     def design(self) -> xr.Dataset:
         """The cases: dimension `case`, one variable a parameter, materials by name."""

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.materials.yaml_file import parse_yaml
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIMES
 
 BOOKKEEPING = {
@@ -73,12 +74,7 @@ def read_study(ds: xr.Dataset) -> dict[str, Any]:
         return dict(text)
     if not text:
         return {}
-    import yaml
-
-    try:
-        found = json.loads(text) if str(text).lstrip().startswith("{") else yaml.safe_load(text)
-    except ValueError:
-        found = yaml.safe_load(text)
+    found = json.loads(text) if str(text).lstrip().startswith("{") else parse_yaml(str(text), "stored study file")
     return dict(found) if isinstance(found, Mapping) else {}
 
 

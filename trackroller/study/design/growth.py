@@ -5,10 +5,8 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING
 
-import yaml
-
 from trackroller.errors import InputError
-from trackroller.materials.yaml_file import read_mapping
+from trackroller.materials.yaml_file import parse_yaml, read_mapping
 from trackroller.study.design.grown_lhs import check_sizes
 
 if TYPE_CHECKING:
@@ -26,7 +24,7 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
         return study
     try:
         old = read_mapping(folder.root / "study.yaml", "study")
-        now = yaml.safe_load(study.merged())
+        now = parse_yaml(study.merged(), "study")
         if any(old.get(key) != now.get(key) for key in ("factors", "design", "seed", "inner")):
             return study
         sizes = [*old.get("grown_from", ()), int(old["samples"])]
