@@ -77,6 +77,8 @@ def compare(before: Archive, after: Archive, tolerance: float = 0.0) -> list[Ver
         verdict = verdicts[VERDICTS.get(key.partition("/")[0], "signatures")]
         if key not in before:
             verdict.remarks.append(f"{key}: added")
+        elif key not in after and key.endswith("/refused"):
+            verdict.remarks.append(f"{key}: now solved")
         elif key not in after:
             verdict.problems.append(f"{key}: missing")
         elif key.endswith(".json"):
