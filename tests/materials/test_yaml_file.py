@@ -115,24 +115,19 @@ def test_a_bomb_of_aliases_is_refused_while_it_is_read(merge, depth):
     assert time.process_time() - started < 2.0  # a bomb that is expanded takes minutes
 
 
+words = st.text(
+    st.characters(exclude_categories=("Cc", "Cs", "Zl", "Zp", "Cn"), exclude_characters="\ufeff"), max_size=12
+)
 plain = st.recursive(
-    st.none() | st.booleans() | st.integers(-(10**15), 10**15) | st.floats(allow_nan=False) | st.text(max_size=12),
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(min_size=1, max_size=6), inner, max_size=4),
+    st.none() | st.booleans() | st.integers(-(10**15), 10**15) | st.floats(allow_nan=False) | words,
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(words, inner, max_size=4),
     max_leaves=12,
 )
 
 
 @given(plain)
 def test_what_is_written_is_read_back_as_it_was(value):
-    try:
-        text = write_yaml({"value": value})
-    except Exception as exc:  # texts with characters that YAML does not have
-        assert "character" in str(exc)
-        return
-    try:
-        assert parse_mapping(text, "file")["value"] == value
-    except InputError as exc:
-        assert "character" in str(exc)
+    assert parse_mapping(write_yaml({"value": value}), "file")["value"] == value
 
 
 def test_only_a_regular_file_is_read(tmp_path):

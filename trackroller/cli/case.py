@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from trackroller.contact.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
-from trackroller.materials.yaml_file import parse_mapping, read_mapping
+from trackroller.materials.yaml_file import parse_yaml, read_mapping
 from trackroller.parameters import REGIMES, SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
 from trackroller.study.files import WorkError, write_whole
@@ -26,7 +27,9 @@ def settings_of(words: list[str]) -> dict[str, Any]:
         key, sign, value = word.partition("=")
         if not sign or not key:
             raise InputError("--set", word, "key=value", "For example --set friction_coefficient=0.1")
-        found[key.strip()] = parse_mapping(f"value: {value}", f"--set {key}")["value"]
+        if len(word.splitlines()) > 1:
+            raise InputError("--set", word, "one key=value on one line", "Give --set once for each key.")
+        found[key.strip()] = parse_yaml(value, f"--set {key}")
     return found
 
 
@@ -52,11 +55,27 @@ def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
     return solve(case, **(options | more))
 
 
-def write_result(dataset: xr.Dataset, out: Path) -> None:
-    """Write a result as netCDF, whole or not at all."""
-    if not out.parent.is_dir():
-        raise InputError("--out", str(out), "the folder does not exist")
-    write_whole(out, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
+def writable(out: Path) -> Path:
+    """Return the file to write for the path that a user gave.
+
+    The target of a symbolic link is written, and the link stays.
+
+    Raises
+    ------
+    InputError
+        If the folder is missing, or `out` is there and is not a regular file.
+    """
+    target = Path(os.path.realpath(out))
+    if target.exists() and not target.is_file():
+        raise InputError("--out", str(out), "the path of a regular file", "Give the name of a file to write.")
+    if not target.parent.is_dir():
+        raise InputError("--out", str(out), "a file in a folder that exists", f"Create the folder {target.parent}.")
+    return target
+
+
+def write_result(dataset: xr.Dataset, target: Path) -> None:
+    """Write a result as netCDF, whole or not at all; `target` comes from `writable`."""
+    write_whole(target, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
 
 
 def _json(value: Any) -> Any:

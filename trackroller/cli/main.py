@@ -1,8 +1,14 @@
-"""The command line: parse, call, print. Exit 0 done, 1 the work failed, 2 the input is wrong."""
+"""The command line: parse, call, print.
+
+Exit codes: 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the program.
+"""
 
 from __future__ import annotations
 
 import sys
+import tempfile
+import traceback
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +16,7 @@ import typer
 
 from trackroller import __version__
 from trackroller.errors import InputError
+from trackroller.study.files import WorkError, disk_error
 
 app = typer.Typer(
     add_completion=False,
@@ -48,11 +55,12 @@ def solve(
     no_shortcuts: NoShortcuts = False,
 ) -> None:
     """Solve one case; exit 1 if it fails. Keys: parameters and materials of a case, options of a study file."""
-    from trackroller.cli.case import as_text, is_failed, print_json, solve_case, write_result
+    from trackroller.cli.case import as_text, is_failed, print_json, solve_case, writable, write_result
 
+    target = None if out is None else writable(out)
     dataset = solve_case(case, settings or [], **({"shortcuts": False} if no_shortcuts else {}))
-    if out is not None:
-        write_result(dataset, out)
+    if target is not None:
+        write_result(dataset, target)
     if as_json:
         print_json(dataset)
     elif out is None:
@@ -174,23 +182,44 @@ def materials_add(
 
 
 def main() -> None:
-    """Entry point: every foreseeable error is one line on stderr."""
-    from trackroller.study.files import WorkError, disk_error
+    """Run the command line and end the process with its exit code.
 
+    The codes are 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the program. Every error is one line on
+    stderr; an error of the program leaves its traceback in a log file that the line names.
+    """
+    raise SystemExit(run_app(app))
+
+
+def run_app(command: Callable[[], object]) -> int:
+    """Call a command and return its exit code; tell every error in one line on stderr."""
     try:
-        app()
+        command()
+    except SystemExit as exc:
+        return exc.code if isinstance(exc.code, int) else int(exc.code is not None)
     except InputError as exc:
-        print(f"trackroller: {exc}", file=sys.stderr)
-        raise SystemExit(2) from None
+        return _tell(str(exc), 2)
     except WorkError as exc:
-        print(f"trackroller: {exc}", file=sys.stderr)
-        raise SystemExit(1) from None
+        return _tell(str(exc), 1)
     except KeyboardInterrupt:
-        print("trackroller: stopped; finished cases are kept, the same command goes on", file=sys.stderr)
-        raise SystemExit(1) from None
+        return _tell("stopped; finished cases are kept. Start the same command again to go on.", 1)
     except BrokenPipeError:
         sys.stderr.close()
-        raise SystemExit(1) from None
+        return 1
     except OSError as exc:
-        print(f"trackroller: {disk_error(exc, Path(str(exc.filename or 'a file')))}", file=sys.stderr)
-        raise SystemExit(1) from None
+        return _tell(str(disk_error(exc, Path(str(exc.filename or "a file")))), 1)
+    except Exception as exc:
+        return _tell(f"internal error, {type(exc).__name__}. Please report it with the log {_log(exc)}", 3)
+    return 0
+
+
+def _tell(line: str, code: int) -> int:
+    print("trackroller: " + " ".join(line.split()), file=sys.stderr)
+    return code
+
+
+def _log(exc: Exception) -> str:
+    """Write the traceback into a log file and return its path."""
+    with tempfile.NamedTemporaryFile("w", prefix="trackroller-", suffix=".log", delete=False, encoding="utf-8") as file:
+        file.write(f"trackroller {__version__}: {' '.join(sys.argv)}\n\n")
+        file.writelines(traceback.format_exception(exc))
+    return file.name

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.cli.case import print_json, writable, write_result
 from trackroller.parameters import REGIMES
 from trackroller.study.spectrum.damage import BODIES, summary
 from trackroller.study.spectrum.solve import load_spectrum, solve_spectrum
@@ -17,11 +18,10 @@ if TYPE_CHECKING:
 
 def run_spectrum(path: Path, as_json: bool, out: Path | None) -> None:
     """Solve the blocks of a spectrum file; print tables, JSON or write netCDF."""
-    from trackroller.cli.case import print_json, write_result
-
+    target = None if out is None else writable(out)
     dataset = solve_spectrum(load_spectrum(path))
-    if out is not None:
-        write_result(dataset, out)
+    if target is not None:
+        write_result(dataset, target)
     if as_json:
         print_json(dataset)
     elif out is None:

@@ -56,6 +56,8 @@ def read_text(path: Path | str, what: str) -> str:
                 "Put many cases into a CSV file and use design: table.",
             )
         return path.read_bytes().decode("utf-8-sig")
+    except InputError:
+        raise
     except FileNotFoundError:
         raise InputError(what, str(path), "a file that exists", "Check the path.") from None
     except UnicodeDecodeError as exc:
@@ -94,7 +96,7 @@ def parse_yaml(text: str, what: str) -> Any:
         where = f"line {mark.line + 1}" if mark else "the file"
         reason = " ".join(str(exc.problem or exc).split())
         raise InputError(
-            what, where, f"YAML: {reason}", "Mend the line; texts with ': ' or ' #' need quotes."
+            what, where, f"YAML; this is not YAML: {reason}", "Mend the line; texts with ': ' or ' #' need quotes."
         ) from None
     except (YAMLError, ValueError, RecursionError) as exc:
         reason = " ".join(str(exc).split())[:200]
