@@ -346,12 +346,12 @@ def test_a_refined_start_keeps_linear_shares_of_the_traction_bound():
     fine, coarse = unit_cells(16, 16)[0], unit_cells(8, 8)[0]
     where = lambda m: (np.arange(m) + 0.5) * 2.0 / m - 1.0  # noqa: E731
     share = lambda m: 0.1 + 0.3 * where(m)[:, None] - 0.2 * where(m)[None, :]  # noqa: E731
-    start = np.zeros((1, 2, 16, 16))
-    kalker_batch.refine((np.stack([share(8), -share(8)]) * coarse)[None], coarse, fine, start)
+    start = np.zeros((2, 16, 16))
+    kalker_batch.refine(np.stack([share(8), -share(8)]) * coarse, coarse, fine, start)
     inner = np.s_[4:12, 4:12]  # all four neighbours are loaded
-    np.testing.assert_allclose(start[0, 0][inner], (share(16) * fine)[inner], rtol=1e-12)
-    np.testing.assert_allclose(start[0, 1], -start[0, 0])
-    assert np.all(start[0, 0][fine == 0] == 0)
+    np.testing.assert_allclose(start[0][inner], (share(16) * fine)[inner], rtol=1e-12)
+    np.testing.assert_allclose(start[1], -start[0])
+    assert np.all(start[0][fine == 0] == 0)
 
 
 def test_dissipation_in_the_elements_meets_the_work_put_in_with_second_order():

@@ -1,4 +1,4 @@
-"""Where a value stands among rising knots; compiled."""
+"""Find intervals between rising knots and interpolate there; compiled."""
 
 from __future__ import annotations
 
@@ -7,7 +7,22 @@ from numba import njit
 
 @njit(cache=True, nogil=True)
 def interval(value, knots, low, high):
-    """Index i, low <= i < high, of the interval knots[i] <= value < knots[i + 1]; the outer ones reach beyond."""
+    """Return the index i, low <= i < high, of the interval knots[i] <= value < knots[i + 1].
+
+    Parameters
+    ----------
+    value : float
+        Place to look up.
+    knots : ndarray, shape (m,)
+        Rising knots.
+    low, high : int
+        First and last knot to consider. The outer intervals extend to infinity.
+
+    Returns
+    -------
+    int
+        Index of the knot at the lower end of the interval.
+    """
     while high - low > 1:
         middle = (low + high) // 2
         if knots[middle] <= value:
@@ -15,3 +30,29 @@ def interval(value, knots, low, high):
         else:
             high = middle
     return low
+
+
+@njit(cache=True, nogil=True)
+def polyline(value, knots, values):
+    """Return height and slope at `value` of the polyline through (knots, values).
+
+    Parameters
+    ----------
+    value : float
+        Place to look up.
+    knots, values : ndarray, shape (m,)
+        Rising knots and the heights there.
+
+    Returns
+    -------
+    tuple of float
+        Height and slope. Beyond the outer knots the height is constant and the slope is 0.
+    """
+    last = knots.size - 1
+    if value < knots[0]:
+        return values[0], 0.0
+    if value >= knots[last]:
+        return values[last], 0.0
+    low = interval(value, knots, 0, last)
+    slope = (values[low + 1] - values[low]) / (knots[low + 1] - knots[low])
+    return values[low] + slope * (value - knots[low]), slope

@@ -1,42 +1,137 @@
-"""Tangential problems of many patches: scaling, friction law, resultants; patches are shared among threads.
+"""Tangential problems of many patches: scaling, friction law and resultants; threads share the patches.
 
-Per patch: lengths over c = sqrt(a b), tractions over mu p_max, slips over mu p_max / G.
+Inside a patch, lengths are divided by c = sqrt(a b), tractions by mu p_max and slips by mu p_max / G.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
+from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.influence import coupling_slip, influence
 from trackroller.contact.kalker.columns import column_ranges
 from trackroller.contact.kalker.loops import reals, row_means
 from trackroller.contact.kalker.newton import Problem, newton
 from trackroller.numerics.threads import share_rows
 
-# columns of the numbers reported for each patch
-(F_T, F_A, M_R, STICK, POWER, WORK, PRESSURE_WORK, RESIDUAL, STEPS, PRODUCTS) = range(10)
-REPORT = 10
 TOWARDS_LAW = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)  # shares of a friction law that are met one after the other
 
 
-def _rigid_slip(along, lateral, spin, b, factor, ny):
-    """Scaled rigid slip (ny, nx): `along` (nx,) is its rolling part, lateral - spin y the other."""
-    y = b * ((2.0 * np.arange(ny) + 1.0) / ny - 1.0)
-    return factor * ((lateral - spin * y)[:, None] + 1j * along[None, :])
+@dataclass(frozen=True)
+class Batch:
+    """Patches to solve, arrays (n,) unless stated.
+
+    semi_axis_lateral, semi_axis_rolling [mm]; bound : mu p_max [MPa]; ratio : mu p_max / G; poisson_ratio;
+    coupling : K / mu; along (n, nx) : rolling part of the rigid slip; lateral [-], spin [1/mm] : the lateral part is
+    lateral - spin y; travel_speed [mm/s]; height, share (n, ny, nx) : mean pressure over the largest and share inside
+    the patch of each element.
+    """
+
+    semi_axis_lateral: np.ndarray
+    semi_axis_rolling: np.ndarray
+    bound: np.ndarray
+    ratio: np.ndarray
+    poisson_ratio: np.ndarray
+    coupling: np.ndarray
+    along: np.ndarray
+    lateral: np.ndarray
+    spin: np.ndarray
+    travel_speed: np.ndarray
+    height: np.ndarray
+    share: np.ndarray
+
+    def rigid_slip(self, i: int) -> np.ndarray:
+        """Return the scaled rigid slip (ny, nx) of patch i as complex numbers, lateral + 1j rolling."""
+        ny = self.height.shape[1]
+        y = self.semi_axis_rolling[i] * ((2.0 * np.arange(ny) + 1.0) / ny - 1.0)
+        factor = 1.0 / self.ratio[i] if self.ratio[i] > 0.0 else 1.0
+        return factor * ((self.lateral[i] - self.spin[i] * y)[:, None] + 1j * self.along[i][None, :])
+
+
+@dataclass(frozen=True)
+class Report:
+    """Numbers of n solved patches: forces (n, 3) F_T, F_A [N], M_R [N mm]; the others (n,).
+
+    stick_fraction [-]; dissipation : summed over the elements; work : of the rigid slip; pressure_work : of the
+    pressures on unlike materials [N]; residual of the friction law over mu p_max; Newton steps; products B tau.
+    """
+
+    forces: np.ndarray
+    stick_fraction: np.ndarray
+    dissipation: np.ndarray
+    work: np.ndarray
+    pressure_work: np.ndarray
+    residual: np.ndarray
+    steps: np.ndarray
+    products: np.ndarray
+
+    @classmethod
+    def empty(cls, n: int) -> Report:
+        """Return a report of zeros."""
+        return cls(np.zeros((n, 3)), *(np.zeros(n) for _ in fields(cls)[1:]))
+
+    @property
+    def energy_residual(self) -> np.ndarray:
+        """Dissipation over the work of rigid slip and pressures, less 1; shape (n,)."""
+        work = self.work + self.pressure_work
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(work != 0, self.dissipation / work - 1.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Found:
+    """Start and result of n patches.
+
+    traction (n, 2, ny, nx) over mu p_max: first the start, then the result; slip (n, 2, ny, nx) per travel speed;
+    stick (n, ny, nx); report.
+    """
+
+    traction: np.ndarray
+    slip: np.ndarray
+    stick: np.ndarray
+    report: Report
+
+    @classmethod
+    def start(cls, traction: np.ndarray) -> Found:
+        """Return room for the result of an iteration that starts from `traction` (n, 2, ny, nx)."""
+        n, _, ny, nx = traction.shape
+        return cls(traction, np.empty_like(traction), np.zeros((n, ny, nx), bool), Report.empty(n))
+
+
+class _Fields(NamedTuple):
+    """Fields of one patch: traction, slip, rigid slip and rigid slip with that of the pressures, (ny, nx, 2)."""
+
+    traction: np.ndarray
+    slip: np.ndarray
+    rigid: np.ndarray
+    driver: np.ndarray
+    bound: np.ndarray
+
+
+class _Sums(NamedTuple):
+    """Sums over the elements of one patch, per element area; the last two are shares of the patch in elements."""
+
+    lateral: float
+    driving: float
+    moment: float
+    dissipation: float
+    work: float
+    pressure_work: float
+    sticking: float
+    covered: float
 
 
 @njit(cache=True, nogil=True)
-def _sums(traction, slip, rigid, driver, height, bound, rho, share, a, b, stick, report):
-    """Resultants, stick share and works of one patch into `report`, with tractions over mu p_max.
-
-    `driver` is the rigid slip with that of the pressures on unlike materials.
-    """
+def _sums(field, height, share, rho, a, b, stick):
+    """Add up resultants, works and stick of one patch with tractions over mu p_max; mark sticking elements."""
+    traction, slip, rigid, driver, bound = field
     ny, nx = bound.shape
-    total = np.zeros(8)
+    force_x = force_y = moment = dissipation = work = pressed = sticking = covered = 0.0
     for i in range(ny):
         y = b * ((2.0 * i + 1.0) / ny - 1.0)
         for j in range(nx):
@@ -45,169 +140,117 @@ def _sums(traction, slip, rigid, driver, height, bound, rho, share, a, b, stick,
             x = a * ((2.0 * j + 1.0) / nx - 1.0)
             tx, ty = traction[i, j, 0], traction[i, j, 1]
             sx, sy = slip[i, j, 0], slip[i, j, 1]
-            total[0] += tx
-            total[1] += ty
-            total[2] += x * ty - y * tx
-            total[4] -= tx * sx + ty * sy
-            total[5] -= tx * rigid[i, j, 0] + ty * rigid[i, j, 1]
-            total[6] -= tx * (driver[i, j, 0] - rigid[i, j, 0]) + ty * (driver[i, j, 1] - rigid[i, j, 1])
-            total[7] += share[i, j]
+            force_x += tx
+            force_y += ty
+            moment += x * ty - y * tx
+            dissipation -= tx * sx + ty * sy
+            work -= tx * rigid[i, j, 0] + ty * rigid[i, j, 1]
+            pressed -= tx * (driver[i, j, 0] - rigid[i, j, 0]) + ty * (driver[i, j, 1] - rigid[i, j, 1])
+            covered += share[i, j]
             if (tx - rho * sx) ** 2 + (ty - rho * sy) ** 2 <= bound[i, j] ** 2:
                 stick[i, j] = True
-                total[3] += share[i, j]
-    cell = 4.0 * a * b / (nx * ny)
-    for k in (0, 1, 2, 4, 5, 6):
-        report[k] = total[k] * cell
-    report[STICK] = total[3] / total[7]
+                sticking += share[i, j]
+    return _Sums(force_x, force_y, moment, dissipation, work, pressed, sticking, covered)
 
 
-def _solve(problem: Problem, traction, control, report):
-    """Newton's method; if a friction law defeats it, from constant friction towards the law in steps."""
-    limits = (float(control[0]), int(control[1]), int(control[2]))
-    first = newton(problem, traction, *limits)
-    report[RESIDUAL], report[STEPS], report[PRODUCTS] = first[3:]
-    if first[3] <= control[0] or problem.knots.size == 1:
-        return first[:3]
+def _solve(problem: Problem, traction: np.ndarray, control, report: Report, i: int):
+    """Solve by Newton's method; if a friction law defeats it, approach the law from constant friction in steps."""
+    limits = control.tolerance, control.steps, control.krylov
+    *found, report.residual[i], report.steps[i], report.products[i] = newton(problem, traction, *limits)
+    if report.residual[i] <= control.tolerance or problem.knots.size == 1:
+        return found
     for part in TOWARDS_LAW:
         factors = problem.factors[0] + part * (problem.factors - problem.factors[0])
         eased = Problem(problem.influence, problem.rigid, problem.height, problem.scale, problem.knots, factors)
-        traction, slip, bound, report[RESIDUAL], steps, products = newton(eased, traction, *limits)
-        report[STEPS] += steps
-        report[PRODUCTS] += products
-        if report[RESIDUAL] > control[0]:
-            break  # a law that is steeper yet will not be met either
-    return traction, slip, bound
+        *found, report.residual[i], steps, products = newton(eased, found[0], *limits)
+        report.steps[i] += steps
+        report.products[i] += products
+        if report.residual[i] > control.tolerance:
+            break  # a steeper share of the law will not converge either
+    return found
 
 
-def _one_patch(
-    a,
-    b,
-    scale,
-    ratio,
-    poisson,
-    coupling,
-    along,
-    lateral,
-    spin,
-    travel,
-    height,
-    share,
-    speeds,
-    values,
-    control,
-    traction,
-    slip,
-    stick,
-    report,
-):
-    """Solve one patch; `traction` is the start. ratio = mu p_max / G, coupling = K / mu."""
-    ny, nx = height.shape
-    report[:] = 0.0
-    rigid = _rigid_slip(along, lateral, spin, b, 1.0 / ratio if ratio > 0.0 else 1.0, ny)
+def _one_patch(batch: Batch, law: FrictionLaw, control, found: Found, i: int) -> None:
+    """Solve patch i."""
+    a, b, ratio = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i], batch.ratio[i]
+    traction, slip, stick, report = found.traction[i], found.slip[i], found.stick[i], found.report
+    rigid = batch.rigid_slip(i)
     if not (ratio > 0.0 and a > 0.0 and b > 0.0 and math.isfinite(ratio * a * b)):
         traction[:] = 0.0
         slip[0], slip[1] = rigid.real, rigid.imag
         return
+    height = np.ascontiguousarray(batch.height[i])
+    ny, nx = height.shape
     c = math.sqrt(a * b)
     hx, hy = 2.0 * a / (nx * c), 2.0 * b / (ny * c)
-    functions = influence(hx, hy, poisson, ny, nx)
+    functions = influence(hx, hy, batch.poisson_ratio[i], ny, nx)
+    coupling = batch.coupling[i]
     driver = rigid if coupling == 0.0 else rigid + coupling * coupling_slip(height, hx, hy)
-    problem = Problem(functions, driver, np.ascontiguousarray(height), ratio * travel, speeds, values)
-    found, moved, bound = _solve(problem, traction[0] + 1j * traction[1], control, report)
-    _sums(
-        reals(found),
-        reals(moved),
-        reals(rigid),
-        reals(driver),
-        height,
-        bound,
-        1.0 / functions.own,
-        share,
-        a,
-        b,
-        stick,
-        report,
-    )
-    report[:3] *= scale
-    report[[POWER, WORK, PRESSURE_WORK]] *= scale * ratio
-    traction[0], traction[1] = found.real, found.imag
-    if speeds.size > 1:  # the slips that the law has seen, so that tractions and slips told agree with it
-        first, count = column_ranges(problem.height)
+    problem = Problem(functions, driver, height, ratio * batch.travel_speed[i], law.speed, law.factor)
+    solved, moved, bound = _solve(problem, traction[0] + 1j * traction[1], control, report, i)
+    field = _Fields(reals(solved), reals(moved), reals(rigid), reals(driver), bound)
+    sums = _sums(field, height, batch.share[i], 1.0 / functions.own, a, b, stick)
+    _write(report, i, sums, 4.0 * a * b / (nx * ny), batch.bound[i], ratio)
+    traction[0], traction[1] = solved.real, solved.imag
+    if law.speed.size > 1:  # report the mean slips that the law has used, so that tractions and slips agree with it
+        first, count = column_ranges(height)
         row_means(reals(moved.copy()), first, count, reals(moved))
         moved[stick] = 0.0
     slip[0], slip[1] = ratio * moved.real, ratio * moved.imag
 
 
-def solve_batch(
-    a,
-    b,
-    scale,
-    ratio,
-    poisson,
-    coupling,
-    along,
-    lateral,
-    spin,
-    travel,
-    height,
-    share,
-    speeds,
-    values,
-    control,
-    traction,
-    slip,
-    stick,
-    report,
-):
-    """Patches i = 0..n-1, one per thread at a time.
+def _write(report: Report, i: int, sums: _Sums, cell: float, bound: float, ratio: float) -> None:
+    """Store the sums of patch i with their units; `cell` is the area of an element [mm^2]."""
+    report.stick_fraction[i] = sums.sticking / sums.covered
+    report.forces[i] = np.array([sums.lateral, sums.driving, sums.moment]) * cell * bound
+    scale = bound * ratio
+    report.dissipation[i] = sums.dissipation * cell * scale
+    report.work[i], report.pressure_work[i] = sums.work * cell * scale, sums.pressure_work * cell * scale
 
-    a, b [mm], scale = mu p_max [MPa], ratio = mu p_max / G, nu, K / mu, lateral [-], spin [1/mm]: (n,);
-    along (n, nx): rolling part of the rigid slip; travel (n,): travel speed [mm/s]; height, share (ny, nx):
-    `unit_cells`; speeds (m,): slip speeds [mm/s], and values (m,): friction over its reference there; control:
-    tolerance, Newton steps, Krylov space.
-    traction (n, 2, ny, nx): start and result over mu p_max; slip likewise, per travel speed; stick
-    (n, ny, nx), False at the start; report (n, REPORT).
+
+def solve_batch(batch: Batch, law: FrictionLaw, control, found: Found) -> None:
+    """Solve all patches of a batch, one per thread at a time.
+
+    Parameters
+    ----------
+    batch : Batch
+        The n patches.
+    law : FrictionLaw
+        Friction over its value at rest by slip speed.
+    control : KalkerSettings
+        Tolerance, Newton steps and Krylov space.
+    found : Found
+        Start of the iteration, overwritten by the result.
     """
-    rows: tuple[Any, ...] = (a, b, scale, ratio, poisson, coupling, along, lateral, spin, travel)
-    law: tuple[Any, ...] = (height, share, speeds, values, control)
 
     def work(first: int, last: int) -> None:
         for i in range(first, last):
-            own: Any = (*(v[i] for v in rows), *law, traction[i], slip[i], stick[i], report[i])
-            _one_patch(*own)
+            _one_patch(batch, law, control, found, i)
 
-    share_rows(work, a.size, 1, 1)
-
-
-def energy_residual(report: np.ndarray) -> np.ndarray:
-    """Dissipation summed over the elements over the work of rigid slip and pressures, less 1; (n,)."""
-    work = report[:, WORK] + report[:, PRESSURE_WORK]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(work != 0, report[:, POWER] / work - 1.0, 0.0)
+    share_rows(work, batch.ratio.size, 1, 1)
 
 
 @njit(cache=True)
 def refine(coarse, coarse_height, height, fine):
-    """Start of a grid (n, 2, 2 ny, 2 nx) from the one with half the elements.
+    """Interpolate tractions `fine` (2, 2 ny, 2 nx) from those of a grid with half the elements, `coarse` (2, ny, nx).
 
-    The share of the traction bound is interpolated linearly; steps between the elements would make slip between them.
+    The share of the traction bound is interpolated linearly; steps between the elements would cause slip there.
     """
     ny, nx = coarse_height.shape
-    for k in range(fine.shape[0]):
-        for i in range(2 * ny):
-            near_i, far_i = i // 2, min(max(i // 2 + 2 * (i % 2) - 1, 0), ny - 1)
-            for j in range(2 * nx):
-                near_j, far_j = j // 2, min(max(j // 2 + 2 * (j % 2) - 1, 0), nx - 1)
-                x, y, total = 0.0, 0.0, 0.0
-                for m, q, weight in (
-                    (near_i, near_j, 9.0),
-                    (far_i, near_j, 3.0),
-                    (near_i, far_j, 3.0),
-                    (far_i, far_j, 1.0),
-                ):
-                    if coarse_height[m, q] > 0.0:
-                        x += weight * coarse[k, 0, m, q] / coarse_height[m, q]
-                        y += weight * coarse[k, 1, m, q] / coarse_height[m, q]
-                        total += weight
-                share = height[i, j] / total if total > 0.0 else 0.0
-                fine[k, 0, i, j], fine[k, 1, i, j] = x * share, y * share
+    for i in range(2 * ny):
+        near_i, far_i = i // 2, min(max(i // 2 + 2 * (i % 2) - 1, 0), ny - 1)
+        for j in range(2 * nx):
+            near_j, far_j = j // 2, min(max(j // 2 + 2 * (j % 2) - 1, 0), nx - 1)
+            x, y, total = 0.0, 0.0, 0.0
+            for m, q, weight in (
+                (near_i, near_j, 9.0),
+                (far_i, near_j, 3.0),
+                (near_i, far_j, 3.0),
+                (far_i, far_j, 1.0),
+            ):
+                if coarse_height[m, q] > 0.0:
+                    x += weight * coarse[0, m, q] / coarse_height[m, q]
+                    y += weight * coarse[1, m, q] / coarse_height[m, q]
+                    total += weight
+            share = height[i, j] / total if total > 0.0 else 0.0
+            fine[0, i, j], fine[1, i, j] = x * share, y * share

@@ -1,11 +1,13 @@
-"""GMRES for a step of Newton's method on stick and slip; see `kalker_newton`.
+"""GMRES for one Newton step on stick and slip; see `contact.kalker.newton`.
 
-Compiled whole, transforms included: between short calls threads would spend their time waiting for the interpreter.
+The whole iteration is compiled, transforms included. With short compiled calls the threads would wait for the
+interpreter most of the time.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,8 +17,58 @@ from trackroller.contact.kalker.columns import apply_inverse, factorise
 from trackroller.contact.kalker.loops import reals, row_means
 
 
+class Operator(NamedTuple):
+    """Arrays of the product B, which maps tractions to slips, or to displacements if not `rolling`.
+
+    p, q : spectra of `Influence`; leading : row of the leading element of each column; hy : element length.
+    """
+
+    p: np.ndarray
+    q: np.ndarray
+    leading: np.ndarray
+    hy: float
+    rolling: bool
+
+
+class Columns(NamedTuple):
+    """Loaded columns: own influence `slips` (see `column_slips`), first loaded row and number of loaded rows."""
+
+    slips: np.ndarray
+    first: np.ndarray
+    count: np.ndarray
+
+
+class Derivative(NamedTuple):
+    """Derivative of the friction law in each element; see `loops.jacobian`.
+
+    projection : P' (3, ny, nx); turn : (4, ny, nx), used only where friction `falls`; rho : scale of the slips.
+    """
+
+    projection: np.ndarray
+    turn: np.ndarray
+    falls: bool
+    rho: float
+
+
+class Space(NamedTuple):
+    """Work space: column factors (nx, 2, ny, ny), Krylov basis (m + 1, 2 ny nx) and transforms, see `convolve`."""
+
+    factors: np.ndarray
+    basis: np.ndarray
+    transforms: np.ndarray
+
+
+class Triangle(NamedTuple):
+    """Hessenberg matrix (m + 1, m) on its way to a triangle, Givens rotations (2, m) and right-hand side (m + 1,)."""
+
+    hessenberg: np.ndarray
+    givens: np.ndarray
+    rhs: np.ndarray
+
+
 @njit(cache=True, fastmath=FAST, nogil=True)
 def dot(a, b):
+    """Return the scalar product of two vectors."""
     total = 0.0
     for i in range(a.size):
         total += a[i] * b[i]
@@ -24,8 +76,9 @@ def dot(a, b):
 
 
 @njit(cache=True)
-def _rotate(hessenberg, givens, rhs, k):
-    """Givens rotations of column k; the rest of the right-hand side is the residual's norm."""
+def _rotate(triangle, k):
+    """Apply Givens rotations to column k; the last entry of the right-hand side becomes the residual's norm."""
+    hessenberg, givens, rhs = triangle
     for i in range(k):
         c, s = givens[0, i], givens[1, i]
         a, b = hessenberg[i, k], hessenberg[i + 1, k]
@@ -40,19 +93,22 @@ def _rotate(hessenberg, givens, rhs, k):
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)
-def arnoldi(direction, product, mean, derivative, turn, rho, basis, k, hessenberg, givens, rhs):
-    """Newton's matrix times `direction`, d - P'(d - rho B d) - turn M B d, made orthogonal to basis[: k + 1].
+def arnoldi(direction, product, mean, derivative, basis, k, triangle):
+    """Extend the Krylov space by Newton's matrix times `direction` and return the norm of the residual.
 
-    `product` is B d, `mean` its `row_means` M B d. Returns the norm of the residual with this much of the Krylov space.
+    The matrix times a direction d is d - P'(d - rho B d) - turn M B d, made orthogonal to basis[: k + 1];
+    `product` is B d and `mean` its `row_means` M B d.
     """
-    ny, nx = derivative.shape[1], derivative.shape[2]
+    projection, turn, rho = derivative.projection, derivative.turn, derivative.rho
+    hessenberg = triangle.hessenberg
+    ny, nx = projection.shape[1], projection.shape[2]
     v = basis[k + 1]
     for i in range(ny):
         for j in range(nx):
             bx, by = product[i, j, 0], product[i, j, 1]
             dx, dy = direction[i, j, 0], direction[i, j, 1]
             x, y = dx - rho * bx, dy - rho * by
-            pxx, pxy, pyy = derivative[0, i, j], derivative[1, i, j], derivative[2, i, j]
+            pxx, pxy, pyy = projection[0, i, j], projection[1, i, j], projection[2, i, j]
             mx, my = mean[i, j, 0], mean[i, j, 1]
             place = 2 * (i * nx + j)
             v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * mx - turn[1, i, j] * my
@@ -68,13 +124,14 @@ def arnoldi(direction, product, mean, derivative, turn, rho, basis, k, hessenber
     if h > 0.0:
         for j in range(v.size):
             v[j] /= h
-    _rotate(hessenberg, givens, rhs, k)
-    return abs(rhs[k + 1])
+    _rotate(triangle, k)
+    return abs(triangle.rhs[k + 1])
 
 
 @njit(cache=True, nogil=True)
-def combination(basis, hessenberg, rhs, done, out):
-    """Least-squares combination of basis[: done] into `out` (2 ny nx,)."""
+def combination(basis, triangle, done, out):
+    """Write the least-squares combination of basis[: done] into `out` (2 ny nx,)."""
+    hessenberg, rhs = triangle.hessenberg, triangle.rhs
     for j in range(out.size):
         out[j] = 0.0
     for i in range(done - 1, -1, -1):
@@ -86,13 +143,13 @@ def combination(basis, hessenberg, rhs, done, out):
 
 
 @njit(cache=True, nogil=True)
-def multiply(field, p, q, leading, hy, rolling, work, product):
-    """B `field` into `product`, fields (ny, nx): slips in rolling, else displacements; see `convolve`."""
+def multiply(field, operator, transforms, product):
+    """Write B `field` into `product`, both (ny, nx): slips in rolling, else displacements; see `convolve`."""
     ny, nx = field.shape
-    convolve(field, p, q, work)
-    halo = work[1, : ny + HALO, :nx]
-    if rolling:
-        differences(halo, leading, hy, product)
+    convolve(field, operator.p, operator.q, transforms)
+    halo = transforms[1, : ny + HALO, :nx]
+    if operator.rolling:
+        differences(halo, operator.leading, operator.hy, product)
     else:
         for i in range(ny):
             for j in range(nx):
@@ -100,55 +157,35 @@ def multiply(field, p, q, leading, hy, rolling, work, product):
 
 
 @njit(cache=True, nogil=True)
-def solve(
-    value,
-    slips,
-    derivative,
-    turn,
-    falls,
-    rho,
-    first,
-    count,
-    p,
-    q,
-    leading,
-    hy,
-    rolling,
-    tolerance,
-    factors,
-    basis,
-    work,
-    step,
-):
-    """Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES into `step`; how many products.
+def solve(value, derivative, columns, operator, tolerance, space, step):
+    """Solve Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES; return the products.
 
-    slips, first, count : `column_slips` and `column_ranges`; derivative, turn : of `jacobian`, turn if friction
-    `falls`; p, q : of `Influence`
-    tolerance : of the linear residual, over that of `value`, which is lost
-    factors (nx, 2, ny, ny), basis (Krylov space + 1, 2 ny nx), work : see `convolve`; space to work in
+    The solution goes into `step` (ny, nx), and `value` is overwritten. `tolerance` limits the linear residual over
+    the norm of `value`.
     """
     ny, nx = value.shape
-    factorise(slips, derivative, rho, first, count, factors)
-    limit = basis.shape[0] - 1
-    hessenberg, givens, rhs = np.zeros((limit + 1, limit)), np.zeros((2, limit)), np.zeros(limit + 1)
+    slips, first, count = columns
+    factorise(slips, derivative.projection, derivative.rho, first, count, space.factors)
+    limit = space.basis.shape[0] - 1
+    triangle = Triangle(np.zeros((limit + 1, limit)), np.zeros((2, limit)), np.zeros(limit + 1))
     product = np.empty_like(value)
     mean = np.zeros((ny, nx, 2))
     value_reals, step_reals, product_reals = reals(value), reals(step), reals(product)
     flat = value_reals.reshape(-1)
     norm = math.sqrt(dot(flat, flat))
     for j in range(flat.size):
-        basis[0, j] = flat[j] / norm
-    rhs[0] = norm
+        space.basis[0, j] = flat[j] / norm
+    triangle.rhs[0] = norm
     done = 0
     for k in range(limit):
-        apply_inverse(factors, first, count, basis[k].reshape(ny, nx, 2), step_reals)
-        multiply(step, p, q, leading, hy, rolling, work, product)
-        if falls:
+        apply_inverse(space.factors, first, count, space.basis[k].reshape(ny, nx, 2), step_reals)
+        multiply(step, operator, space.transforms, product)
+        if derivative.falls:
             row_means(product_reals, first, count, mean)
-        rest = arnoldi(step_reals, product_reals, mean, derivative, turn, rho, basis, k, hessenberg, givens, rhs)
+        rest = arnoldi(step_reals, product_reals, mean, derivative, space.basis, k, triangle)
         done = k + 1
         if rest <= tolerance * norm:
             break
-    combination(basis, hessenberg, rhs, done, flat)
-    apply_inverse(factors, first, count, value_reals, step_reals)
+    combination(space.basis, triangle, done, flat)
+    apply_inverse(space.factors, first, count, value_reals, step_reals)
     return done

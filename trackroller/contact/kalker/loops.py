@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.influence import FAST
-from trackroller.numerics.knots import interval
+from trackroller.numerics.knots import polyline
 
 
 @njit(cache=True, nogil=True)
@@ -37,20 +37,11 @@ def law_of_slip(slip, height, scale, knots, factors, bound, slope):
     neighbours swing against each other, to which the differences of displacements answer far more than to any
     slip that elements resolve. The bound is of second order in the element size either way.
     """
-    last = knots.size - 1
     for i in range(height.shape[0]):
         for j in range(height.shape[1]):
-            speed = scale * math.hypot(slip[i, j, 0], slip[i, j, 1])
-            slope[i, j] = 0.0
-            if last == 0 or speed <= knots[0]:
-                bound[i, j] = height[i, j] * factors[0]
-            elif speed >= knots[last]:
-                bound[i, j] = height[i, j] * factors[last]
-            else:
-                low = interval(speed, knots, 0, last)
-                steep = (factors[low + 1] - factors[low]) / (knots[low + 1] - knots[low])
-                bound[i, j] = height[i, j] * (factors[low] + steep * (speed - knots[low]))
-                slope[i, j] = height[i, j] * steep * scale
+            factor, steep = polyline(scale * math.hypot(slip[i, j, 0], slip[i, j, 1]), knots, factors)
+            bound[i, j] = height[i, j] * factor
+            slope[i, j] = height[i, j] * steep * scale
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)

@@ -17,7 +17,7 @@ import numpy as np
 
 from trackroller.contact.influence import Influence, leading_rows
 from trackroller.contact.kalker.columns import column_ranges, column_slips
-from trackroller.contact.kalker.krylov import multiply, solve
+from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, multiply, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
 
 # Where many elements are wrongly thought to slide between sticking ones, Newton's method frees one a step, from the
@@ -60,31 +60,32 @@ class _Newton:
         ny, nx = problem.height.shape
         functions = problem.influence
         self.problem, self.rho = problem, 1.0 / (functions.own if problem.rolling else functions.own_displacement)
-        self.leading = leading_rows(problem.height)
-        self.first, self.count = column_ranges(problem.height)
         if problem.rolling:
-            self.slips = column_slips(functions.column, functions.hy)
+            slips = column_slips(functions.column, functions.hy)
         else:
-            self.slips = np.ascontiguousarray(np.repeat(functions.column[:, None, 1:-2], 2, axis=1))
-        self.factors = np.empty((nx, 2, ny, ny))
-        self.basis = np.empty((krylov + 1, 2 * ny * nx))
-        self.derivative, self.turn = np.empty((3, ny, nx)), np.empty((4, ny, nx))
+            slips = np.ascontiguousarray(np.repeat(functions.column[:, None, 1:-2], 2, axis=1))
+        self.columns = Columns(slips, *column_ranges(problem.height))
+        self.operator = Operator(functions.p, functions.q, leading_rows(problem.height), functions.hy, problem.rolling)
+        self.derivative = Derivative(np.empty((3, ny, nx)), np.empty((4, ny, nx)), problem.knots.size > 1, self.rho)
+        self.space = Space(
+            np.empty((nx, 2, ny, ny)),
+            np.empty((krylov + 1, 2 * ny * nx)),
+            np.empty((2, *functions.p.shape), complex),
+        )
         self.bound, self.slope, self.held = np.empty((ny, nx)), np.zeros((ny, nx)), np.zeros((ny, nx), bool)
-        self.mean, self.falls = np.zeros((ny, nx, 2)), problem.knots.size > 1
+        self.mean = np.zeros((ny, nx, 2))
         self.value, self.product = np.empty((ny, nx), complex), np.empty((ny, nx), complex)
-        self.work = np.empty((2, *functions.p.shape), complex)
-        self.kernel = functions.p, functions.q, self.leading, functions.hy, problem.rolling
 
     def multiply(self, field: np.ndarray) -> np.ndarray:
         """B `field` into the kept array."""
-        multiply(field, *self.kernel, self.work, self.product)
+        multiply(field, self.operator, self.space.transforms, self.product)
         return self.product
 
     def state(self, traction: np.ndarray, slip: np.ndarray) -> _State:
         """The state there; its residual and traction bounds are kept."""
         p = self.problem
-        if self.falls:
-            row_means(reals(slip), self.first, self.count, self.mean)
+        if self.derivative.falls:
+            row_means(reals(slip), self.columns.first, self.columns.count, self.mean)
         law_of_slip(self.mean, p.height, p.scale, p.knots, p.factors, self.bound, self.slope)
         return _State(traction, slip, *residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value)))
 
@@ -94,27 +95,12 @@ class _Newton:
 
     def step(self, at: _State, tolerance: float, leap: bool) -> tuple[np.ndarray, np.ndarray, int]:
         """Newton's step, the slips it causes and the products it took; with the kept slits sticking if a leap."""
-        slip = reals(at.slip)
-        jacobian(reals(at.traction), slip, self.mean, self.bound, self.slope, self.rho, self.derivative, self.turn)
+        slip, d = reals(at.slip), self.derivative
+        jacobian(reals(at.traction), slip, self.mean, self.bound, self.slope, self.rho, d.projection, d.turn)
         if leap:
-            hold(self.held, slip, self.rho, reals(self.value), self.derivative, self.turn)
+            hold(self.held, slip, self.rho, reals(self.value), d.projection, d.turn)
         step = np.empty_like(self.value)
-        products = solve(
-            self.value,
-            self.slips,
-            self.derivative,
-            self.turn,
-            self.falls,
-            self.rho,
-            self.first,
-            self.count,
-            *self.kernel,
-            tolerance,
-            self.factors,
-            self.basis,
-            self.work,
-            step,
-        )
+        products = solve(self.value, d, self.columns, self.operator, tolerance, self.space, step)
         return step, self.multiply(step), products + 1
 
     def search(self, at: _State, step: np.ndarray, change: np.ndarray) -> tuple[_State, float]:

@@ -7,8 +7,6 @@ element: |tau| <= mu p, and tau = -mu p s/|s| where it slides. Rectangular eleme
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
@@ -21,58 +19,53 @@ from trackroller.contact.kalker.problem import Creepage, KalkerSettings, PatchSo
 BLOCK = 256  # patches whose tractions are held at once
 
 
-def _level(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings, elements: int, traction):
-    """Solve on one grid; `traction` is the start. Returns slips, stick and the report (n, REPORT)."""
-    n = friction.size
-    height, share = cells(ellipse, elements)
-    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    scale = friction * ellipse.max_pressure
+def _level(
+    ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings: KalkerSettings, start: np.ndarray
+) -> batch.Found:
+    """Solve on the grid of the tractions `start` (n, 2, elements, elements), which the result overwrites."""
+    n, elements = friction.size, start.shape[-1]
+    height, share = (np.broadcast_to(v, (n, elements, elements)) for v in cells(ellipse, elements))
+    a, bound = ellipse.semi_axis_lateral, friction * ellipse.max_pressure
     x = _centre(ellipse)[:, None] + a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
-    law = settings.law or constant()
     with np.errstate(divide="ignore", invalid="ignore"):
         coupling = elastic.coupling / friction
-    slip, report = np.empty_like(traction), np.empty((n, batch.REPORT))
-    stick = np.zeros((n, elements, elements), bool)
-    control = np.array([settings.tolerance, settings.steps, settings.krylov])
-    given: tuple[Any, ...] = (
+    patches = batch.Batch(
         a,
-        b,
-        scale,
-        scale / elastic.shear_modulus,
+        ellipse.semi_axis_rolling,
+        bound,
+        bound / elastic.shear_modulus,
         elastic.poisson_ratio,
         coupling,
         creep.along(x),
         creep.lateral,
         creep.spin,
         travel,
+        height,
+        share,
     )
-    for rows, own, share_own in _by_cells(height, share, n):
-        arguments: Any = (
-            *(v[rows] for v in given),
-            own,
-            share_own,
-            law.speed,
-            law.factor,
-            control,
-            traction[rows],
-            slip[rows],
-            stick[rows],
-            report[rows],
-        )
-        batch.solve_batch(*arguments)
-    return slip, stick, report
+    found = batch.Found.start(start)
+    batch.solve_batch(patches, settings.law or constant(), settings, found)
+    return found
 
 
 def _centre(ellipse: Ellipse) -> np.ndarray:
-    """x_C of the middle of the patches [mm], (n,)."""
+    """Return x_C of the middle of the patches [mm], (n,)."""
     return ellipse.centre if isinstance(ellipse, GridPatch) else np.zeros(len(ellipse.semi_axis_lateral))
 
 
-def _by_cells(height: np.ndarray, share: np.ndarray, n: int):
-    """Rows that share their elements, with these: all of them, or each its own."""
-    if height.ndim == 2:
-        return [(slice(0, n), height, share)]
-    return [(slice(i, i + 1), height[i], share[i]) for i in range(n)]
+def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, traction, started: bool):
+    """Solve on half the elements and, unless the iteration is `started`, fill its start `traction` from there."""
+    n, half = friction.size, settings.elements // 2
+    first = np.zeros((n, 2, half, half))
+    if started:
+        first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
+    report = _level(ellipse, creep, friction, elastic, travel, settings, first).report
+    if not started:
+        (low, _), (high, _) = cells(ellipse, half), cells(ellipse, settings.elements)
+        low, high = np.broadcast_to(low, (n, half, half)), np.broadcast_to(high, (n, *traction.shape[2:]))
+        for i in range(n):
+            batch.refine(first[i], low[i], high[i], traction[i])
+    return report
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -80,47 +73,38 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     traction = np.zeros((n, 2, elements, elements)) if start is None else np.array(start, float)
     coarse = None
     if settings.extrapolate:
-        half = elements // 2
-        first = np.zeros((n, 2, half, half))
-        if start is not None:
-            first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
-        *_, coarse = _level(ellipse, creep, friction, elastic, travel, settings, half, first)
-        if start is None:
-            (low, _), (high, _) = cells(ellipse, half), cells(ellipse, elements)
-            for rows, own, above in _by_cells(low, high, n):
-                batch.refine(first[rows], own, above, traction[rows])
-    slip, stick, fine = _level(ellipse, creep, friction, elastic, travel, settings, elements, traction)
-    value = fine[:, :3]
-    error = np.full((n, 3), np.nan)
-    pressed = fine[:, batch.PRESSURE_WORK]
-    work, energy = fine[:, batch.WORK] + pressed, batch.energy_residual(fine)
+        coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
+    found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
+    fine = found.report
+    value, error = fine.forces, np.full((n, 3), np.nan)
+    pressed = fine.pressure_work
+    work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
-        error = np.abs(value - coarse[:, :3])
+        error = np.abs(value - coarse.forces)
         middle = Creepage(creep.longitudinal + creep.spin * _centre(ellipse), creep.lateral, creep.spin)
-        weights = extrapolation.weights(ellipse, middle, friction, elastic, elements, fine[:, batch.STICK])
+        weights = extrapolation.weights(ellipse, middle, friction, elastic, elements, fine.stick_fraction)
         weight = weights[:, 0]
-        value = value + weights * (value - coarse[:, :3])
-        pressed = pressed + weight * (pressed - coarse[:, batch.PRESSURE_WORK])
-        work = work + weight * (work - coarse[:, batch.WORK] - coarse[:, batch.PRESSURE_WORK])
+        value = value + weights * (value - coarse.forces)
+        pressed = pressed + weight * (pressed - coarse.pressure_work)
+        work = work + weight * (work - coarse.work - coarse.pressure_work)
         # observed to be of second order wherever a part of the patch slides
-        energy = extrapolation.energy(energy, batch.energy_residual(coarse))
+        energy = extrapolation.energy(energy, coarse.energy_residual)
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + _centre(ellipse) * value[:, 1]], axis=1)
-    good = fine[:, batch.RESIDUAL] <= settings.tolerance
     return PatchSolution(
         Resultants(value[:, 0], value[:, 1], value[:, 2]),
-        traction,
-        slip,
-        stick,
-        fine[:, batch.STICK],
+        found.traction,
+        found.slip,
+        found.stick,
+        fine.stick_fraction,
         work,
         pressed,
         energy,
         error,
-        fine[:, batch.RESIDUAL],
-        fine[:, batch.STEPS],
-        fine[:, batch.PRODUCTS],
-        good,
+        fine.residual,
+        fine.steps,
+        fine.products,
+        fine.residual <= settings.tolerance,
     )
 
 
