@@ -128,7 +128,7 @@ def test_slivers_and_nothing_at_all():
         pressure[loaded] = 300.0
         patch = drawn_patch(pressure)
         s = fastsim_grid.solve_grid(patch, slip_of(-0.05), MU, STEEL)
-        assert np.all(np.isfinite(numbers(s))) and np.hypot(*numbers(s)[:2]) <= 0.3 * patch.load[0] * (1 + 1e-9)
+        assert np.all(np.isfinite(numbers(s))) and np.hypot(*numbers(s)[:2]) <= 0.3 * patch.normal_force[0] * (1 + 1e-9)
         assert not np.any(numbers(fastsim_grid.solve_grid(patch, slip_of(-0.05), 0 * MU, STEEL)))
     nothing = drawn_patch(np.full((12, 12), np.nan))
     assert np.all(np.isnan(numbers(fastsim_grid.solve_grid(nothing, slip_of(-0.05), MU, STEEL))))

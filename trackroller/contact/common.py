@@ -1,45 +1,132 @@
-"""What goes into a contact model and what comes out: small frozen dataclasses of arrays.
+"""Data that goes into a contact model and comes out of it, and the two protocols of the contact room.
 
-Every array has one entry per contact patch, shape (n,), unless stated. N, mm, MPa, rad.
+`Patch` is what every contact patch offers, elliptical or not; `ContactModel` is what every contact model offers.
+No other module asks which class it holds.
+
+Every array has one entry for each contact patch, shape (n,), unless stated otherwise. Units: N, mm, MPa, rad.
+The contact frame has x_C in the lateral direction, y_C in the rolling direction and z_C along the common normal, into
+the body considered. Kalker and CONTACT use x for the rolling direction instead.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
 
 class _Rows:
-    """Row selection for dataclasses of arrays along one axis."""
+    """Row selection for dataclasses whose fields are arrays along one axis."""
 
-    def take(self, index):
-        """The patches `index` (integer or boolean array)."""
+    def take(self, index) -> Any:
+        """Return the entries `index` (integer or boolean array) of every field."""
         values = (getattr(self, field.name)[index] for field in dataclasses.fields(self))  # type: ignore[arg-type]
         return type(self)(*values)
 
 
+class Patch(Protocol):
+    """What the solver asks of n contact patches, elliptical (`Ellipse`) or not (`grid_patch.GridPatch`).
+
+    Arrays of shape (n,). `is_hertzian` is True for the ellipses of Hertz's theory, whose pressure follows from the
+    three numbers a, b and p_max, and False where the pressure was solved element by element.
+    """
+
+    is_hertzian: bool
+
+    @property
+    def semi_axis_lateral(self) -> np.ndarray:
+        """Semi-axis a along x_C, or half the width of the box around the patch [mm]."""
+
+    @property
+    def semi_axis_rolling(self) -> np.ndarray:
+        """Semi-axis b along y_C, or half the length of the box around the patch [mm]."""
+
+    @property
+    def max_pressure(self) -> np.ndarray:
+        """Largest pressure p_max [MPa]."""
+
+    @property
+    def normal_force(self) -> np.ndarray:
+        """Normal force F_N [N]."""
+
+    @property
+    def centre(self) -> np.ndarray:
+        """x_C of the middle of the ellipse or box [mm]."""
+
+    @property
+    def pressure_centre(self) -> np.ndarray:
+        """x_C of the resultant of the pressure [mm]."""
+
+    @property
+    def area(self) -> np.ndarray:
+        """Area of the patch [mm^2]."""
+
+    @property
+    def half_extents(self) -> tuple[np.ndarray, np.ndarray]:
+        """Half the width and half the length of the loaded region [mm]."""
+
+    @property
+    def reaches_edge(self) -> np.ndarray:
+        """True where the patch ends at an edge of the material."""
+
+    def take(self, index) -> Any:
+        """Return the patches `index` (integer or boolean array)."""
+
+
 @dataclass(frozen=True)
 class Ellipse(_Rows):
-    """Contact ellipse: a along x_C (lateral), b along y_C (rolling) [mm], p_max [MPa]."""
+    """Contact ellipses of Hertz's theory: a along x_C (lateral), b along y_C (rolling) [mm], p_max [MPa]; (n,)."""
 
     semi_axis_lateral: np.ndarray
     semi_axis_rolling: np.ndarray
     max_pressure: np.ndarray
 
+    is_hertzian = True
+
     @property
     def normal_force(self) -> np.ndarray:
-        """F_N = 2/3 pi a b p_max [N]."""
+        """Return F_N = 2/3 pi a b p_max [N]."""
         return 2.0 / 3.0 * np.pi * self.semi_axis_lateral * self.semi_axis_rolling * self.max_pressure
+
+    @property
+    def centre(self) -> np.ndarray:
+        """Return 0: an ellipse lies around the nominal point of contact."""
+        return np.zeros(len(self.semi_axis_lateral))
+
+    @property
+    def pressure_centre(self) -> np.ndarray:
+        """Return 0, and NaN where there is no patch."""
+        return 0.0 * self.semi_axis_lateral
+
+    @property
+    def area(self) -> np.ndarray:
+        """Return pi a b [mm^2]."""
+        return np.pi * self.semi_axis_lateral * self.semi_axis_rolling
+
+    @property
+    def half_extents(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the semi-axes (a, b) [mm]."""
+        return self.semi_axis_lateral, self.semi_axis_rolling
+
+    @property
+    def reaches_edge(self) -> np.ndarray:
+        """Return False: Hertz's theory has no edges."""
+        return np.zeros(len(self.semi_axis_lateral), bool)
 
 
 @dataclass(frozen=True)
 class Slip(_Rows):
-    """Kinematics of a patch.
+    """Kinematics of n patches, from which the rigid slip follows.
 
-    `sine` and `cosine` belong to the signed contact angle (+alpha in contact 1, -alpha in contact 2);
-    r_C,G, r_A and the rolling radius shift r_Delta0 in mm.
+    Attributes
+    ----------
+    sine, cosine : of the signed contact angle, +alpha in contact 1 and -alpha in contact 2 [1]
+    guide_profile_radius : r_C,G [mm]
+    rolling_radius : r_A [mm]
+    shift : rolling radius shift r_Delta0 [mm]
     """
 
     sine: np.ndarray
@@ -50,23 +137,32 @@ class Slip(_Rows):
 
     @property
     def longitudinal(self) -> np.ndarray:
-        """Longitudinal creepage r_Delta0 / r_A (> 0 is braking)."""
+        """Return the longitudinal creepage xi = r_Delta0 / r_A [1]; xi > 0 brakes."""
         return self.shift / self.rolling_radius
 
     @property
     def spin(self) -> np.ndarray:
-        """Spin creepage -sin(alpha) / r_A [1/mm], of opposite sign in the two contacts."""
+        """Return the spin creepage phi = -sin(alpha) / r_A [1/mm], of opposite sign in the two contacts."""
         return -self.sine / self.rolling_radius
 
     @property
     def pole_lateral(self) -> np.ndarray:
-        """x_spin = r_Delta0 / sin(alpha) [mm], eq. (23)."""
+        """Return x_spin = r_Delta0 / sin(alpha) [mm], eq. (23)."""
         return self.shift / self.sine
 
     def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
-        """Rolling slip of the circular guide profile, eq. (20), less that of its tangent, xi + spin x [1].
+        """Return the rolling slip of the circular guide profile, eq. (20), less that of its tangent [1].
 
-        x, result : (n, m) lateral positions [mm]. Beyond the equator of the contour ASSUME the slip stays that of it.
+        The rolling slip of the tangent is xi + phi x. ASSUME: beyond the equator of the guide's contour the slip
+        keeps the value that it has at the equator.
+
+        Parameters
+        ----------
+        x : (n, m) array of lateral positions [mm]
+
+        Returns
+        -------
+        (n, m) array [1]
         """
         s, c, r = self.sine[:, None], self.cosine[:, None], self.guide_profile_radius[:, None]
         deep = x * c * (2.0 * r * s + x * c)
@@ -74,15 +170,35 @@ class Slip(_Rows):
         drop = np.where(root > 0.0, deep / (root + r * c), r * c)
         return (x * s - drop) / self.rolling_radius[:, None]
 
+    def detailed(self, turning: np.ndarray | None = None, contour: np.ndarray | None = None) -> DetailedSlip:
+        """Return the same kinematics with turning and contour; an argument that is not given keeps its value.
+
+        Parameters
+        ----------
+        turning, contour : (n,) arrays, see `DetailedSlip`
+        """
+        n = len(self.sine)
+        return DetailedSlip(
+            self.sine,
+            self.cosine,
+            self.guide_profile_radius,
+            self.rolling_radius,
+            self.shift,
+            np.zeros(n) if turning is None else turning,
+            np.full(n, None) if contour is None else contour,
+        )
+
 
 @dataclass(frozen=True)
 class DetailedSlip(Slip):
-    """Kinematics with what the rigid slip leaves out by default, see docs/theory.md ("Slip field").
+    """Kinematics with two terms that the rigid slip leaves out by default, see docs/theory.md ("Slip field").
 
-    turning : 1/(r_Curve + r_C,G cos(alpha)) [1/mm], how far the roller turns with the guide's curve per distance
-        travelled, which adds to its spin; 0 if that is left out
-    contour : of the guide's own shape, callables from lateral positions (m,) [mm], outward, to the height over the
-        tangent along the radial direction [mm]; None for the circle
+    Attributes
+    ----------
+    turning : 1/(r_Curve + r_C,G cos(alpha)) [1/mm], the angle by which the roller turns with the guide's curve per
+        distance travelled. It adds to the spin creepage; 0 leaves it out.
+    contour : the guide's own shape: callables that map lateral positions (m,) [mm], counted outward, to the height
+        over the tangent along the radial direction [mm]. None stands for the circle.
     """
 
     turning: np.ndarray
@@ -90,22 +206,29 @@ class DetailedSlip(Slip):
 
     @property
     def spin(self) -> np.ndarray:
-        """Spin creepage -sin(alpha) (1/r_A + turning) [1/mm]."""
+        """Return the spin creepage phi = -sin(alpha) (1/r_A + turning) [1/mm]."""
         return -self.sine * (1.0 / self.rolling_radius + self.turning)
 
     def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
-        """As for the circle, or of the guide's own contour."""
+        """Return the rolling slip of the guide's circle or contour less that of its tangent [1]; x (n, m) [mm]."""
         out = super().beyond_tangent(x)
+        height: Callable[[np.ndarray], np.ndarray] | None
         for i, height in enumerate(self.contour):
             if height is not None:
                 outward = 1.0 if self.sine[i] > 0 else -1.0
                 out[i] = height(outward * x[i]) / self.rolling_radius[i]
         return out
 
+    def detailed(self, turning: np.ndarray | None = None, contour: np.ndarray | None = None) -> DetailedSlip:
+        """Return the same kinematics with another turning or contour, (n,) arrays."""
+        return super().detailed(
+            self.turning if turning is None else turning, self.contour if contour is None else contour
+        )
+
 
 @dataclass(frozen=True)
 class Resultants(_Rows):
-    """Friction forces on the roller [N] and spin moment about z_C [N mm]."""
+    """Lateral and driving friction force on the roller [N] and spin moment about z_C [N mm], arrays (n,)."""
 
     lateral_force: np.ndarray
     driving_force: np.ndarray
@@ -114,9 +237,13 @@ class Resultants(_Rows):
 
 @dataclass(frozen=True)
 class Works(_Rows):
-    """Per distance travelled [N]: what friction dissipates, and what of it the pressures put in.
+    """Work per distance travelled [N], arrays (n,).
 
-    On unlike materials shear moves the surfaces along the normal, and the pressures do work on that.
+    Attributes
+    ----------
+    dissipated : energy that friction dissipates
+    by_pressure : part of that energy that the pressures supply. On unlike materials shear moves the surfaces along
+        the normal, and the pressures do work on this motion.
     """
 
     dissipated: np.ndarray
@@ -124,16 +251,16 @@ class Works(_Rows):
 
     @classmethod
     def of_friction(cls, dissipated: np.ndarray) -> Works:
-        """Where the pressures put in nothing."""
+        """Return the works of a model in which the pressures supply no energy."""
         return cls(dissipated, np.zeros_like(dissipated))
 
 
 @dataclass(frozen=True)
 class Elastic(_Rows):
-    """Combined elastic constants of a pair of bodies (Kalker 1990, eq. 1.44).
+    """Combined elastic constants of pairs of bodies (Kalker 1990, eq. 1.44), arrays (n,).
 
     1/G = (1/G1 + 1/G2)/2, nu/G = (nu1/G1 + nu2/G2)/2, K/G = ((1-2 nu1)/G1 - (1-2 nu2)/G2)/4,
-    body 1 the roller. G [MPa].
+    body 1 is the roller. `shear_modulus` G [MPa], `poisson_ratio` nu [1], `coupling` K [1].
     """
 
     shear_modulus: np.ndarray
@@ -142,7 +269,7 @@ class Elastic(_Rows):
 
     @classmethod
     def of_pair(cls, e_1, nu_1, e_2, nu_2) -> Elastic:
-        """Combined constants from Young's moduli [MPa] and Poisson's ratios of roller and guide."""
+        """Return the combined constants from Young's moduli [MPa] and Poisson's ratios of roller and guide."""
         g_1, g_2 = e_1 / (2 * (1 + nu_1)), e_2 / (2 * (1 + nu_2))
         g = 2.0 / (1 / g_1 + 1 / g_2)
         nu = g * (nu_1 / g_1 + nu_2 / g_2) / 2
@@ -154,8 +281,12 @@ class Elastic(_Rows):
 class SurfaceTractions:
     """Tractions on the roller over a grid of each patch.
 
-    `x` (n, nx) and `y` (n, ny) [mm]; the fields (n, ny, nx): pressure and shear [MPa], slip velocity of the
-    roller relative to the guide per travel speed [1], and where the surfaces stick.
+    Attributes
+    ----------
+    x, y : coordinates of the grid, (n, nx) and (n, ny) [mm]
+    pressure, shear_lateral, shear_rolling : (n, ny, nx) [MPa]
+    slip_lateral, slip_rolling : slip velocity of the roller relative to the guide per travel speed, (n, ny, nx) [1]
+    stick : True where the surfaces stick, (n, ny, nx)
     """
 
     x: np.ndarray
@@ -166,3 +297,47 @@ class SurfaceTractions:
     slip_lateral: np.ndarray
     slip_rolling: np.ndarray
     stick: np.ndarray
+
+    @property
+    def stick_share(self) -> np.ndarray:
+        """Return the share of the loaded grid points that stick, shape (n,) [1]."""
+        return self.stick.sum(axis=(1, 2)) / (self.pressure > 0).sum(axis=(1, 2))
+
+
+class ContactModel:
+    """What the solver asks of a contact model, with the capabilities that a model declares.
+
+    In all methods `patch` and `slip` are arrays over m patches, `friction` is the coefficient mu (m,) and `rows` (m,)
+    are the numbers of the rollers to which the patches belong. Contact 2 of a roller has a negative `slip.sine`.
+    """
+
+    full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
+    knows_tractions = True  # forces and `surface` come from one solution; False: `stick` tells the stick area
+    refines = False  # `surface` is exact for any number of elements of a refined patch
+    difference_step = 1e-3  # relative step of derivatives, above the noise of the model
+    residual = 1e-7  # relative residual of the equilibrium that the model can reach
+    peak_error = 0.0  # relative error of the peak stress that the model adds, per unit friction coefficient
+
+    def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+        """Return the resultants on the roller, arrays (m,); a cheaper estimate if `fine` is False."""
+        raise NotImplementedError
+
+    def surface(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> SurfaceTractions:
+        """Return the tractions on a grid over each patch."""
+        raise NotImplementedError
+
+    def power(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
+        """Return the dissipation per distance travelled and the part of it that the pressures supply, (m,)."""
+        raise NotImplementedError
+
+    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+        """Return the patches that carry the normal forces of `patch`, with their final pressures."""
+        return patch
+
+    def stick(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return the share of each patch that sticks, (m,) [1]."""
+        return self.surface(patch, slip, friction, rows).stick_share
+
+    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
+        return np.zeros(n), np.ones(n, bool)

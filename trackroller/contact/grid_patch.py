@@ -1,4 +1,4 @@
-"""Patches whose pressure was solved on a grid, in place of Hertz's ellipse."""
+"""Contact patches whose pressure was solved element by element, in place of Hertz's ellipse."""
 
 from __future__ import annotations
 
@@ -7,20 +7,35 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse
+from trackroller.contact.common import _Rows
+from trackroller.contact.normal.measure import Box, patch_box
+
+SLIGHT = 1e-3  # share of the largest pressure below which an element does not count as loaded
 
 
 @dataclass(frozen=True)
-class GridPatch(Ellipse):
-    """n patches on grids of N x M elements over the boxes that they fill, M a multiple of N.
+class GridPatch(_Rows):
+    """n patches on grids of N x M elements over the boxes that they fill; M is a multiple of N.
 
-    The inherited `semi_axis_lateral` and `semi_axis_rolling` are half the sides of the box, `max_pressure` the largest
-    pressure. load : normal force [N]; centre : x_C of the middle of the box [mm]; pressure : mean of each element
-    (n, N, M) [MPa]; approach [mm]; area [mm^2]; reaches_edge : the patch ends where the material does;
-    residual : of the normal problem. Arrays (n,).
+    It offers everything that `common.Patch` asks for.
+
+    Attributes
+    ----------
+    semi_axis_lateral, semi_axis_rolling : half the sides of the box along x_C and y_C, (n,) [mm]
+    max_pressure : largest pressure, (n,) [MPa]
+    normal_force : F_N, (n,) [N]
+    centre : x_C of the middle of the box, (n,) [mm]
+    pressure : mean pressure of each element, (n, N, M) [MPa]
+    approach : approach of the two bodies, (n,) [mm]
+    area : area of the patch, (n,) [mm^2]
+    reaches_edge : True where the patch ends at an edge of the material, (n,)
+    residual : residual of the normal problem, (n,), see `normal.pressure.NormalSolution`
     """
 
-    load: np.ndarray
+    semi_axis_lateral: np.ndarray
+    semi_axis_rolling: np.ndarray
+    max_pressure: np.ndarray
+    normal_force: np.ndarray
     centre: np.ndarray
     pressure: np.ndarray
     approach: np.ndarray
@@ -28,46 +43,74 @@ class GridPatch(Ellipse):
     reaches_edge: np.ndarray
     residual: np.ndarray
 
-    @property
-    def normal_force(self) -> np.ndarray:
-        """F_N [N], shape (n,)."""
-        return self.load
+    is_hertzian = False
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Elements N along the rolling direction and M across."""
+        """Return the numbers of elements N along the rolling direction and M across it."""
         return self.pressure.shape[-2], self.pressure.shape[-1]
 
     @property
     def x(self) -> np.ndarray:
-        """Lateral element centres (n, M) [mm]."""
-        unit = _centres(self.shape[1])
-        return self.centre[:, None] + self.semi_axis_lateral[:, None] * unit
+        """Return the lateral element centres, (n, M) [mm]."""
+        return self.centre[:, None] + self.semi_axis_lateral[:, None] * _centres(self.shape[1])
 
     @property
     def y(self) -> np.ndarray:
-        """Element centres along the rolling direction (n, N) [mm]."""
+        """Return the element centres along the rolling direction, (n, N) [mm]."""
         return self.semi_axis_rolling[:, None] * _centres(self.shape[0])
 
     @property
     def pressure_centre(self) -> np.ndarray:
-        """x_C of the resultant of the pressure [mm], shape (n,)."""
+        """Return x_C of the resultant of the pressure, (n,) [mm]."""
         across = self.pressure.sum(axis=1)
-        return (across * self.x).sum(axis=1) / across.sum(axis=1)
+        with np.errstate(invalid="ignore"):
+            return (across * self.x).sum(axis=1) / across.sum(axis=1)
+
+    @property
+    def half_extents(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return half the width and half the length of the loaded region, (n,) [mm].
+
+        They are the sides of the box, except where the box has a margin around the loaded elements.
+        """
+        wide, long = self.semi_axis_lateral.copy(), self.semi_axis_rolling.copy()
+        for i, pressure in enumerate(self.pressure):
+            loaded = np.where(pressure > SLIGHT * np.max(pressure), pressure, 0.0)
+            if loaded.any() and not loaded[[0, -1]].any():
+                tight = patch_box(loaded, Box(-wide[i], wide[i], long[i]))
+                wide[i], long[i] = 0.5 * (tight.high - tight.low), tight.half
+        return wide, long
 
     def heights(self, elements: int) -> np.ndarray:
-        """Mean pressure over the largest in each of `elements` x `elements` cells, a divisor of N; (n, ., .)."""
+        """Return the mean pressure of larger cells over the largest pressure.
+
+        Parameters
+        ----------
+        elements : number of cells along each axis, a divisor of N
+
+        Returns
+        -------
+        (n, elements, elements) array [1]
+
+        Raises
+        ------
+        ValueError : `elements` does not divide the numbers of elements
+        """
         rows, columns = self.shape
         if rows % elements or columns % elements:
             raise ValueError(f"{elements} does not divide the {rows} x {columns} elements of the patch")
-        parts = len(self.load), elements, rows // elements, elements, columns // elements
+        parts = len(self.normal_force), elements, rows // elements, elements, columns // elements
         mean = self.pressure.reshape(parts).mean(axis=(2, 4))
         return np.ascontiguousarray(mean / self.max_pressure[:, None, None])
 
     def refined(self, along: int, across: int) -> GridPatch:
-        """The same patches with so many times the elements; the load of each element stays its own.
+        """Return the same patches with finer elements; the load of each original element stays the same.
 
         Within an element p^2, which is a parabola in Hertz's theory, follows the parabola through its neighbours.
+
+        Parameters
+        ----------
+        along, across : number of new elements per element along the rolling direction and across it
         """
         fine = self.pressure
         for axis, times in ((1, along), (2, across)):
@@ -77,7 +120,7 @@ class GridPatch(Ellipse):
 
 
 def _divided(pressure: np.ndarray, times: int) -> np.ndarray:
-    """Pressures (N, ...) of elements divided into `times` each, (N times, ...); see `GridPatch.refined`."""
+    """Divide the elements of pressures (N, ...) along the first axis, (N times, ...); see `GridPatch.refined`."""
     square = np.pad(pressure**2, [(1, 1)] + [(0, 0)] * (pressure.ndim - 1))
     before, here, after = square[:-2], square[1:-1], square[2:]
     pieces = [
@@ -92,22 +135,29 @@ def _divided(pressure: np.ndarray, times: int) -> np.ndarray:
 
 
 def _centres(elements: int) -> np.ndarray:
+    """Return the centres of equal elements of [-1, 1], (elements,)."""
     return (2.0 * np.arange(elements) + 1.0) / elements - 1.0
 
 
-PARTS = 4  # of an element's side, over which the pressure near the rim is averaged
-CUT_OFF, KEPT = 0.85, 0.93  # shares of the largest pressure that means keep: none of them counts, all of them do
+PARTS = 4  # points along each side of an element at which the pressure near the rim is averaged
+# The means replace the solved pressure if they keep at least KEPT of its maximum, and leave it unchanged if they keep
+# no more than CUT_OFF.
+CUT_OFF, KEPT = 0.85, 0.93
 
 
 def _moved(values: np.ndarray, step: int, axis: int) -> np.ndarray:
-    """Values moved along an axis; nothing comes in from the other end."""
+    """Move values along an axis and fill the free end with zeros."""
     moved = np.roll(values, step, axis)
     np.moveaxis(moved, axis, 0)[slice(None, step) if step > 0 else slice(step, None)] = 0
     return moved
 
 
 def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
-    """Values (ny, nx) continued by one ring: the line through the two nearest `known`, or just their mean."""
+    """Continue values (ny, nx) by one ring of elements around the `known` ones.
+
+    With `onward` a new value lies on the line through the two nearest known values; otherwise it repeats the nearest
+    one. Where several directions give a value, the ring has their mean.
+    """
     total, count = np.zeros_like(values), np.zeros_like(values)
     for axis in (0, 1):
         for step in (1, -1):
@@ -119,12 +169,20 @@ def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
 
 
 def rim_means(pressure: np.ndarray) -> np.ndarray:
-    """Element means (ny, nx) of a solved pressure whose rim runs through elements; the sum stays.
+    """Replace collocated pressures by element means; the rim of the patch runs through elements.
 
-    Collocation loads an element or does not. Near the rim p^2 is linear, and in Hertz's theory quadratic, so it
-    is continued outward and interpolated, and its root averaged. Tractions in stick feel the difference: the rolling
-    resultants converge as those on an ellipse only with it. Ridges a few elements wide are all rim: where the means
-    would cut the summit off, the pressure stays as it was solved.
+    Collocation treats an element as loaded or unloaded. Near the rim p^2 is linear, and it is quadratic in Hertz's
+    theory. This function therefore continues p^2 outward, interpolates it, and averages its root over each element.
+    Tractions in the adhesion area need these means: only with them do the rolling resultants converge as fast as on an
+    ellipse. A ridge of pressure that is only a few elements wide would lose its maximum; its pressure stays as solved.
+
+    Parameters
+    ----------
+    pressure : (ny, nx) array of solved pressures
+
+    Returns
+    -------
+    (ny, nx) array with the same sum
     """
     ny, nx = pressure.shape
     known = np.pad(pressure > 0, 1)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Collection
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trackroller.contact import sliding
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import ContactModel, Elastic, Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.errors import InputError
 
@@ -23,27 +23,7 @@ if TYPE_CHECKING:
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models
 
 
-class ContactModel(Protocol):
-    """What the solver asks of a contact model; `rows` are the rollers that the patches belong to."""
-
-    full_sliding: bool  # and with the constant law, so that the traction needs no grid
-    difference_step: float  # relative step of derivatives, above the noise of the model
-    residual: float  # relative residual of the equilibrium that the model can reach
-
-    def law(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
-        """Resultants on the roller, shape (n,); rough if not `fine`."""
-
-    def surface(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> SurfaceTractions:
-        """Tractions on a grid over each patch."""
-
-    def power(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
-        """Dissipation per distance travelled, and what of it the pressures put in."""
-
-    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
-        """Residual of the friction law in the patches of n rollers at the last fine call, and if it is met, (n,)."""
-
-
-class SlidingModel:
+class SlidingModel(ContactModel):
     """Full sliding with an empirical spin pole (Wenzel et al. 2022), under any friction law."""
 
     difference_step = 1e-5
@@ -90,16 +70,9 @@ class SlidingModel:
             per_omega = self._falling(ellipse, slip, friction, rows, nodes)[1]
         return Works.of_friction(per_omega / slip.rolling_radius)
 
-    def state(self, n):
-        return np.zeros(n), np.ones(n, bool)
 
-
-class KalkerModel:
+class KalkerModel(ContactModel):
     """Steady rolling on the elastic half-space with stick and slip (Kalker 1990)."""
-
-    full_sliding = False
-    difference_step = 1e-3
-    residual = 1e-7
 
     def __init__(
         self,
@@ -130,12 +103,8 @@ class KalkerModel:
         return self._law.state(n)
 
 
-class FastsimModel:
+class FastsimModel(ContactModel):
     """Kalker's simplified theory; NaN where the ellipse is more slender than its coefficients reach."""
-
-    full_sliding = False
-    difference_step = 1e-3
-    residual = 1e-7
 
     def __init__(
         self,
@@ -204,9 +173,6 @@ class FastsimModel:
     def power(self, ellipse, slip, friction, rows):
         solution, spread = self._solution(ellipse, slip, friction, rows)
         return Works.of_friction(spread(solution.friction_energy_per_distance))
-
-    def state(self, n):
-        return np.zeros(n), np.ones(n, bool)  # steps in closed form, or by halving to the last digit
 
 
 def contact_model(

@@ -131,14 +131,14 @@ def solve_grid(
     settings = settings or FastsimSettings()
     law = settings.law or constant()
     arrays, area = _problem(patch, slip, friction, elastic, settings)
-    n = len(patch.load)
+    n = len(patch.normal_force)
     totals, travel = np.zeros((2, n, 6)), _travel(travel_speed, settings, n)
     for k, steps in enumerate((settings.steps, 2 * settings.steps)):
         rest = (*arrays, travel, steps, law.speed, law.factor, totals[k])
         share_rows(partial(_rows_of, strip_sums, rest), n, 4)
     best = 2.0 * totals[1] - totals[0]  # the steps are of first order
-    best[~np.isfinite(patch.load)] = np.nan
-    limit = arrays[-1] * patch.load
+    best[~np.isfinite(patch.normal_force)] = np.nan
+    limit = arrays[-1] * patch.normal_force
     with np.errstate(divide="ignore", invalid="ignore"):
         stick, lack = totals[1, :, 4] / area, np.where(limit > 0, totals[1, :, 5] / limit, 0.0)
     return FastsimSolution(Resultants(best[:, 0], best[:, 1], best[:, 2]), best[:, 3], stick, lack)

@@ -15,6 +15,7 @@ import numpy as np
 
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.hertz import exact_shape
+from trackroller.contact.normal.measure import Box, largest_pressure, patch_area, patch_box
 from trackroller.contact.normal.pressure import NormalSolution, displacement, solve_normal
 
 LATTICE = 1.6  # ratio of neighbouring loads
@@ -25,21 +26,6 @@ COARSE = 16  # elements along each axis of the first solutions, which find the b
 BOX_TOLERANCE = 3e-3  # of the sides of the box around the patch
 MARGIN = 0.08  # of a box on each side, for a patch to move in that shear presses
 SAMPLES = 401  # points across, for the start and to look for contact outside the box
-
-
-@dataclass(frozen=True)
-class Box:
-    """Rectangle around a patch: `low` to `high` across, -`half` to `half` along the rolling direction [mm]."""
-
-    low: float
-    high: float
-    half: float
-
-    def grid(self, rows: int, columns: int) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """Element centres x (columns,), y (rows,) and element sides."""
-        x, y = (np.arange(columns) + 0.5) / columns, (np.arange(rows) + 0.5) / rows
-        wide = self.high - self.low
-        return self.low + wide * x, self.half * (2 * y - 1), wide / columns, 2 * self.half / rows
 
 
 @dataclass(frozen=True)
@@ -55,57 +41,6 @@ class Node:
     scalars: np.ndarray
     reaches: bool
     residual: float
-
-
-def _vanishing(sums: np.ndarray) -> float:
-    """Where sums over lines of elements vanish, in elements from the centre of the first; searched at the far end.
-
-    For a Hertzian patch they are a parabola; the outermost, partly covered line is left out.
-    """
-    last = int(np.flatnonzero(sums > 0)[-1])
-    if last < 4:
-        return last + 0.5
-    a, b, c = sums[last - 3], sums[last - 2], sums[last - 1]
-    curve, slope = 0.5 * (a - 2 * b + c), 0.5 * (3 * c - 4 * b + a)  # at the last of the three
-    root = slope * slope - 4 * curve * c
-    if slope >= 0 or root < 0:
-        return last + 0.5
-    step = 2 * c / (-slope + math.sqrt(root))
-    return last - 1 + min(max(step, 0.5), 2.5)
-
-
-def patch_box(pressure: np.ndarray, box: Box) -> Box:
-    """The box that the patch fills, to a part of an element."""
-    across, along = pressure.sum(axis=0), pressure.sum(axis=1)
-    hx, hy = (box.high - box.low) / across.size, 2 * box.half / along.size
-    right, left = _vanishing(across) + 0.5, _vanishing(across[::-1]) + 0.5
-    half = (_vanishing(along) + 0.5) * hy - box.half
-    return Box(box.high - left * hx, box.low + right * hx, half)
-
-
-def patch_area(pressure: np.ndarray, hx: float, hy: float) -> float:
-    """Area of a patch [mm^2]: along each column p^2 is followed to zero by the parabola it is in Hertz's theory."""
-    total = 0.0
-    for column in (pressure**2).T:
-        if column.any():
-            first, last = np.flatnonzero(column > 0)[[0, -1]]
-            if last - first < 7:
-                total += last - first + 1
-                continue
-            total += _vanishing(column) + _vanishing(column[::-1]) + 1 - column.size
-    return total * hx * hy
-
-
-def largest_pressure(pressure: np.ndarray) -> float:
-    """Top of the parabolas that p^2 describes around its largest element, or that element at an edge."""
-    i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
-    top = pressure[i, j] ** 2
-    gain = 0.0
-    for line, k in ((pressure[:, j] ** 2, i), (pressure[i, :] ** 2, j)):
-        if 0 < k < line.size - 1 and line[k - 1] > 0 and line[k + 1] > 0:
-            slope, curve = 0.5 * (line[k + 1] - line[k - 1]), line[k + 1] - 2 * line[k] + line[k - 1]
-            gain += -0.5 * slope * slope / curve if curve < 0 else 0.0
-    return math.sqrt(top + gain)
 
 
 class Family:

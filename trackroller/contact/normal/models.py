@@ -1,6 +1,7 @@
-"""Contact models on patches and pressures solved on a grid: sliding, FASTSIM and Kalker's, for any cross-sections.
+"""Contact models on solved patches: sliding, FASTSIM and Kalker's exact theory for any cross-sections.
 
-The equilibrium hands over Hertz's ellipse, which stands here for its normal force only.
+The equilibrium passes Hertz's ellipses to these models, which use only their normal forces. The models solve the
+normal problem for each normal force and work on the `GridPatch` that results.
 """
 
 from __future__ import annotations
@@ -10,82 +11,84 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import DetailedSlip, Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact import kalker
+from trackroller.contact.common import ContactModel, Elastic, Patch, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.fastsim import FastsimSettings
+from trackroller.contact.fastsim import grid as fastsim_grid
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import sliding as normal_sliding
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.errors import InputError
 
-ROUNDS = 3  # of the normal and the tangential problem, where these change each other
+ROUNDS = 3  # solutions of the normal and of the tangential problem in turn, on unlike materials
 
 
 def _known(resultants: Resultants, patch: GridPatch) -> Resultants:
-    """NaN where there is no patch."""
+    """Replace the resultants of patches that do not exist by NaN."""
     parts = (resultants.lateral_force, resultants.driving_force, resultants.spin_moment)
-    return Resultants(*(np.where(np.isfinite(patch.load), part, np.nan) for part in parts))
+    return Resultants(*(np.where(np.isfinite(patch.normal_force), part, np.nan) for part in parts))
 
 
-class _OnGrid:
-    """What both models share."""
+class GridModel(ContactModel):
+    """Common part of the contact models on solved patches.
 
-    full_sliding = False  # in the sense that an ellipse and a slip field tell the tractions
-    refines = True  # tractions are known on finer elements than those of the pressure
-    difference_step = 1e-3
-    residual = 1e-7
+    Parameters
+    ----------
+    patches : solves the normal problem of the rollers
+    profile_slip : True if the rigid slip follows the profile of the guide instead of its tangent
+    """
+
+    refines = True
 
     def __init__(self, patches: Patches, profile_slip: bool = False) -> None:
         self.patches, self._profile_slip = patches, profile_slip
-        self._found: dict[int, tuple[float, bool]] = {}
+        self._found: dict[tuple[int, int], tuple[float, bool]] = {}
 
-    def patch(self, ellipse: Ellipse, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
-        """The patches that carry the normal forces of the ellipses."""
-        if isinstance(ellipse, GridPatch):
-            return ellipse
-        return self.patches.at(ellipse.normal_force, slip.sine, rows, fine)
+    def patch(self, patch: Patch, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
+        """Return the solved patches under the normal forces of `patch`; solved ones are returned as they are."""
+        return self.patches.at(patch.normal_force, slip.sine, rows, fine) if patch.is_hertzian else patch  # type: ignore[return-value]
 
-    def settled(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
-        """The patches with what friction changes of their pressures: nothing here."""
-        return self.patch(ellipse, slip, rows)
+    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
+        """Return the solved patches; shear changes their pressures in `GridKalkerModel` only."""
+        return self.patch(patch, slip, rows)
 
     def _solved(self, patch: GridPatch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
-        """The model's solution on the patches, with their `resultants`."""
+        """Return the solution on the patches, an object with `resultants`."""
         raise NotImplementedError
 
-    def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
-        """Resultants on the roller, shape (n,)."""
-        patch = self.patch(ellipse, slip, rows, fine)
+    def law(self, patch, slip, friction, rows, fine) -> Resultants:
+        """Return the resultants on the roller, arrays (m,)."""
+        grid = self.patch(patch, slip, rows, fine)
         if fine:
-            self._remember(patch, slip, rows)
-        return _known(self._solved(patch, slip, friction, rows).resultants, patch)
+            self._remember(grid, slip, rows)
+        return _known(self._solved(grid, slip, friction, rows).resultants, grid)
 
     def _drawn(self, slip: Slip, rows: np.ndarray) -> Slip:
-        """The slip on the contour of the guide as it is drawn, where the profile counts in the slip."""
+        """Return the slip on the drawn contour of the guide if the profile counts in the slip."""
         if not self._profile_slip:
             return slip
         contour = np.full(len(rows), None)
         contour[:] = [self.patches.contour(row, sine) for row, sine in zip(rows.tolist(), slip.sine, strict=True)]
-        turning = slip.turning if isinstance(slip, DetailedSlip) else np.zeros(len(rows))
-        return DetailedSlip(
-            slip.sine, slip.cosine, slip.guide_profile_radius, slip.rolling_radius, slip.shift, turning, contour
-        )
+        return slip.detailed(contour=contour)
 
     def _remember(self, patch: GridPatch, slip: Slip, rows: np.ndarray) -> None:
-        for row, sine, residual in zip(rows, slip.sine, patch.residual, strict=True):
-            self._found[2 * int(row) + (sine < 0)] = (float(residual), bool(residual <= TOLERANCE))
+        for row, sine, residual in zip(rows.tolist(), slip.sine, patch.residual, strict=True):
+            self._found[row, int(sine < 0)] = (float(residual), bool(residual <= TOLERANCE))
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
-        """Residual of the patches of n rollers at the last fine call, and if it is met, (n,)."""
-        both = [[self._found.get(2 * i + k, (0.0, True)) for k in (0, 1)] for i in range(n)]
-        values = np.array(both, float).reshape(n, 2, 2)
-        return values[:, :, 0].max(axis=1), values[:, :, 1].min(axis=1) > 0
+        """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
+        both = [[self._found.get((row, side), (0.0, True)) for side in (0, 1)] for row in range(n)]
+        values, met = (np.array([[pair[k] for pair in sides] for sides in both]).reshape(n, 2) for k in (0, 1))
+        return values.astype(float).max(axis=1), met.astype(bool).all(axis=1)
 
 
-class GridSlidingModel(_OnGrid):
+class GridSlidingModel(GridModel):
     """Full sliding on solved patches."""
 
-    residual = 1e-9  # the same patch always comes out for the same load
+    residual = 1e-9  # the normal problem gives the same patch for the same load, so that smaller residuals are reached
 
     def __init__(self, patches: Patches, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray) -> None:
         super().__init__(patches)
@@ -96,110 +99,102 @@ class GridSlidingModel(_OnGrid):
             patch, slip, friction, self.spin_model, self.friction_law, self.travel[rows]
         )
 
-    def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
-        """Tractions on the grid of elements."""
-        patch = self.patch(ellipse, slip, rows)
-        return normal_sliding.tractions(patch, slip, friction, self.spin_model, self.friction_law, self.travel[rows])
+    def surface(self, patch, slip, friction, rows) -> SurfaceTractions:
+        """Return the tractions on the grid of elements."""
+        grid = self.patch(patch, slip, rows)
+        return normal_sliding.tractions(grid, slip, friction, self.spin_model, self.friction_law, self.travel[rows])
 
-    def power(self, ellipse, slip, friction, rows) -> Works:
-        """Dissipation per distance travelled."""
-        patch = self.patch(ellipse, slip, rows)
-        return Works.of_friction(self._solved(patch, slip, friction, rows).power / slip.rolling_radius)
+    def power(self, patch, slip, friction, rows) -> Works:
+        """Return the dissipation per distance travelled."""
+        grid = self.patch(patch, slip, rows)
+        return Works.of_friction(self._solved(grid, slip, friction, rows).power / slip.rolling_radius)
 
 
-class GridFastsimModel(_OnGrid):
+class GridFastsimModel(GridModel):
     """Kalker's simplified theory, strip by strip over solved patches."""
 
     def __init__(
         self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray, profile_slip: bool = False
     ) -> None:
-        from trackroller.contact.fastsim import FastsimSettings
-        from trackroller.contact.fastsim import grid as fastsim_grid
-
         super().__init__(patches, profile_slip)
-        self.elastic, self.travel, self._grid = elastic, travel_speed, fastsim_grid
+        self.elastic, self.travel = elastic, travel_speed
         self.settings = FastsimSettings(steps=6 * patches.elements // 5, law=law, profile_slip=profile_slip)
 
+    def _given(self, patch, slip, friction, rows) -> tuple:
+        travel = self.travel[rows]
+        return patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings, travel
+
     def _solved(self, patch, slip, friction, rows):
-        return self._grid.solve_grid(
-            patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings, self.travel[rows]
-        )
+        return fastsim_grid.solve_grid(*self._given(patch, slip, friction, rows))
 
-    def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
-        """Tractions on the grid of elements."""
-        patch = self.patch(ellipse, slip, rows)
-        return self._grid.tractions(
-            patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings, self.travel[rows]
-        )
+    def surface(self, patch, slip, friction, rows) -> SurfaceTractions:
+        """Return the tractions on the grid of elements."""
+        return fastsim_grid.tractions(*self._given(self.patch(patch, slip, rows), slip, friction, rows))
 
-    def power(self, ellipse, slip, friction, rows) -> Works:
-        """Dissipation per distance travelled."""
-        patch = self.patch(ellipse, slip, rows)
-        return Works.of_friction(self._solved(patch, slip, friction, rows).friction_energy_per_distance)
+    def power(self, patch, slip, friction, rows) -> Works:
+        """Return the dissipation per distance travelled."""
+        grid = self.patch(patch, slip, rows)
+        return Works.of_friction(self._solved(grid, slip, friction, rows).friction_energy_per_distance)
 
 
-class GridKalkerModel(_OnGrid):
-    """Kalker's theory of rolling with the traction bound of solved pressures."""
+class GridKalkerModel(GridModel):
+    """Kalker's exact theory of rolling contact with the traction bound of solved pressures."""
 
     refines = False
 
     def __init__(
         self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray, profile_slip: bool = False
     ) -> None:
-        from trackroller.contact.kalker import KalkerSettings
-        from trackroller.contact.kalker.law import KalkerLaw
-
         super().__init__(patches, profile_slip)
-        settings = KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
+        settings = kalker.KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, settings, travel_speed)
         self._per_stress = elastic.coupling / elastic.shear_modulus
 
-    def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
-        """Resultants on the roller, shape (n,)."""
+    def law(self, patch, slip, friction, rows, fine) -> Resultants:
+        """Return the resultants on the roller, arrays (m,)."""
         if not fine:
-            patch = self.patch(ellipse, slip, rows, False)
-            return _known(self._law(patch, self._drawn(slip, rows), friction, rows, False), patch)
-        patch = self.settled(ellipse, slip, friction, rows)
-        self._remember(patch, slip, rows)
-        return _known(self._law.kept(patch, self._drawn(slip, rows), friction, rows).resultants, patch)
+            grid = self.patch(patch, slip, rows, False)
+            return _known(self._law(grid, self._drawn(slip, rows), friction, rows, False), grid)
+        grid = self.settled(patch, slip, friction, rows)
+        self._remember(grid, slip, rows)
+        return _known(self._solved(grid, slip, friction, rows).resultants, grid)
 
-    def settled(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
-        """The patches with pressures that the tractions on unlike materials have changed (Panagiotopoulos 1975).
+    def _solved(self, patch, slip, friction, rows):
+        return self._law.kept(patch, self._drawn(slip, rows), friction, rows)
 
-        Normal and tangential problem are solved in turn, ROUNDS times: then both change by less than 1e-4.
+    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
+        """Return the patches with the pressures that shear has changed on unlike materials (Panagiotopoulos 1975).
+
+        The normal and the tangential problem are solved in turn, ROUNDS times; after that both change by less than
+        1e-4.
         """
-        load, unlike = ellipse.normal_force, np.abs(self._per_stress[rows]) > 0.0
+        load, unlike = patch.normal_force, np.abs(self._per_stress[rows]) > 0.0
         pressed = unlike & np.isfinite(load) & np.isfinite(slip.shift) & (friction > 0.0)
-        if isinstance(ellipse, GridPatch) or not pressed.any():
-            return self.patch(ellipse, slip, rows)
+        if not patch.is_hertzian or not pressed.any():
+            return self.patch(patch, slip, rows)
         own, place = np.flatnonzero(pressed), np.full(len(rows), -1)
         place[own] = np.arange(own.size)
         pressing = Pressing(place, self._per_stress[rows[own]])
-        patch = self.patches.at(load, slip.sine, rows, True, pressing)
-        for _ in range(ROUNDS):  # the others are left alone: their digits shall not depend on these
-            t = self.surface(patch.take(own), slip.take(own), friction[own], rows[own])
+        grid = self.patches.at(load, slip.sine, rows, True, pressing)
+        for _ in range(ROUNDS):  # only the patches `own` take part: the digits of the others must not depend on them
+            t = self.surface(grid.take(own), slip.take(own), friction[own], rows[own])
             pressing = replace(pressing, shear=t)
-            patch = self.patches.at(load, slip.sine, rows, True, pressing)
-        return patch
+            grid = self.patches.at(load, slip.sine, rows, True, pressing)
+        return grid
 
-    def surface(self, ellipse, slip, friction, rows) -> SurfaceTractions:
-        """Tractions on the grid of elements."""
-        from trackroller.contact import kalker
+    def surface(self, patch, slip, friction, rows) -> SurfaceTractions:
+        """Return the tractions on the grid of elements."""
+        grid = self.patch(patch, slip, rows)
+        return kalker.to_tractions(grid, friction, self._solved(grid, slip, friction, rows))
 
-        patch = self.patch(ellipse, slip, rows)
-        return kalker.to_tractions(patch, friction, self._law.kept(patch, self._drawn(slip, rows), friction, rows))
-
-    def power(self, ellipse, slip, friction, rows) -> Works:
-        """Dissipation per distance travelled."""
-        patch = self.patch(ellipse, slip, rows)
-        return self._law.kept(patch, self._drawn(slip, rows), friction, rows).works
+    def power(self, patch, slip, friction, rows) -> Works:
+        """Return the dissipation per distance travelled."""
+        return self._solved(self.patch(patch, slip, rows), slip, friction, rows).works
 
     def state(self, n):
+        """Return the larger residual of both problems, and whether both are met, each (n,)."""
         normal, tangential = super().state(n), self._law.state(n)
         return np.maximum(normal[0], tangential[0]), normal[1] & tangential[1]
-
-
-GridModel = GridSlidingModel | GridFastsimModel | GridKalkerModel
 
 
 def grid_model(
@@ -211,11 +206,26 @@ def grid_model(
     travel_speed: np.ndarray,
     profile_slip: bool = False,
 ) -> GridModel:
-    """The contact model `name` on solved patches."""
+    """Make the contact model `name` on solved patches.
+
+    Parameters
+    ----------
+    name : 'sliding', 'fastsim' or 'kalker'
+    patches : solves the normal problem of n rollers
+    elastic : combined elastic constants of the rollers, arrays (n,)
+    spin_model : 'concentric', 'edge' or 'skewed', for sliding only
+    law : friction as a function of the slip speed
+    travel_speed : of the rollers, (n,) [mm/s]
+    profile_slip : True if the rigid slip follows the profile of the guide; sliding always does so
+
+    Raises
+    ------
+    InputError : unknown name
+    """
     if name == "sliding":
         return GridSlidingModel(patches, spin_model, law, travel_speed)
     if name == "fastsim":
         return GridFastsimModel(patches, elastic, law, travel_speed, profile_slip)
     if name == "kalker":
         return GridKalkerModel(patches, elastic, law, travel_speed, profile_slip)
-    raise InputError("contact_model", name, "sliding, fastsim or kalker")
+    raise InputError("contact_model", name, "sliding, fastsim or kalker", "Choose one of these three models.")

@@ -109,7 +109,7 @@ def tractions(
     found = solve_sliding(patch, slip, friction, spin_model, law, travel_speed)
     model, loaded = spin_model_index(spin_model), patch.pressure > 0
     slip_x, slip_y = np.empty(patch.pressure.shape), np.empty(patch.pressure.shape)
-    for i in range(len(patch.load)):
+    for i in range(len(patch.normal_force)):
         along, offset = _slip_of(patch.x[i], patch, slip, i, model)
         slip_x[i] = slip.sine[i] * (patch.y[i][:, None] - offset) / slip.rolling_radius[i]
         slip_y[i] = along / slip.rolling_radius[i]

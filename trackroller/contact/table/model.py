@@ -11,21 +11,20 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import ContactModel, Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.table import spline as table
 
-PEAK_ERROR = 0.12  # of the peak stress per unit of the friction coefficient
 
-
-class TableModel:
+class TableModel(ContactModel):
     """Contact model of n rollers with combined constants `elastic` (n,); `exact` makes the model behind it.
 
     The step of derivatives and the residual are those of the exact model: a block may hold rollers of both kinds.
     """
 
-    full_sliding = False
-    difference_step = 1e-3
-    residual = 1e-7
+    knows_tractions = False
+    # Relative error of the peak stress that table and coarse tractions bring, per unit of the friction coefficient.
+    # Measured on random designs against `standard`: the search's own estimate and this cover 99 % of the peaks.
+    peak_error = 0.12
 
     def __init__(self, elastic: Elastic, exact: Callable[[], Any]) -> None:
         self.elastic, self._make = elastic, exact
@@ -63,7 +62,7 @@ class TableModel:
         share, rest = found.stick_fraction, np.flatnonzero(~found.known)
         if rest.size:
             t = self.exact.surface(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
-            share[rest] = t.stick.sum(axis=(1, 2)) / (t.pressure > 0).sum(axis=(1, 2))
+            share[rest] = t.stick_share
         return share
 
     def power(self, ellipse: Ellipse, slip: Slip, friction, rows) -> Works:
@@ -75,13 +74,6 @@ class TableModel:
             other = self.exact.power(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
             work[rest], pressed[rest] = other.dissipated, other.by_pressure
         return Works(work, pressed)
-
-    def peak_error(self, friction: np.ndarray) -> np.ndarray:
-        """Relative error of the peak stress that table and coarse tractions bring, shape (n,).
-
-        Measured on random designs against `standard`: the search's own estimate and this cover 99 % of the peaks.
-        """
-        return PEAK_ERROR * friction
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Residual of the friction law in the patches at the last fine call, and if it is met, (n,); 0 by the table."""

@@ -11,7 +11,6 @@ from trackroller.contact.drawn_profiles import gap, treats_sides_alike
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import contact_modulus
-from trackroller.contact.normal.family import Box, patch_box
 from trackroller.contact.normal.models import GridModel, grid_model
 from trackroller.contact.normal.patches import Patches
 from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
@@ -29,7 +28,6 @@ REFINED_ERROR, FINEST_ERROR = 4.0, 5e-3  # estimated error of a peak, over the t
 REFINEMENTS = 2, 4  # times the elements
 LARGEST_GRID = 160  # elements across that are refined to
 RESOLVED = 0.95  # of the largest pressure that means over 2 x 2 elements keep
-SLIGHT = 1e-3  # of the largest pressure
 NEAR = 4.0  # elements of depth down to which subsurface fields need the full grid
 
 
@@ -76,24 +74,13 @@ def halfspace_model(
 
 def contact(results: Results, patch: GridPatch, conformal: int) -> None:
     """Extents, area and centre of pressure; `conformal` is the bit of patches that reach an edge."""
-    half = _half_extents(patch)
+    half = patch.half_extents
     results.values["semi_axis_lateral"], results.values["semi_axis_rolling"] = (results.by_contact(v) for v in half)
     results.values["patch_area"] = results.by_contact(patch.area)
     with np.errstate(invalid="ignore"):
         results.values["pressure_centre"] = results.by_contact(patch.pressure_centre)
     edge = results.by_contact(patch.reaches_edge).any(axis=1)
     results.bits |= np.where(edge, conformal, 0).astype(np.int32)
-
-
-def _half_extents(patch: GridPatch) -> tuple[np.ndarray, np.ndarray]:
-    """Half the width and length of the patches [mm], (n,): those of their boxes, but where a box has a margin."""
-    wide, long = patch.semi_axis_lateral.copy(), patch.semi_axis_rolling.copy()
-    for i, pressure in enumerate(patch.pressure):
-        loaded = np.where(pressure > SLIGHT * np.max(pressure), pressure, 0.0)  # without what a solution left elsewhere
-        if loaded.any() and not loaded[[0, -1]].any():
-            tight = patch_box(loaded, Box(-wide[i], wide[i], long[i]))
-            wide[i], long[i] = 0.5 * (tight.high - tight.low), tight.half
-    return wide, long
 
 
 def shift_of_pressure(results: Results, patch: GridPatch) -> None:
@@ -123,7 +110,7 @@ def peaks(results: Results, asked: np.ndarray, poisson_ratio: np.ndarray, option
     ratios, seeds = poisson_ratio[asked], max(2, options.settings.peak.finalists)
     peak = find_grid_peaks(loads, ratios, seeds)
     patches, model = results.ellipse, results.scene.model
-    if not isinstance(patches, GridPatch) or not getattr(model, "refines", False):
+    if not isinstance(patches, GridPatch) or not model.refines:
         return peak
     flat = np.flatnonzero(asked)
     # a pressure that is singular, or on ridges too narrow for its elements, stays what it is

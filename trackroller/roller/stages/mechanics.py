@@ -9,13 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Elastic
+from trackroller.contact.common import ContactModel, Elastic
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import contact_modulus, shape
-from trackroller.contact.models import ContactModel, contact_model
+from trackroller.contact.models import contact_model
 from trackroller.contact.slip import turning_of
-from trackroller.contact.table.model import TableModel
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import validity_bit
@@ -124,7 +123,7 @@ def contact(results: Results, options: Options) -> None:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
     elif "contact" in options.outputs or "max_shear" in (options.stop_if or ""):
         v["stick_area_fraction"] = results.full(_stick_share(results))
-        if not isinstance(results.scene.model, TableModel):  # which knows the bound of the shear only
+        if results.scene.model.knows_tractions:  # a table knows the bound of the shear only
             v["max_shear"] = results.full(_largest_shear(results))
 
 
@@ -159,9 +158,8 @@ def steep_friction(results: Results, options: Options) -> None:
 def _stick_share(results: Results) -> np.ndarray:
     """Share of each existing patch that sticks; a table of the contact model knows it without tractions."""
     model, good = results.scene.model, results.good
-    if not isinstance(model, TableModel):
-        t = surface_tractions(results)
-        return t.stick.sum(axis=(1, 2)) / (t.pressure > 0).sum(axis=(1, 2))
+    if model.knows_tractions:
+        return surface_tractions(results).stick_share
     rolls = results.slides_along[good] == 0
     slip = replace(results.slip, shift=np.where(np.isfinite(results.slip.shift), results.slip.shift, 0.0)).take(good)
     share = model.stick(results.ellipse.take(good), slip, results.friction[good], results.rows[good])

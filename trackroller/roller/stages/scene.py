@@ -9,9 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trackroller.contact.common import DetailedSlip, Ellipse, Resultants, Slip, SurfaceTractions
-from trackroller.contact.models import ContactModel
-from trackroller.contact.normal.models import GridModel
+from trackroller.contact.common import ContactModel, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import validity_bit
@@ -36,15 +34,7 @@ class Scene:
         """The slip with the turning of the rollers `rows` in the curve, where that counts."""
         if self.turning is None:
             return slip
-        return DetailedSlip(
-            slip.sine,
-            slip.cosine,
-            slip.guide_profile_radius,
-            slip.rolling_radius,
-            slip.shift,
-            self.turning[rows],
-            np.full(len(rows), None),
-        )
+        return slip.detailed(turning=self.turning[rows])
 
     def law(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
         """The contact law of the equilibrium."""
@@ -85,8 +75,7 @@ class Results:
         )
         slip = scene.kinematics(slip, np.tile(np.arange(scene.n), 2))
         friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
-        if isinstance(scene.model, GridModel):
-            ellipse = scene.model.settled(ellipse, slip, two(friction), np.tile(np.arange(scene.n), 2))
+        ellipse = scene.model.settled(ellipse, slip, two(friction), np.tile(np.arange(scene.n), 2))
         # the friction law of each patch has to hold beside the balance of the roller
         unmet, met = scene.model.state(scene.n)
         rolls = balance.regime == eq.ROLLING

@@ -10,7 +10,6 @@ from trackroller.contact import sliding
 from trackroller.contact.common import Slip
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.models import traction_share
-from trackroller.contact.table.model import TableModel
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks
@@ -92,9 +91,7 @@ def peak_stress(results: Results, options: Options) -> None:
         peak, scale, side = stages_grid.peaks(results, asked, _poisson(results, options), options), 1.0, 1.0
     else:
         peak, scale, side = _ellipse_peaks(results, options, asked)
-    error = peak.error
-    if isinstance(results.scene.model, TableModel):
-        error = error + results.scene.model.peak_error(results.friction[asked])[:, None]
+    error = peak.error + results.scene.model.peak_error * results.friction[asked][:, None]
     found = {
         "peak_stress": (peak.stress * scale, 1.0),
         "peak_x": (side * peak.x, -1.0),
