@@ -130,7 +130,7 @@ def _write(
     layout, coords, attrs, reasons = _layout(plan)
     study = plan.study
     materials = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
-    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k != "physics_code"}
+    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k != "solver_digest"}
     for name in study.factors:
         kept.pop(name, None)
     file.setncatts(kept | provenance.attributes(study, materials))

@@ -2,34 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
 from trackroller.study import store
 from trackroller.study.files import StudyFolder, link_or_copy, sweep
-from trackroller.study.identity import physics_code
 
 Tell = Callable[[str], None]
-
-
-def tell_changed_code(folder: StudyFolder, tell: Tell) -> None:
-    """Say so when kept chunks were solved by other source code of the same results version."""
-    import netCDF4
-
-    now = physics_code()
-    for path in sorted((folder.root / "store").glob("*.nc")):
-        try:
-            with netCDF4.Dataset(path) as file:
-                told = json.loads(file.layout)["attrs"].get("physics_code", now)
-        except (OSError, AttributeError, ValueError, KeyError):
-            continue
-        if told != now:
-            tell(
-                f"the solver's source has changed since {folder.root} was solved; its cases are kept, because "
-                "the results version has not. Delete the folder to solve them anew."
-            )
-            return
 
 
 def drop_corrupt(folder: StudyFolder, tell: Tell) -> list[str]:

@@ -27,8 +27,9 @@ from trackroller.study.design.build import build, table_path
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.growth import with_history
 from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
-from trackroller.study.identity import RESULTS_VERSION, chunk_name, fingerprints
-from trackroller.study.mend import Tell, drop_corrupt, tell_changed_code
+from trackroller.study.identity import chunk_name, fingerprints
+from trackroller.study.mend import Tell, drop_corrupt
+from trackroller.study.sources import solver_digest
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,9 +93,9 @@ def chunk_size(study: Study, cases: int) -> int:
     return min(wanted, LARGEST_CHUNK)
 
 
-def plan_key(study: Study, results_version: int = RESULTS_VERSION) -> str:
+def plan_key(study: Study) -> str:
     """Hash of everything a plan depends on, found without drawing the design."""
-    digest = hashlib.sha256(f"{results_version}\n{study.merged()}".encode())
+    digest = hashlib.sha256(f"{solver_digest()}\n{study.merged()}".encode())
     material_names = {*study.materials.names()}
     for name in sorted(material_names):
         digest.update(repr(study.materials.material(name)).encode())
@@ -127,11 +128,21 @@ def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | Non
             drop_corrupt(folder, tell)
             for path in sorted((folder.root / "plan").glob("*.npz")):
                 sound_cases(path, tell)
-            tell_changed_code(folder, tell)
+        _tell_changed_solver(folder, tell)
         ready = _kept_plan(study, folder)
         if ready is None and study.config.grown_from:
             tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
         return ready if ready is not None else _new_plan(study, folder, tell)
+
+
+def _tell_changed_solver(folder: StudyFolder, tell: Tell) -> None:
+    """Say so when the cases of a folder were planned for another version of the solver's code."""
+    try:
+        known = json.loads(folder.plan_file.read_text()).get("solver_digest")
+    except (OSError, ValueError, AttributeError):
+        return
+    if known != solver_digest():
+        tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
 
 
 def _kept_plan(study: Study, folder: StudyFolder) -> Plan | None:
@@ -181,7 +192,13 @@ def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
             if len(part):
                 told = options if isinstance(options, dict) else options[part[0]]
                 chunks[write_list(folder, design, cases, part, told)] = len(part)
-    data = {"key": plan_key(study), "study": study.name, "size": len(cases), "chunks": chunks}
+    data = {
+        "key": plan_key(study),
+        "solver_digest": solver_digest(),
+        "study": study.name,
+        "size": len(cases),
+        "chunks": chunks,
+    }
     _write_text(folder.plan_file, json.dumps(data))
     _write_text(folder.root / "study.yaml", study.merged(whole_paths=True))
     return Plan(study, folder, chunks, len(cases), design, cases)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller import __version__
-from trackroller.study.identity import RESULTS_VERSION, physics_code
+from trackroller.study.sources import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -71,8 +71,7 @@ def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
         "design": config.design,
         "seed": config.seed,
         "accuracy": str(config.accuracy),
-        "results_version": RESULTS_VERSION,
-        "physics_code": physics_code(),
+        "solver_digest": solver_digest(),
         "versions": json.dumps(versions()),
         "git_commit": git_commit(),
         "materials": json.dumps(materials_used(study, materials), default=str),

@@ -14,9 +14,10 @@ from trackroller.errors import InputError, ShapeError
 from trackroller.study import store
 from trackroller.study.caselists import CaseList, load_list
 from trackroller.study.files import StudyFolder, WorkError, link_or_copy, locked
-from trackroller.study.identity import fingerprints, physics_code
+from trackroller.study.identity import fingerprints
 from trackroller.study.mend import Tell
 from trackroller.study.plan import keep, read_parts
+from trackroller.study.sources import solver_digest
 
 log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # at most so much work is lost when a process is killed
@@ -99,7 +100,7 @@ def finish(folder: StudyFolder, cases: CaseList, blocks: list[store.Block]) -> s
     block = block.take(np.sort(first))
     where = {case: i for i, case in enumerate(block.cases.tolist())}
     block = block.take(np.array([where[case] for case in cases.cases.tolist()]))
-    block.attrs["physics_code"] = physics_code()
+    block.attrs["solver_digest"] = solver_digest()
     keep(folder, cases.name, block)
     return block
 

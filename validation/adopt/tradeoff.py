@@ -2,8 +2,8 @@
 
     python -m validation.adopt.tradeoff [results/tradeoff]
 
-The presets follow from the ladders, so numbers of solutions may change: run the tests, and raise `RESULTS_VERSION` in
-trackroller/study/identity.py if a preset's settings changed.
+The presets follow from the ladders, so numbers of solutions may change: run the tests. Studies solve their cases anew
+by themselves, because the file of ladders is part of the solver's digest.
 """
 
 from __future__ import annotations

@@ -1,0 +1,170 @@
+"""What a result depends on is read from the import graph, and only a change of code changes the digest."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from trackroller.study import sources
+
+HERE = Path(__file__).parents[1]
+ROOT = sources.PACKAGE.parent
+FILES = sorted(sources.PACKAGE.rglob("*.py")) + sorted((ROOT / "validation").rglob("*.py"))
+
+
+def tree(text: str, drop_docstrings: bool) -> str:
+    """Syntax tree as text; raw and plain line breaks within strings are the same."""
+    parsed = ast.parse(text)
+    for node in ast.walk(parsed):
+        has_docstring = isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node)
+        if has_docstring and drop_docstrings:
+            node.body[0] = ast.Expr(ast.Constant(...))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            node.value = node.value.replace("\n", "\\n")
+    return ast.dump(parsed)
+
+
+def imports(path: Path) -> set[str]:
+    """Absolute names that a module may import when it runs, by its syntax tree."""
+    found: set[str] = set()
+    pending: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
+            continue
+        pending += ast.iter_child_nodes(node)
+        if isinstance(node, ast.Import):
+            found |= {name.name for name in node.names}
+        if isinstance(node, ast.ImportFrom):
+            found |= {str(node.module)} | {f"{node.module}.{name.name}" for name in node.names}
+    return found
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_quick_reading_agrees_with_the_syntax_tree(path):
+    text = path.read_text(encoding="utf-8")
+    assert tree(sources.without_comments(text, "..."), False) == tree(text, True)
+    read, strings = set(sources._names(path, "package.module")), set(sources._read(path)[1])
+    assert imports(path) <= read
+    assert read - imports(path) <= strings
+
+
+def test_solver_depends_on_late_imports_and_data():
+    names = {path.relative_to(sources.PACKAGE).as_posix() for path in sources.source_files(sources.SOLVER)}
+    wanted = """roller/geometry.py roller/case.py roller/options.py roller/requirements.py roller/stop.py parameters.py
+    roller/accuracy.json roller/choice/contact_choice.npz contact/table/kalker_table.npz contact/kalker_linear.csv
+    contact/profiles.py contact/drawn_profiles.py roller/choice/choose.py damage/fatigue.py numerics/quadrature.py"""
+    assert set(wanted.split()) <= names
+    assert not any(name.startswith(("study/", "report/", "cli/", "analysis/")) for name in names)
+    assert "materials/materials.yaml" in names  # its values stand in the fingerprint instead
+    assert "report/templates/report.html.j2" in {
+        p.relative_to(sources.PACKAGE).as_posix() for p in sources.source_files("trackroller.report.page")
+    }
+
+
+def test_every_shipped_data_file_belongs_to_a_module():
+    """A data file whose name stands nowhere would escape the digest."""
+    found = {path for path in sources.source_files(["trackroller.cli.main", "trackroller.report.page"])}
+    shipped = {path for paths in sources._data_files(sources.PACKAGE).values() for path in paths}
+    assert {path for path in shipped if path.name != "py.typed"} <= found
+
+
+def test_unknown_module_is_refused():
+    with pytest.raises(ModuleNotFoundError, match=re.escape("trackroller.roler")):
+        sources.source_files("trackroller.roler")
+
+
+def test_digest_file_keeps_its_date(tmp_path):
+    path = Path(sources.digest_file(tmp_path / "code", "trackroller.roller.geometry"))
+    os.utime(path, (1, 1))
+    assert sources.digest_file(tmp_path / "code", "trackroller.roller.geometry") == str(path)
+    assert path.stat().st_mtime == 1
+    path.write_text("another\n")
+    sources.digest_file(tmp_path / "code", "trackroller.roller.geometry")
+    assert path.read_text().strip() == sources.code_digest("trackroller.roller.geometry")
+
+
+def test_digest_takes_little_time():
+    code = "import time; from trackroller.study.sources import solver_digest as s; t = time.process_time(); s(); "
+    told = subprocess.run(
+        [sys.executable, "-c", code + "print(time.process_time() - t)"], cwd=ROOT, capture_output=True, text=True
+    )
+    assert float(told.stdout) < 0.3, "0.07 s of processor time on an idle machine"
+
+
+GEOMETRY = Path("roller") / "geometry.py"
+CHANGES = {
+    "constant": (
+        GEOMETRY,
+        "1.0 / np.asarray(roller_profile_radius)",
+        "1.001 / np.asarray(roller_profile_radius)",
+        True,
+    ),
+    "data": (Path("roller") / "accuracy.json", '"seed"', '"seeds"', True),
+    "docstring": (GEOMETRY, '"""', '"""Other words. ', False),
+    "comment": (GEOMETRY, "    return np.asarray(", "    # why\n\n    return np.asarray(", False),
+    "another room": (Path("study") / "status.py", "import numpy as np", "import numpy", False),
+}
+
+
+def edit(package: Path, change: str) -> None:
+    """Make one of `CHANGES` in a copy of the package."""
+    path, old, new, _ = CHANGES[change]
+    before = (package / path).read_text(encoding="utf-8")
+    assert old in before
+    (package / path).write_text(before.replace(old, new, 1), encoding="utf-8")
+
+
+@pytest.fixture
+def copied(tmp_path):
+    """A copy of the package."""
+    return shutil.copytree(sources.PACKAGE, tmp_path / "trackroller", ignore=shutil.ignore_patterns("__pycache__"))
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_only_a_change_of_code_or_data_changes_the_digest(copied, change, monkeypatch):
+    monkeypatch.setattr(sources, "PACKAGE", copied)
+
+    def digest():
+        for cached in (sources._closure, sources._file_of, sources._data_files, sources._read):
+            cached.cache_clear()
+        return sources.code_digest(sources.SOLVER, sources.BY_VALUE)
+
+    try:
+        assert digest() == sources.solver_digest(), "the place of a package does not count"
+        edit(copied, change)
+        assert (digest() != sources.solver_digest()) == CHANGES[change][3]
+    finally:
+        monkeypatch.undo()
+        digest()
+
+
+def test_next_run_solves_again_only_where_code_has_changed(copied):
+    place = copied.parent
+    code = (
+        "import test_resume as t, trackroller\n"
+        f"assert trackroller.__file__.startswith({str(place)!r})\n"
+        f"print(*t.run(t.DATA, {str(place / 'results')!r})[2], sep='\\n')\n"
+    )
+
+    def run() -> tuple[int, bool]:
+        solved = place / "solved.txt"
+        solved.write_text("")
+        env = os.environ | {"PYTHONPATH": f"{place}:{HERE}:{HERE / 'study'}", "FAKE_SOLVED": str(solved)}
+        done = subprocess.run([sys.executable, "-c", code], cwd=place, env=env, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return len(solved.read_text().splitlines()), "solver's code has changed" in done.stdout
+
+    assert run() == (60, False)
+    edit(copied, "docstring")
+    edit(copied, "comment")
+    assert run() == (0, False)
+    edit(copied, "constant")
+    assert run() == (60, True)
