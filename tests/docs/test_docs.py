@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-DOCS = sorted((ROOT / "docs").glob("*.md"))
+DOCS = sorted((ROOT / "docs").rglob("*.md"))
 PAGES = [p for p in (ROOT / "README.md", *DOCS) if p.is_file()]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.M | re.S)
 COMMENT = re.compile(r"<!--\s*(not run|file):[ \t]*([^\n]*?)[ \t]*-->\s*\Z")
