@@ -92,8 +92,9 @@ def _bodies(axes: Axes, point, normal, r_guide: float, r_groove: float, height: 
 
 def side_view(axes: Axes, case: Case) -> None:
     """Draw the view along the roller's axis: rolling direction, drive, friction and the curve of the track."""
-    height, radius = case.axis_distance, case.axis_distance - case.guide_profile_radius * np.cos(
-        np.deg2rad(case.contact_angle)
+    height, radius = (
+        case.axis_distance,
+        case.axis_distance - case.guide_profile_radius * np.cos(np.deg2rad(case.contact_angle)),
     )
     turn = np.linspace(0, 2 * np.pi, 200)
     axes.fill(radius * np.cos(turn), height + radius * np.sin(turn), color=ROLLER, ec=INK, lw=1.1)
@@ -106,7 +107,9 @@ def side_view(axes: Axes, case: Case) -> None:
     arrow(axes, (0, height - radius), (8.0, 0), FORCE, "$F_A$, $y_C$", shift=(2.6, 0.9))
     arrow(axes, (0, height), (9.0, 0), GREY, "travel, $y_R$", shift=(-0.6, 1.3))
     arrow(axes, (0, height), (-9.0, 0), FORCE, "$F_{Motor} < 0$\ndrives", shift=(0.6, 2.2))
-    measure(axes, (0, height), tuple(np.array([0, height]) + radius * np.array([-0.77, -0.64])), "$r_A$", shift=(0.4, -1.2))
+    measure(
+        axes, (0, height), tuple(np.array([0, height]) + radius * np.array([-0.77, -0.64])), "$r_A$", shift=(0.4, -1.2)
+    )
     axes.text(0, 1.2, "$r_{Curve} > 0$ outer, < 0 inner curve, inf straight", ha="center", color=GREY, fontsize=9)
     spin = np.linspace(np.deg2rad(120), np.deg2rad(60), 30)
     axes.plot((radius - 2.4) * np.cos(spin), height + (radius - 2.4) * np.sin(spin), color=GREY, lw=1.2)
@@ -126,8 +129,13 @@ def draw(target: Path = TARGET) -> None:
     for axes in (front, side):
         axes.set_aspect("equal")
         axes.axis("off")
-    figure.text(0.5, 0.012, "Forces are those on the roller. Contact frame: x lateral, y in the rolling direction, z into the body.",
-                ha="center", color=INK)
+    figure.text(
+        0.5,
+        0.012,
+        "Forces are those on the roller. Contact frame: x lateral, y in the rolling direction, z into the body.",
+        ha="center",
+        color=INK,
+    )
     figure.tight_layout(rect=(0, 0.03, 1, 1))
     figure.savefig(target, metadata={"Date": None}, facecolor="white")
 

@@ -56,7 +56,11 @@ def run(data, results, **more):
 def run_apart(results, kill=None):
     """The same run in a process of its own, which may kill itself with SIGKILL."""
     code = f"import test_resume as t; t.run(t.DATA, {str(results)!r})"
-    env = os.environ | ({"FAKE_KILL": str(kill)} if kill else {}) | {"PYTHONPATH": f"{HERE.parent}:{HERE}:{HERE / 'study'}"}
+    env = (
+        os.environ
+        | ({"FAKE_KILL": str(kill)} if kill else {})
+        | {"PYTHONPATH": f"{HERE.parent}:{HERE}:{HERE / 'study'}"}
+    )
     return subprocess.run([sys.executable, "-c", code], cwd=HERE, env=env, capture_output=True, text=True, timeout=120)
 
 

@@ -120,6 +120,27 @@ def repeat(
 
 
 @app.command()
+def verify(
+    folder: Annotated[Path, typer.Argument(help="results/NAME of a study that was run", show_default=False)],
+) -> None:
+    """Check every file of a study against the digests in its RO-Crate; exit 1 if one is missing or changed."""
+    from trackroller.cli.crate import print_verified
+
+    raise typer.Exit(print_verified(folder))
+
+
+@app.command()
+def rerun(
+    crate: Annotated[Path, typer.Argument(help="results/NAME, or a copy of it from elsewhere", show_default=False)],
+    results: Annotated[Path, typer.Option("--results", help="folder for the repeated study")] = Path("rerun"),
+) -> None:
+    """Solve a study again from its RO-Crate alone and compare; exit 1 if a value differs."""
+    from trackroller.cli.crate import print_rerun
+
+    raise typer.Exit(print_rerun(crate, results))
+
+
+@app.command()
 def spectrum(
     file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from trackroller.study.config import load_study
 from trackroller.study.cost import duration
+from trackroller.study.crate import write_crate
 
 
 def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool) -> None:
@@ -48,6 +49,7 @@ def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: 
             tell=lambda line: console.print(line, highlight=False, markup=False),
             progress=progress,
         )
+    write_crate(plan.study, plan.folder.root)
     print(plan.folder.gathered)
 
 

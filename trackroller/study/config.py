@@ -226,10 +226,20 @@ class Study:
         names = (name for name in SOLVE_OPTIONS if name != "shortcuts" and name not in self.factors)
         return {name: getattr(self.config, name) for name in names}
 
-    def merged(self, whole_paths: bool = False) -> str:
-        """The study as YAML with every default written out (and the table's path from the root on)."""
+    def merged(self, whole_paths: bool = False, table: str | None = None) -> str:
+        """Return the study as YAML with every default written out.
+
+        Parameters
+        ----------
+        whole_paths : bool
+            Write the path of the table of cases from the root on.
+        table : str, optional
+            Write this path of the table instead.
+        """
         data = self.config.model_dump(mode="json", exclude_none=True)
-        if whole_paths and self.config.table is not None:
+        if table is not None:
+            data["table"] = table
+        elif whole_paths and self.config.table is not None:
             from trackroller.study.design.build import table_path
 
             data["table"] = str(Path(table_path(self)).resolve())

@@ -1,0 +1,127 @@
+"""A study's RO-Crate lists every file with its digest, tells of damage, and is enough to solve the study again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+from trackroller.cli.main import app
+from trackroller.errors import InputError
+from trackroller.study.crate import METADATA, compare_results, damaged_files, read_crate
+
+MATERIALS = """
+materials:
+  hard steel:
+    like: 1.7225-quenched-tempered
+    tensile_strength: {value: 1500, unit: MPa, source: data sheet}
+"""
+STUDY = """
+name: crated
+description: A study that travels.
+base: {roller_material: hard steel}
+design: table
+table: tables/cases.csv
+outputs: [forces, life]
+accuracy: preview
+"""
+
+
+@pytest.fixture(scope="module")
+def crate(tmp_path_factory) -> Path:
+    """Folder of a solved study with a table and materials of the user."""
+    home = tmp_path_factory.mktemp("home")
+    (home / "config").mkdir()
+    (home / "tables").mkdir()
+    (home / "config" / "materials.yaml").write_text(MATERIALS)
+    (home / "tables" / "cases.csv").write_text("axial_force,motor_force\n10,0\n20,0\n30,-10\n")
+    (home / "study.yaml").write_text(STUDY)
+    _run(home, "run", "study.yaml", "-q")
+    return home / "results" / "crated"
+
+
+def _run(folder: Path, *words: str, code: int = 0) -> str:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        done = CliRunner().invoke(app, list(words))
+    if isinstance(done.exception, InputError):
+        raise done.exception
+    assert done.exit_code == code, done.output
+    return done.output
+
+
+def test_every_file_stands_in_the_crate_with_its_digest(crate):
+    graph = json.loads((crate / METADATA).read_text())["@graph"]
+    by_id = {entry["@id"]: entry for entry in graph}
+    listed = {part["@id"] for part in by_id["./"]["hasPart"]}
+    assert {"study.nc", "design.nc", "inputs/study.yaml", "inputs/cases.csv", "inputs/materials.yaml"} <= listed
+    for name in listed:
+        assert by_id[name]["sha256"] == hashlib.sha256((crate / name).read_bytes()).hexdigest()
+        assert by_id[name]["contentSize"] == (crate / name).stat().st_size
+    assert by_id["./"]["license"]["@id"].endswith("MIT") and by_id["#numpy"]["softwareVersion"]
+    references = {value["@id"] for entry in graph for value in _flat(entry.values()) if set(value) == {"@id"}}
+    assert {name for name in references if not name.startswith("http")} <= set(by_id)
+
+
+def _flat(values):
+    for value in values:
+        if isinstance(value, dict):
+            yield value
+        elif isinstance(value, list):
+            yield from _flat(value)
+
+
+def test_damage_is_named(crate, tmp_path):
+    copy = Path(shutil.copytree(crate, tmp_path / "copy"))
+    assert damaged_files(copy) == {}
+    assert "files are as they were written" in _run(tmp_path, "verify", "copy")
+    with (copy / "study.nc").open("r+b") as stream:
+        stream.seek(2000)
+        stream.write(b"\x55")
+    (copy / "design.nc").unlink()
+    assert damaged_files(copy) == {"study.nc": "changed", "design.nc": "missing"}
+    assert "changed: study.nc" in _run(tmp_path, "verify", "copy", code=1)
+
+
+def test_a_study_is_solved_again_from_its_crate_alone(crate, tmp_path):
+    shutil.copytree(crate, tmp_path / "posted", ignore=shutil.ignore_patterns("store", "plan", "chunks"))
+    assert "have the same values" in _run(tmp_path, "rerun", "posted")
+    again = xr.load_dataset(tmp_path / "rerun" / "crated" / "study.nc")
+    before = xr.load_dataset(crate / "study.nc")
+    xr.testing.assert_equal(again, before)
+    assert float(before["roller_life_hours"].max()) > 0
+
+
+def test_a_changed_value_is_found(crate, tmp_path):
+    ds = xr.load_dataset(crate / "study.nc")
+    ds["spin_moment"] = ds["spin_moment"] * (1 + 1e-9)
+    ds.to_netcdf(tmp_path / "other.nc")
+    compared = compare_results(crate / "study.nc", tmp_path / "other.nc")
+    assert not compared.same
+    assert {name for name, apart in compared.differences.items() if apart} == {"spin_moment"}
+    assert compared.differences["spin_moment"] == pytest.approx(1e-9, rel=1e-5)
+
+
+def test_a_damaged_input_is_not_solved(crate, tmp_path):
+    copy = Path(shutil.copytree(crate, tmp_path / "copy"))
+    (copy / "inputs" / "materials.yaml").write_text(MATERIALS.replace("1500", "1600"))
+    with pytest.raises(InputError, match=r"inputs/materials\.yaml"):
+        _run(tmp_path, "rerun", "copy")
+
+
+@pytest.mark.parametrize("name", ["../outside.nc", "/etc/passwd"])
+def test_a_crate_cannot_name_files_outside_itself(tmp_path, name):
+    entry = {"@id": name, "@type": "File", "sha256": "0"}
+    (tmp_path / METADATA).write_text(json.dumps({"@graph": [entry]}))
+    with pytest.raises(InputError, match="inside the crate"):
+        read_crate(tmp_path)
+
+
+def test_a_folder_without_a_crate_is_refused(tmp_path):
+    with pytest.raises(InputError, match=METADATA):
+        damaged_files(tmp_path)

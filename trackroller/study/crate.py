@@ -1,0 +1,263 @@
+"""Describe a solved study as a Workflow Run RO-Crate: its files with digests, its inputs, versions and licence.
+
+The crate is the folder of the study. `ro-crate-metadata.json` lists the files. `inputs/` holds what is needed to solve the
+study anywhere: the study file with every default written out, its table of cases and the user's materials.
+
+References
+----------
+RO-Crate 1.1, https://w3id.org/ro/crate/1.1; Workflow Run Crate 0.5, https://w3id.org/ro/wfrun/workflow/0.5
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.errors import InputError
+from trackroller.materials import builtin_database, load_database
+from trackroller.materials.file import find_user_file
+from trackroller.study.config import load_study
+from trackroller.study.design.build import table_path
+from trackroller.study.files import write_whole
+from trackroller.study.provenance import versions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.study.config import Study
+
+METADATA = "ro-crate-metadata.json"
+INPUTS = "inputs"
+STUDY_FILE, MATERIALS_FILE = f"{INPUTS}/study.yaml", f"{INPUTS}/materials.yaml"
+RESULTS = ("design.nc", "study.nc", "sensitivity.nc", "report.html", "figures", "tables")
+LICENCE = "https://spdx.org/licenses/MIT"
+_TYPES = {
+    ".nc": "application/x-netcdf",
+    ".yaml": "application/yaml",
+    ".html": "text/html",
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".json": "application/json",
+    ".csv": "text/csv",
+}
+_PROFILES = ("process/0.5", "workflow/0.5")
+
+
+def write_crate(study: Study, root: Path) -> Path:
+    """Copy the inputs of a study into its folder and write the description of all its files.
+
+    Parameters
+    ----------
+    study : Study
+        The study as it was solved.
+    root : Path
+        Its folder, `results/NAME`.
+
+    Returns
+    -------
+    Path
+        The metadata file.
+
+    Raises
+    ------
+    WorkError
+        If the folder cannot be written.
+    """
+    _copy_inputs(study, root)
+    graph = _graph(study, root)
+    text = json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
+    write_whole(root / METADATA, lambda beside: beside.write_text(text, encoding="utf-8"))
+    return root / METADATA
+
+
+def _copy_inputs(study: Study, root: Path) -> None:
+    folder = root / INPUTS
+    folder.mkdir(parents=True, exist_ok=True)
+    text = study.merged()
+    if study.config.table is not None:
+        name = Path(study.config.table).name
+        shutil.copyfile(table_path(study), folder / name)
+        text = study.merged(table=name)
+    write_whole(root / STUDY_FILE, lambda beside: beside.write_text(text, encoding="utf-8"))
+    user = find_user_file()
+    if user is not None:
+        shutil.copyfile(user, root / MATERIALS_FILE)
+
+
+def _files(root: Path, *names: str) -> Iterator[str]:
+    """Paths of the files below `names`, from the root of the crate, in a fixed order."""
+    for name in names:
+        place = root / name
+        found = sorted(p for p in place.rglob("*") if p.is_file()) if place.is_dir() else [place]
+        yield from (p.relative_to(root).as_posix() for p in found if p.is_file() and not p.name.startswith("."))
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _file(root: Path, name: str) -> dict[str, Any]:
+    path = root / name
+    entry: dict[str, Any] = {"@id": name, "@type": "File", "sha256": _digest(path), "contentSize": path.stat().st_size}
+    if path.suffix in _TYPES:
+        entry["encodingFormat"] = _TYPES[path.suffix]
+    if name == STUDY_FILE:
+        entry["@type"] = ["File", "SoftwareSourceCode", "ComputationalWorkflow"]
+        entry |= {"name": "study file with every default", "programmingLanguage": {"@id": "#study-language"}}
+    return entry
+
+
+def _graph(study: Study, root: Path) -> list[dict[str, Any]]:
+    inputs, results = list(_files(root, INPUTS)), list(_files(root, *RESULTS))
+    profiles = [f"https://w3id.org/ro/wfrun/{name}" for name in _PROFILES]
+    found = versions()
+    programs = [
+        {"@id": f"#{name}", "@type": "SoftwareApplication", "name": name, "softwareVersion": version}
+        for name, version in found.items()
+    ]
+    newest = max((root / name).stat().st_mtime for name in results)
+    ended = str(np.datetime64(int(newest), "s")) + "Z"
+    return [
+        {
+            "@id": METADATA,
+            "@type": "CreativeWork",
+            "about": {"@id": "./"},
+            "conformsTo": {"@id": "https://w3id.org/ro/crate/1.1"},
+        },
+        {
+            "@id": "./",
+            "@type": "Dataset",
+            "name": f"Study '{study.name}' of track rollers",
+            "description": study.config.description or f"Results of the study {study.name}",
+            "datePublished": ended,
+            "license": {"@id": LICENCE},
+            "conformsTo": [{"@id": name} for name in profiles],
+            "mainEntity": {"@id": STUDY_FILE},
+            "mentions": {"@id": "#run"},
+            "hasPart": [{"@id": name} for name in (*inputs, *results)],
+        },
+        {
+            "@id": "#run",
+            "@type": "CreateAction",
+            "name": "solve, analyse and report the study",
+            "endTime": ended,
+            "instrument": {"@id": STUDY_FILE},
+            "object": [{"@id": name} for name in inputs],
+            "result": [{"@id": name} for name in results],
+            "softwareRequirements": [{"@id": entry["@id"]} for entry in programs],
+        },
+        {
+            "@id": "#study-language",
+            "@type": "ComputerLanguage",
+            "name": "trackroller study file",
+            "version": found["trackroller"],
+        },
+        {"@id": LICENCE, "@type": "CreativeWork", "name": "MIT License", "identifier": "MIT"},
+        *(
+            {"@id": name, "@type": "CreativeWork", "name": f"Workflow Run Crate profile {name[28:]}"}
+            for name in profiles
+        ),
+        *programs,
+        *(_file(root, name) for name in (*inputs, *results)),
+    ]
+
+
+def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
+    """Return the files that a crate lists, by their path from its root.
+
+    Raises
+    ------
+    InputError
+        If the folder is not a crate of a study.
+    """
+    path = Path(root) / METADATA
+    try:
+        graph = json.loads(path.read_text(encoding="utf-8"))["@graph"]
+        files = {
+            str(e["@id"]): e for e in graph if "File" in ([e["@type"]] if isinstance(e["@type"], str) else e["@type"])
+        }
+    except (OSError, ValueError, KeyError, TypeError):
+        remedy = "Give a folder results/NAME of a study that was run to its end."
+        raise InputError("crate", str(root), f"a folder with a readable {METADATA}", remedy) from None
+    for name in files:
+        if Path(name).is_absolute() or ".." in Path(name).parts:
+            raise InputError("crate", name, "files inside the crate", "Do not use this crate.")
+    return files
+
+
+def damaged_files(root: Path | str) -> dict[str, str]:
+    """Return what is wrong with the files of a crate: missing or changed, by file; empty if all are as written.
+
+    Raises
+    ------
+    InputError
+        If the folder is not a crate.
+    """
+    found = {}
+    for name, entry in read_crate(root).items():
+        path = Path(root) / name
+        if not path.is_file():
+            found[name] = "missing"
+        elif _digest(path) != entry.get("sha256"):
+            found[name] = "changed"
+    return found
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Largest relative difference of each variable of a study that was solved again; 0 is the same to the last bit."""
+
+    differences: dict[str, float]
+
+    @property
+    def same(self) -> bool:
+        """Whether every variable has the same values."""
+        return not any(self.differences.values())
+
+
+def study_of_crate(root: Path | str) -> Study:
+    """Return the study of a crate, with the materials in it and no others.
+
+    Raises
+    ------
+    InputError
+        If the folder is not a crate, an input is damaged, or the study file is not accepted.
+    """
+    damaged = {name: what for name, what in damaged_files(root).items() if name.startswith(INPUTS)}
+    if damaged:
+        name, what = next(iter(damaged.items()))
+        raise InputError("crate", name, f"inputs as they were written; this one is {what}", "Fetch the crate again.")
+    materials = Path(root) / MATERIALS_FILE
+    database = load_database(materials) if materials.is_file() else builtin_database()
+    return load_study(Path(root) / STUDY_FILE, database)
+
+
+def compare_results(before: Path, after: Path) -> Comparison:
+    """Compare two `study.nc`, variable by variable; a variable that one of them lacks differs without bound."""
+    import xarray as xr  # heavy: only this comparison needs it
+
+    with xr.open_dataset(before) as one, xr.open_dataset(after) as two:
+        names = sorted({*map(str, one.variables), *map(str, two.variables)})
+        return Comparison({name: _difference(one, two, name) for name in names})
+
+
+def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> float:
+    if name not in one.variables or name not in two.variables or one[name].shape != two[name].shape:
+        return np.inf
+    a, b = one[name].values, two[name].values
+    if a.dtype.kind not in "fc":
+        return 0.0 if np.array_equal(a, b) else np.inf
+    same = (a == b) | (np.isnan(a) & np.isnan(b))
+    if same.all():
+        return 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = np.abs(a - b) / np.fmax(np.abs(a), np.abs(b))
+    return float(np.where(same, 0.0, np.where(np.isnan(apart), np.inf, apart)).max())
