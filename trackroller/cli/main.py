@@ -92,11 +92,20 @@ def run(
     rerun_failed: Annotated[bool, typer.Option("--rerun-failed", help="solve failed cases anew")] = False,
     scheduler: Annotated[str | None, typer.Option(help="local or tcp://host:port, dask.distributed")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no progress bar")] = False,
+    report: Annotated[bool, typer.Option("--report", help="make analysis, figures and report as well")] = False,
 ) -> None:
     """Solve what is missing of a study and gather it; stop and start again as often as you like."""
     from trackroller.cli.study import run_with_progress
 
-    run_with_progress(study, results, rerun_failed, scheduler, quiet)
+    run_with_progress(study, results, rerun_failed, scheduler, quiet, report)
+
+
+@app.command()
+def report(study: AnyStudy, results: Results = Path("results")) -> None:
+    """Make analysis, figures and report of a study that was run."""
+    from trackroller.cli.study import make_report
+
+    make_report(study, results)
 
 
 @app.command()

@@ -5,13 +5,16 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from trackroller.study.config import load_study
+from trackroller.study.config import Study, load_study
 from trackroller.study.cost import duration
 from trackroller.study.crate import write_crate
+from trackroller.study.files import StudyFolder
 
 
-def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool) -> None:
-    """Run a study with a bar that shows cases/s and the time left."""
+def run_with_progress(
+    path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
+) -> None:
+    """Run a study with a bar that shows cases/s and the time left; make its report if asked for."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -49,8 +52,28 @@ def run_with_progress(path: Path, results: Path, rerun_failed: bool, scheduler: 
             tell=lambda line: console.print(line, highlight=False, markup=False),
             progress=progress,
         )
-    write_crate(plan.study, plan.folder.root)
-    print(plan.folder.gathered)
+    if report:
+        print(_report(plan.study, plan.folder))
+    else:
+        write_crate(plan.study, plan.folder.root)
+        print(plan.folder.gathered)
+
+
+def make_report(name: str, results: Path) -> None:
+    """Make analysis, figures and report of a study that was run."""
+    from trackroller.study.plan import study_folder
+    from trackroller.study.status import find_study
+
+    study = find_study(name, results)
+    print(_report(study, study_folder(study.name, results)))
+
+
+def _report(study: Study, folder: StudyFolder) -> Path:
+    from trackroller.report.build import build_report  # heavy: SALib
+
+    page = build_report(folder, lambda line: print(line, file=sys.stderr))
+    write_crate(study, folder.root)
+    return page
 
 
 def print_status(name: str, results: Path) -> None:

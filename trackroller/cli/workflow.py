@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import logging
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.report.build import analyse_study, draw_study, report_study
 from trackroller.study.config import Study, load_study
 from trackroller.study.plan import Plan, make_plan
 
+__all__ = [
+    "analyse_study",
+    "draw_study",
+    "log_to",
+    "report_study",
+    "sources",
+    "study_inputs",
+    "workflow_plan",
+    "workflow_study",
+]
 CONFIG_KEYS = ("study", "results")
 log = logging.getLogger("trackroller")
 
@@ -69,51 +79,3 @@ def log_to(path: str) -> None:
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s", force=True)
     logging.captureWarnings(True)
-
-
-def analyse_study(study_nc: str, out: str) -> None:
-    """Sensitivity of the study, or a file that says why there is none."""
-    from trackroller.analysis.sensitivity import analyse
-
-    try:
-        analyse(study_nc, out)
-    except InputError as exc:
-        import xarray as xr
-
-        from trackroller.study.files import write_whole
-
-        log.info("no sensitivity analysis: %s", exc)
-        empty = xr.Dataset(attrs={"comment": f"no sensitivity analysis: {exc}"})
-        write_whole(Path(out), lambda beside: empty.to_netcdf(beside))
-
-
-def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:
-    """All figures of a study; the folder appears whole or not at all."""
-    from trackroller.report.figures.sensitivity import draw_all as draw_sensitivity
-    from trackroller.report.figures.study import draw_all as draw_results
-
-    out = Path(out_dir)
-    beside = out.with_name(f".{out.name}.tmp")
-    shutil.rmtree(beside, ignore_errors=True)
-    beside.mkdir(parents=True)
-    draw_results(Path(study_nc), beside)
-    if has_analysis(sensitivity_nc):
-        draw_sensitivity(Path(study_nc), Path(sensitivity_nc), beside)
-    shutil.rmtree(out, ignore_errors=True)
-    beside.rename(out)
-
-
-def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:
-    """The report, with the sensitivity analysis where there is one."""
-    from trackroller.report import write_report
-
-    analysis = Path(sensitivity_nc) if has_analysis(sensitivity_nc) else None
-    write_report(Path(study_nc), Path(figures), Path(out), analysis)
-
-
-def has_analysis(sensitivity_nc: str | Path) -> bool:
-    """Does the file hold an analysis (or only say why there is none)?"""
-    import netCDF4
-
-    with netCDF4.Dataset(sensitivity_nc) as file:
-        return len(file.variables) > 0

@@ -1,6 +1,6 @@
 """Describe a solved study as a Workflow Run RO-Crate: its files with digests, its inputs, versions and licence.
 
-The crate is the folder of the study. `ro-crate-metadata.json` lists the files. `inputs/` holds what is needed to solve the
+The crate is the study folder. `ro-crate-metadata.json` lists the files. `inputs/` holds what is needed to solve the
 study anywhere: the study file with every default written out, its table of cases and the user's materials.
 
 References
