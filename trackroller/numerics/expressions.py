@@ -1,22 +1,24 @@
-"""Expressions over factors, evaluated without `eval`.
+"""Arithmetic and comparisons over named columns, evaluated without `eval`.
 
-A derived factor is written as arithmetic over other factors, e.g. ``-ratio * guide_profile_radius`` or
-``where(drive == 'free', 0, -30)``. The text is parsed to a syntax tree and only the nodes listed here are
-computed, on whole columns at once; everything else is refused with its position.
+Study files use these texts for derived factors (``-ratio * guide_profile_radius``), for the constraints of a
+Pareto set (``max_pressure[1] < 1500 and regime != full_slip``) and for `stop_if` (``peak_stress > R_m``).
+Python parses the text to a syntax tree. Only the nodes listed here are evaluated, on whole columns at once.
+An `InputError` names any other node with its position.
 """
 
 from __future__ import annotations
 
 import ast
-import functools
 from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
 
 from trackroller.errors import InputError, unknown_name
 
-MAX_LENGTH = 500  # an expression longer than this is a program and belongs into a script
+MAX_LENGTH = 500  # a longer expression is a program: it belongs in a script
 
 FUNCTIONS: dict[str, tuple[Any, int]] = {
     "abs": (np.abs, 1),
@@ -44,167 +46,253 @@ _BINARY: dict[type, Any] = {
     ast.Pow: np.power,
     ast.Mod: np.mod,
 }
-_COMPARE: dict[type, Any] = {
-    ast.Lt: np.less,
-    ast.LtE: np.less_equal,
-    ast.Gt: np.greater,
-    ast.GtE: np.greater_equal,
-    ast.Eq: lambda a, b: np.asarray(a == b),
-    ast.NotEq: lambda a, b: np.asarray(a != b),
+_COMPARE: dict[type, tuple[str, Any]] = {
+    ast.Lt: ("<", np.less),
+    ast.LtE: ("<=", np.less_equal),
+    ast.Gt: (">", np.greater),
+    ast.GtE: (">=", np.greater_equal),
+    ast.Eq: ("==", lambda a, b: np.asarray(a == b)),
+    ast.NotEq: ("!=", lambda a, b: np.asarray(a != b)),
 }
-_ALLOWED = "numbers, factor names, + - * / % **, comparisons, and, or, not and the functions " + ", ".join(FUNCTIONS)
+_REMEDY = "Use numbers, names, + - * / % **, comparisons, and, or, not and the functions " + ", ".join(FUNCTIONS) + "."
 
 
-def _parse(text: str, field: str) -> ast.expr:
-    if not isinstance(text, str) or not text.strip():
-        raise InputError(field, text, "an expression is a text such as '-1.2 * guide_profile_radius'")
-    if len(text) > MAX_LENGTH:
-        raise InputError(field, text[:40] + "...", f"an expression has at most {MAX_LENGTH} characters")
-    try:
-        return ast.parse(text.strip(), mode="eval").body
-    except SyntaxError as exc:
-        raise InputError(field, text, f"syntax error at character {exc.offset}", f"Use {_ALLOWED}.") from None
-    except (RecursionError, MemoryError, ValueError):
-        raise InputError(field, text, "too deeply nested or not a text", f"Use {_ALLOWED}.") from None
+@dataclass(frozen=True)
+class Comparison:
+    """One comparison of a named quantity with a limit, as written.
+
+    Parameters
+    ----------
+    name : quantity on the left side
+    symbol : one of ``< <= > >= == !=``
+    limit : expression on the right side
+    """
+
+    name: str
+    symbol: str
+    limit: str
+
+    @property
+    def text(self) -> str:
+        """The comparison as an expression."""
+        return f"{self.name} {self.symbol} {self.limit}"
 
 
 def names(text: str, field: str = "expression") -> set[str]:
-    """Names of the factors an expression needs.
+    """Return the names that an expression needs.
 
-    Raises `InputError` with the position for a text that is no expression.
+    Parameters
+    ----------
+    text : the expression
+    field : name of the study key, for error messages
+
+    Returns
+    -------
+    Names; the part of a variable is one name, such as ``peak_stress[1,roller]``.
+
+    Raises
+    ------
+    InputError : the text is not an expression; the message states the position
     """
-    tree = _parse(text, field)
-    called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
-    return {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)} - called - set(CONSTANTS)
+    return _names(_parse(text, field))
 
 
 def evaluate(text: str, values: Mapping[str, Any], field: str = "expression") -> np.ndarray:
-    """Value of an expression over columns.
+    """Evaluate an expression over columns.
 
     Parameters
     ----------
     text : arithmetic over the names in `values`
-    values : numbers or columns, shape (n,); texts may be compared only
-    field : name for error messages
+    values : numbers or columns, shape (n,); texts can only be compared
+    field : name of the study key, for error messages
 
     Returns
     -------
-    numpy.ndarray of float, shape (n,) (or () for plain numbers)
+    numpy.ndarray of float, shape (n,), or () if all values are numbers
 
     Raises
     ------
-    InputError : a part that is not allowed, an unknown name, or a value that is not a number; the message
-        names the character where it stands
+    InputError : a node that is not allowed, an unknown name, or a result that is not a number
 
     Examples
     --------
     >>> evaluate("-ratio * r", {"ratio": np.array([1.1, 1.2]), "r": 6.0})
     array([-6.6, -7.2])
     """
-    tree = _parse(text, field)
-
-    def refuse(node: ast.AST, what: str) -> InputError:
-        at = getattr(node, "col_offset", 0) + 1
-        return InputError(field, text, f"{what} at character {at} is not allowed", f"Use {_ALLOWED}.")
-
-    with np.errstate(all="ignore"):  # a value that is no number is reported below, with its row
-        result = _value(tree, values, field, refuse)
+    result = _Evaluation(text, field, values).value(_parse(text, field))
     try:
         return np.asarray(result, dtype=float)
     except (TypeError, ValueError):
-        raise InputError(field, text, "the result is a text, not a number") from None
+        raise InputError(field, text, "the result is a text, not a number", "Compare texts with == or !=.") from None
 
 
 def condition(text: str, values: Mapping[str, Any], field: str = "constraints") -> np.ndarray:
-    """Truth of a comparison such as "max_pressure < 1500" or "regime != full_slip and slip < 0.1".
+    """Evaluate a condition such as ``max_pressure < 1500`` over columns.
 
-    Parameters as for `evaluate`; a value that is not a number compares as false, `!=` included.
+    Parameters
+    ----------
+    text : comparisons, which `and`, `or` and `not` may join
+    values : numbers or columns of any shapes that broadcast; texts can only be compared
+    field : name of the study key, for error messages
 
     Returns
     -------
-    numpy.ndarray of bool, shape (n,) (or () for plain numbers)
+    numpy.ndarray of bool. False wherever a value of the condition is NaN, also for ``!=``.
 
     Raises
     ------
-    InputError : as `evaluate`, and for a text that is no comparison
+    InputError : as `evaluate`, or the text is not a comparison
     """
     tree = _parse(text, field)
-
-    def refuse(node: ast.AST, what: str) -> InputError:
-        at = getattr(node, "col_offset", 0) + 1
-        return InputError(field, text, f"{what} at character {at} is not allowed", f"Use {_ALLOWED}.")
-
-    with np.errstate(all="ignore"):
-        result = np.asarray(_value(tree, values, field, refuse))
+    result = np.asarray(_Evaluation(text, field, values).value(tree))
     if result.dtype != bool:
         raise InputError(field, text, "a comparison is wanted, such as 'max_pressure < 1500'")
-    for name in names(text, field):
+    for name in _names(tree):
         column = np.asarray(values[name])
         if column.dtype.kind == "f":
             result = result & ~np.isnan(column)
     return result
 
 
-def _value(node: ast.AST, values: Mapping[str, Any], field: str, refuse: Any) -> Any:
-    def sub(child: ast.AST) -> Any:
-        return _value(child, values, field, refuse)
+def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
+    """Split a condition into comparisons joined by `or`.
 
-    match node:
-        case ast.Constant(value=bool()):
-            raise refuse(node, "a truth value")
-        case ast.Constant(value=int() | float() as number):
-            return float(number)  # floats only: integer powers could fill the memory
-        case ast.Constant(value=str() as word):
-            return word
-        case ast.Name(id=name) if name in CONSTANTS and name not in values:
-            return CONSTANTS[name]
-        case ast.Name(id=name):
-            if name not in values:
-                raise unknown_name(f"{field} (character {node.col_offset + 1})", name, list(values))
-            return values[name]
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
-            return _apply(_BINARY[type(op)], [sub(left), sub(right)], node, refuse)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return _apply(np.negative, [sub(operand)], node, refuse)
-        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-            return sub(operand)
-        case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
-            sides = [sub(part) for part in (left, *rest)]
-            pairs = zip(ops, sides, sides[1:], strict=False)
-            return np.logical_and.reduce([_compare(op, one, other, node, refuse) for op, one, other in pairs])
-        case ast.BoolOp(op=op, values=parts):
-            join = np.logical_and if isinstance(op, ast.And) else np.logical_or
-            return functools.reduce(join, [_truth(sub(part), part, refuse) for part in parts])
-        case ast.UnaryOp(op=ast.Not(), operand=operand):
-            return np.logical_not(_truth(sub(operand), operand, refuse))
-        case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
-            function, arity = FUNCTIONS[name]
-            if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
-                raise refuse(node, f"{name} with {len(args)} arguments (it takes {arity})")
-            return _apply(function, [sub(arg) for arg in args], node, refuse)
-    raise refuse(node, type(node).__name__.lower())
+    Parameters
+    ----------
+    text : such as ``slip > 0.1 or regime == full_slip``; each left side is one name
+    field : name of the study key, for error messages
+
+    Returns
+    -------
+    The comparisons in the order of the text.
+
+    Raises
+    ------
+    InputError : the text is not such a condition
+    """
+    tree = _parse(text, field)
+    parts = tree.values if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.Or) else [tree]
+    found = []
+    for part in parts:
+        if not isinstance(part, ast.Compare) or len(part.ops) != 1 or type(part.ops[0]) not in _COMPARE:
+            allowed = "comparisons (> >= < <= == !=) joined by 'or'"
+            raise InputError(field, text, allowed, "For example: slip > 0.1 or max_pressure > 1500.")
+        left = _name(part.left) or ast.unparse(part.left)
+        found.append(Comparison(left, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
+    return tuple(found)
 
 
-def _compare(op: ast.cmpop, one: Any, other: Any, node: ast.AST, refuse: Any) -> np.ndarray:
-    one, other = np.asarray(one), np.asarray(other)
-    if (one.dtype.kind in "OSU") != (other.dtype.kind in "OSU") or (
-        one.dtype.kind in "OSU" and not isinstance(op, (ast.Eq, ast.NotEq))
-    ):
-        raise refuse(node, "ordering a text, or comparing it with a number,")
-    return np.asarray(_COMPARE[type(op)](one, other), dtype=bool)
+def _parse(text: str, field: str) -> ast.expr:
+    if not isinstance(text, str) or not text.strip():
+        raise InputError(field, text, "a text with an expression or a comparison", "For example: 2 * slip > 0.1.")
+    return _tree(text, field)
 
 
-def _truth(value: Any, node: ast.AST, refuse: Any) -> np.ndarray:
-    found = np.asarray(value)
-    if found.dtype != bool:
-        raise refuse(node, "something other than a comparison beside and, or, not")
-    return found
-
-
-def _apply(function: Any, args: list[Any], node: ast.AST, refuse: Any) -> Any:
-    if function is np.where:
-        return np.where(np.asarray(args[0], dtype=bool), *args[1:])
+@lru_cache(maxsize=256)
+def _tree(text: str, field: str) -> ast.expr:
+    if len(text) > MAX_LENGTH:
+        raise InputError(field, text[:40] + "...", f"an expression has at most {MAX_LENGTH} characters")
     try:
-        return function(*[np.asarray(arg, dtype=float) for arg in args])
-    except (TypeError, ValueError):
-        raise refuse(node, "arithmetic with a text") from None
+        return ast.parse(text.strip(), mode="eval").body
+    except SyntaxError as exc:
+        raise InputError(field, text, f"syntax error at character {exc.offset}", _REMEDY) from None
+    except (RecursionError, MemoryError, ValueError):
+        raise InputError(field, text, "the brackets are too deep, or this is not a text", _REMEDY) from None
+
+
+def _name(node: ast.AST) -> str | None:
+    """Return the name of a node: ``slip``, or ``peak_stress[1,roller]`` for the part of a variable."""
+    match node:
+        case ast.Name(id=name):
+            return name
+        case ast.Subscript(value=ast.Name(id=name), slice=part):
+            keys = part.elts if isinstance(part, ast.Tuple) else [part]
+            return f"{name}[{','.join(ast.unparse(key) for key in keys)}]"
+    return None
+
+
+def _names(node: ast.AST) -> set[str]:
+    if name := _name(node):
+        return {name} - set(CONSTANTS)
+    children = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
+    return set().union(*map(_names, children))
+
+
+def _is_text(value: np.ndarray) -> bool:
+    return value.dtype.kind in "OSU"
+
+
+@dataclass(frozen=True)
+class _Evaluation:
+    """Values of the nodes of one expression."""
+
+    text: str
+    field: str
+    values: Mapping[str, Any]
+
+    def value(self, node: ast.AST) -> Any:
+        match node:
+            case ast.Constant(value=bool()):
+                raise self.refused(node, "a truth value")
+            case ast.Constant(value=int() | float() as number):
+                return float(number)  # powers of whole numbers could fill the memory
+            case ast.Constant(value=str() as word):
+                return word
+            case ast.Name() | ast.Subscript():
+                return self.named(node)
+            case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
+                return self.applied(_BINARY[type(op)], [left, right], node)
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return self.applied(np.negative, [operand], node)
+            case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+                return self.value(operand)
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                return np.logical_not(self.truth(operand))
+            case ast.BoolOp(op=op, values=parts):
+                join = np.logical_and if isinstance(op, ast.And) else np.logical_or
+                return reduce(join, [self.truth(part) for part in parts])
+            case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
+                sides = [np.asarray(self.value(part)) for part in (left, *rest)]
+                held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
+                return np.logical_and.reduce(held)
+            case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
+                function, arity = FUNCTIONS[name]
+                if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
+                    raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
+                return self.applied(function, args, node)
+        raise self.refused(node, type(node).__name__.lower())
+
+    def named(self, node: Any) -> Any:
+        name = _name(node)
+        if name in self.values:
+            return self.values[name]
+        if name in CONSTANTS:
+            return CONSTANTS[name]
+        if name is None or isinstance(node, ast.Subscript):
+            raise self.refused(node, "a subscript that does not name the part of a variable")
+        raise unknown_name(f"{self.field} (character {node.col_offset + 1})", name, list(self.values))
+
+    def applied(self, function: Any, parts: list[ast.expr], node: ast.AST) -> Any:
+        args = [self.value(part) for part in parts]
+        if function is np.where:
+            return np.where(np.asarray(args[0], dtype=bool), *args[1:])
+        try:
+            with np.errstate(all="ignore"):  # the caller reports NaN with its row
+                return function(*[np.asarray(arg, dtype=float) for arg in args])
+        except (TypeError, ValueError):
+            raise self.refused(node, "arithmetic with a text") from None
+
+    def compared(self, op: ast.cmpop, one: np.ndarray, other: np.ndarray, node: ast.AST) -> np.ndarray:
+        if _is_text(one) != _is_text(other) or (_is_text(one) and not isinstance(op, (ast.Eq, ast.NotEq))):
+            raise self.refused(node, "ordering a text, or comparing it with a number,")
+        return np.asarray(_COMPARE[type(op)][1](one, other), dtype=bool)
+
+    def truth(self, node: ast.AST) -> np.ndarray:
+        found = np.asarray(self.value(node))
+        if found.dtype != bool:
+            raise self.refused(node, "something other than a comparison beside and, or, not")
+        return found
+
+    def refused(self, node: ast.AST, what: str) -> InputError:
+        at = getattr(node, "col_offset", 0) + 1
+        return InputError(self.field, self.text, f"{what} at character {at} is not allowed", _REMEDY)

@@ -18,7 +18,7 @@ from trackroller.roller.options import Options
 from trackroller.roller.requirements import distinct_rows, normalised_patches
 from trackroller.roller.stages import grid as stages_grid
 from trackroller.roller.stages.scene import Results, surface_tractions
-from trackroller.roller.stop import holds, parse_condition
+from trackroller.roller.stop import PEAK, holds, parse_condition
 
 
 def _patches(results: Results, options: Options, slip: Slip | None = None) -> np.ndarray:
@@ -57,7 +57,7 @@ def stop(results: Results, options: Options) -> None:
     table, v = results.scene.table, results.values
     bounded = []
     for comparison in parse_condition(options.stop_if):
-        if comparison.by_bound:
+        if comparison.name == PEAK:
             bounded.append(comparison)
             continue
         value = results.regime.astype(float) if comparison.name == "regime" else v[comparison.name]
