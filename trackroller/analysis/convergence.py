@@ -1,4 +1,4 @@
-"""How indices settle as the sample grows, and how many more samples they would take."""
+"""How indices settle as the sample grows, and how many more samples they need."""
 
 from __future__ import annotations
 
@@ -9,12 +9,23 @@ import numpy as np
 
 from trackroller.analysis.indices import Estimates
 
-HALF_WIDTH = 0.05  # half width of the 95 % interval of a share of variance that counts as converged
+HALF_WIDTH = 0.05  # a share of variance whose 95 % interval has at most this half width counts as converged
 HALF_WIDTH_MORRIS = 0.15  # the same for mu*, relative to the largest mu*
 
 
 def sizes(total: int, smallest: int = 16, points: int = 7) -> np.ndarray:
-    """Sample sizes at which the course is taken: halves of the whole, down to `smallest`; increasing."""
+    """Return the sample sizes of a course: halves of the whole sample, down to `smallest`.
+
+    Parameters
+    ----------
+    total : number of samples
+    smallest : smallest size
+    points : largest number of sizes
+
+    Returns
+    -------
+    Increasing sizes, shape (m,).
+    """
     found = [total]
     while len(found) < points and found[-1] // 2 >= smallest:
         found.append(found[-1] // 2)
@@ -22,31 +33,39 @@ def sizes(total: int, smallest: int = 16, points: int = 7) -> np.ndarray:
 
 
 def course(estimate: Callable[[int], Estimates], at: Sequence[int] | np.ndarray, names: Sequence[str]) -> Estimates:
-    """Estimates and their intervals from the first samples of a design.
+    """Estimate indices and their intervals from the first samples of a design.
 
     Parameters
     ----------
     estimate : number of samples -> estimates, each shape (k,)
     at : sample sizes, shape (m,)
-    names : which estimates, each with its _low and _high
+    names : indices, each with its _low and _high
 
     Returns
     -------
     name_course, name_course_low, name_course_high, each shape (m, k).
     """
     rows = [estimate(int(size)) for size in at]
-    return {
-        f"{name}_course{end}": np.stack([row[name + end] for row in rows])
-        for name in names
-        for end in ("", "_low", "_high")
-    }
+    keys = [(name, end) for name in names for end in ("", "_low", "_high")]
+    return {f"{name}_course{end}": np.stack([row[name + end] for row in rows]) for name, end in keys}
 
 
 def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
-    """How many times the samples are needed for the widest interval to reach `target` (half width).
+    """Return the factor on the sample size that brings the widest interval to a target.
 
-    Half widths fall as one over the root of the samples (the rule for random samples; a Sobol sequence does
-    better, so this is on the safe side). 1 means converged; else a power of two; NaN if nothing is known.
+    Parameters
+    ----------
+    low, high : bounds of the intervals, same shape; NaN is ignored
+    target : half width wanted
+
+    Returns
+    -------
+    1 if the target is met, otherwise a power of two; NaN if no interval is known.
+
+    Notes
+    -----
+    The half width falls as one over the root of the samples. A Sobol sequence does better, so the factor is
+    conservative.
     """
     half = (np.asarray(high) - np.asarray(low)) / 2
     half = half[np.isfinite(half)]
@@ -57,7 +76,7 @@ def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
 
 
 def advice(times: float) -> str:
-    """Words for `take_times`."""
+    """Return a sentence for the result of `take_times`."""
     if math.isnan(times):
         return "too few usable samples to judge convergence"
     return "converged" if times <= 1 else f"not converged: take {times:.0f}x more samples"
