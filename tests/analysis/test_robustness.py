@@ -1,4 +1,4 @@
-"""Nested studies: distribution of life and probability of each regime at every design point."""
+"""Inner/outer array designs: distribution of life and probability of each regime at every design point."""
 
 import numpy as np
 import pytest
@@ -12,9 +12,9 @@ from trackroller.errors import InputError
 from trackroller.report import sentences as words
 from trackroller.study.config import parse_study
 
-NESTED = {
-    "name": "nested",
-    "design": "nested",
+INNER_OUTER = {
+    "name": "robust",
+    "design": "inner_outer",
     "samples": 2000,
     "factors": {
         "velocity": {"values": [30.0, 60.0]},
@@ -24,7 +24,7 @@ NESTED = {
 }
 
 
-def solved(fake, path=None, data=NESTED):
+def solved(fake, path=None, data=INNER_OUTER):
     study = parse_study(data)
     ds = study.design()
     for name, values in fake(ds).items():
@@ -121,11 +121,11 @@ def test_wilson_interval_is_sound_at_the_ends():
     assert low[2] == pytest.approx(0.404, abs=1e-3)
 
 
-def test_robustness_wants_a_nested_study():
+def test_robustness_refuses_another_design():
     """Another design is refused by name."""
-    data = {"name": "flat", "design": "lhs", "samples": 50, "factors": NESTED["factors"]}
+    data = {"name": "flat", "design": "lhs", "samples": 50, "factors": INNER_OUTER["factors"]}
     ds = solved(lognormal, data=data)
-    with pytest.raises(InputError, match="nested"):
+    with pytest.raises(InputError, match="inner_outer"):
         robustness(ds, design_of(ds))
 
 

@@ -134,13 +134,13 @@ def test_motor_force_in_the_base_and_another_factor(tmp_path):
     assert at == pytest.approx(np.sin(alpha) / r_a * 4 / k, rel=1e-6)
 
 
-def test_a_nested_sample_has_pairs_and_a_sample_that_draws_the_model_says_why_not(tmp_path):
+def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_why_not(tmp_path):
     factors = {
         "friction_coefficient": {"uniform": [0.05, 0.4]},
         "axial_force": {"uniform": [0, 30]},
         "motor_force": {"values": [0, -10]},
     }
-    gathered = study(tmp_path, factors, design="nested", samples=24, models=["sliding", "kalker"])
+    gathered = study(tmp_path, factors, design="inner_outer", samples=24, models=["sliding", "kalker"])
     drawn, text = shown(gathered, tmp_path)
     assert set(drawn) >= FIGURES and "48 designs that differ in nothing but the model" in text
     gathered = study(tmp_path, factors, design="lhs", samples=24, models=["sliding", "kalker"])

@@ -69,7 +69,7 @@ def solved(data=LHS, regime=None, **fake):
         ({"analysis": {"scale": {"friction_power": "log"}}}, ["analysis.scale.friction_power", "log10"]),
         ({"analysis": {"measures": ["detla"]}}, ["analysis.measures", "delta"]),
         ({"analysis": {"keep": ["full_slip"]}}, ["analysis.keep", "rolling"]),
-        ({"analysis": {"material_scatter": True}}, ["material_scatter", "nested"]),
+        ({"analysis": {"material_scatter": True}}, ["material_scatter", "inner_outer"]),
         ({"analysis": 3}, ["analysis"]),
         ({"pareto": {"friction_power": "min"}}, ["pareto", "two or more"]),
         ({"pareto": {"friction_power": "min", "roller_life_hours": "up"}}, ["pareto.roller_life_hours", "max"]),
@@ -90,7 +90,7 @@ def test_wrong_goals_of_a_study_are_refused_with_field_and_remedy(data, parts):
 
 
 def test_material_scatter_needs_materials_that_have_some():
-    data = {"name": "n", "design": "nested", "factors": {"axial_force": {"uniform": [0.0, 1.0]}}}
+    data = {"name": "n", "design": "inner_outer", "factors": {"axial_force": {"uniform": [0.0, 1.0]}}}
     with pytest.raises(InputError, match=r"no scatter is known of 1\.7225-normalised"):
         parse_study(data | {"analysis": {"material_scatter": True}})
     assert parse_study(data | {"analysis": {"material_scatter": 4}}).config.analysis.material_scatter == 4
@@ -276,10 +276,10 @@ def test_scatter_of_each_material_widens_its_own_cases():
     assert np.log10(t) == pytest.approx(3 - 0.5 * 0.8416, abs=2e-3)
 
 
-def test_nested_study_with_material_scatter_reaches_the_report(tmp_path):
+def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
     data = {
         "name": "n",
-        "design": "nested",
+        "design": "inner_outer",
         "samples": 200,
         "outputs": ["forces", "life"],
         "factors": {
@@ -313,7 +313,7 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
     ds.attrs = {"study": study.merged()}
     assert design_of(ds).method == "table"
-    assert "go together (rank correlation 1.00)" in analyse_dataset(ds, ["roller_life_hours"]).attrs["treatment"]
+    assert "are correlated (rank correlation 1.00)" in analyse_dataset(ds, ["roller_life_hours"]).attrs["treatment"]
 
 
 def test_sources_of_an_analysis_named_in_the_workflow_are_there():

@@ -327,7 +327,7 @@ SAMPLED = {
         ("sobol", 30, 50),
         ("saltelli", 8, 16),
         ("morris", 5, 9),
-        ("nested", 10, 15),
+        ("inner_outer", 10, 15),
     ],
 )
 def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, solved, design, small, large):

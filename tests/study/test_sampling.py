@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from trackroller.errors import InputError
-from trackroller.numerics.expressions import evaluate, names
+from trackroller.numerics.expressions import comparisons, condition, evaluate, names
+from trackroller.study.config import parse_study
 from trackroller.study.design import arrays as designs
 from trackroller.study.design.factors import Factor, parse
 from trackroller.study.design.sampling import METHODS, sample
@@ -19,7 +20,9 @@ MIXED = {
 }
 
 
-@pytest.mark.parametrize("method", ["lhs", "sobol", "saltelli", "morris", "central_composite", "box_behnken", "nested"])
+@pytest.mark.parametrize(
+    "method", ["lhs", "sobol", "saltelli", "morris", "central_composite", "box_behnken", "inner_outer"]
+)
 def test_every_sampled_method_takes_every_kind_of_factor(method):
     """Mixed factors: right lengths, right ranges, derived factor follows, same seed same design."""
     design = sample(MIXED, method, 16, 3, base={"guide_profile_radius": 6.0})
@@ -120,10 +123,10 @@ def test_response_surface_designs_have_their_known_sizes():
         assert (off[~np.eye(k, dtype=bool)] == 0).all()
 
 
-def test_nested_design_repeats_one_inner_sample_at_every_point():
+def test_inner_outer_design_repeats_one_inner_sample_at_every_point():
     """Common random numbers: the scatter is the same at each design point."""
     spec = {"p": {"values": [1, 2, 3]}, "x": {"normal": [0, 1]}, "c": {"values": ["a", "b"], "scatter": True}}
-    design = sample(spec, "nested", 10, 1)
+    design = sample(spec, "inner_outer", 10, 1)
     assert design.meta["design_points"] == 3 and design.meta["inner"] == ["x", "c"]
     inner = design.columns["x"].reshape(3, 10)
     assert (inner == inner[0]).all()
@@ -191,7 +194,7 @@ def test_unsafe_or_wrong_expressions_are_refused_with_their_place(text, says):
         ({"x": {"linspace": [0, 1, 2.5]}}, "grid", "whole number"),
         ({"x": {"uniform": [0, 1]}}, "grid", "linspace"),
         ({"x": {"uniform": [0, 1]}}, "soboll", "Did you mean 'sobol'"),
-        ({"x": {"values": [1, 2]}}, "nested", "scatters"),
+        ({"x": {"values": [1, 2]}}, "inner_outer", "scatters"),
         ({"x": {"values": [1, 2, 3]}}, "plackett_burman", "two values"),
         ({"x": {"uniform": [0, 1]}}, "box_behnken", "3 to 7"),
         ({"x": {"values": [1]}}, "lhs", "must vary"),
@@ -217,3 +220,32 @@ def test_quantiles_of_listed_values_fall_into_equal_bins():
     """from_unit at the ends and the middle of [0, 1]."""
     factor = Factor("c", "values", levels=("a", "b", "c"))
     assert list(factor.from_unit(np.array([0.0, 0.3, 0.34, 0.99, 1.0]))) == ["a", "a", "b", "c", "c"]
+
+
+def test_old_name_of_the_inner_outer_design_keeps_working_and_says_so():
+    """`nested` draws the same rows, and a study file with it gets the new name and a warning."""
+    spec = {"velocity": {"values": [30.0, 60.0]}, "axial_force": {"normal": [0.0, 1.0]}}
+    old, new = (sample(spec, name, 16, 3) for name in ("nested", "inner_outer"))
+    assert old.method == new.method == "inner_outer"
+    np.testing.assert_array_equal(old.unit, new.unit)
+    data = {"name": "n", "samples": 16, "factors": spec}
+    with pytest.warns(FutureWarning, match="'nested' is now called 'inner_outer'"):
+        study = parse_study(data | {"design": "nested"})
+    assert study.merged() == parse_study(data | {"design": "inner_outer"}).merged()
+
+
+def test_one_parser_serves_factors_constraints_and_stop_conditions():
+    """Parts of variables are names; a condition splits into comparisons; NaN meets no condition, not even !=."""
+    assert names("peak_stress[ 1, roller ] > 2 * R_m or slip < pi") == {"peak_stress[1,roller]", "R_m", "slip"}
+    parts = comparisons("peak_stress[1,roller] > 2 * R_m or regime == full_slip", "stop_if")
+    assert [(p.name, p.symbol, p.limit) for p in parts] == [
+        ("peak_stress[1,roller]", ">", "2 * R_m"),
+        ("regime", "==", "full_slip"),
+    ]
+    values = {"slip": np.array([0.1, np.nan, 0.3]), "max_pressure[1]": np.array([[1.0], [2.0]])}
+    found = condition("slip != 0.3 and max_pressure[1] < 2", values)
+    np.testing.assert_array_equal(found, [[True, False, False], [False, False, False]])
+    with pytest.raises(InputError, match="joined by 'or'"):
+        comparisons("slip > 0.1 and slip < 0.2", "stop_if")
+    with pytest.raises(InputError, match="subscript that does not name the part"):
+        evaluate("(slip + 1)[1]", values)

@@ -1,4 +1,4 @@
-"""Sensitivities as a labelled data set, and in words what was used, left out and goes together."""
+"""Label sensitivity indices, and record which rows were used, which were left out and which factors correlate."""
 
 from __future__ import annotations
 
@@ -6,20 +6,31 @@ from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
+from scipy.stats import rankdata
 
-from trackroller.analysis import indices
+from trackroller.analysis.indices import Estimates, constant
 from trackroller.parameters import PARAMETERS, REGIMES
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output
 
-CORRELATED = 0.5  # rank correlation of two columns of a table from which on it is told
+CORRELATED = 0.5  # rank correlation of two columns of a table above which the result warns
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
-Fields = dict[str, np.ndarray]
 
 
 def note(column: Output, used: int, total: int, unit: str) -> str:
-    """What was used for one output and why the rest was not, in words."""
-    if indices.constant(column.values):
+    """Return a sentence on the rows used for one output.
+
+    Parameters
+    ----------
+    column : the output
+    used, total : number of rows, blocks, effects or cells
+    unit : which of these, in the plural
+
+    Returns
+    -------
+    How many were used and why the others were not.
+    """
+    if constant(column.values):
         return "constant or never usable: no index can be given"
     text = f"{used} of {total} {unit} used"
     if column.excluded:
@@ -30,7 +41,17 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
 
 
 def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
-    """How the regimes of a study were treated, in words."""
+    """Return a sentence on the treatment of the regimes.
+
+    Parameters
+    ----------
+    regime : number of the regime of each case, shape (n,)
+    keep : names of the regimes whose cases were used
+
+    Returns
+    -------
+    How many cases each regime has, and which regimes were left out.
+    """
     counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
     words = {name: name.replace("_", " ").replace("lift off", "lift-off") for name in REGIMES}
     text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
@@ -44,11 +65,18 @@ def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
 
 
 def correlated(design: SampledDesign) -> str:
-    """Warning of columns of a table that go together, in words; empty for designs whose factors are independent."""
+    """Return a warning of correlated columns of a table.
+
+    Parameters
+    ----------
+    design : the design
+
+    Returns
+    -------
+    A warning, or an empty text; the factors of every other design are independent.
+    """
     if design.method != "table" or len(design.factors) < 2:
         return ""
-    from scipy.stats import rankdata
-
     names = list(design.factors)
     table = np.abs(np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False)))
     pairs = [(float(table[i, j]), names[i], names[j]) for i in range(len(names)) for j in range(i)]
@@ -56,7 +84,7 @@ def correlated(design: SampledDesign) -> str:
     if size < CORRELATED:
         return ""
     both = f"{factor_name(other)} and {factor_name(one)}"
-    return f"; {both} go together (rank correlation {size:.2f}): each is given the influence of both"
+    return f"; {both} are correlated (rank correlation {size:.2f}): the index of each includes the influence of both"
 
 
 _DIMS = {1: ("output", "factor"), 2: ("output", "factor", "factor_2"), 0: ("output",)}
@@ -75,19 +103,31 @@ _WORDS = {
     "curvature": "quadratic coefficient, coded",
     "interaction": "two-factor interaction effect",
     "r_squared": "share of variance fitted",
-    "fit_alone": "share of variance alone, by a fitted polynomial",
+    "fit_alone": "first-order index by a fitted polynomial",
     "fit_share": "share of variance predicted by the fitted polynomial",
-    "first": "share of variance explained alone, from given data",
+    "first": "first-order index (share of variance), from given data",
     "pawn": "PAWN index",
     "delta": "delta index",
-    "pawn_noise": "PAWN index an inert factor stays below",
-    "delta_noise": "delta index an inert factor stays below",
+    "pawn_noise": "PAWN index below which an inert factor stays",
+    "delta_noise": "delta index below which an inert factor stays",
     "prcc": "partial rank correlation coefficient",
 }
 
 
-def labelled(design: SampledDesign, columns: list[Output], results: list[Fields], at: np.ndarray) -> xr.Dataset:
-    """Results of each output as one data set; `at` holds the sample sizes of the courses."""
+def labelled(design: SampledDesign, columns: list[Output], results: list[Estimates], at: np.ndarray) -> xr.Dataset:
+    """Join the results of all outputs.
+
+    Parameters
+    ----------
+    design : the design
+    columns : the outputs
+    results : estimates of each output
+    at : sample sizes of the courses, shape (m,)
+
+    Returns
+    -------
+    Dataset with the dimensions output, factor, factor_2 and sample_size, with units and long names.
+    """
     out = xr.Dataset(
         coords={
             "output": np.array([c.name for c in columns], dtype=object),
@@ -114,5 +154,5 @@ def labelled(design: SampledDesign, columns: list[Output], results: list[Fields]
 
 
 def factor_name(name: str) -> str:
-    """A factor's name for people: that of the parameter, or its own with spaces."""
+    """Return the long name of a parameter, or the name of another factor with spaces."""
     return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")

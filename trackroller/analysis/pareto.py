@@ -1,9 +1,9 @@
-"""The designs that no other beats: Pareto set of a study under constraints."""
+"""Pareto set of a study: the designs that no other design beats in every goal, under constraints."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,25 +13,31 @@ from trackroller.errors import InputError, nearest
 from trackroller.numerics.expressions import condition
 from trackroller.parameters import EXACTNESS, MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.study.design.factors import label
-from trackroller.study.goals import aliased, names_in
+from trackroller.study.design.sampling import SampledDesign, current_name
+from trackroller.study.goals import names_in
 from trackroller.study.outputs import case_dims, flat, outputs, read_study, regimes
-
-if TYPE_CHECKING:
-    from trackroller.study.design.sampling import SampledDesign
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.ndarray | None = None) -> np.ndarray:
-    """Rows that no allowed row beats in every objective.
+    """Mark the rows that no allowed row beats in every objective.
 
     Parameters
     ----------
-    objectives : shape (n, m); a row with a NaN is no candidate
-    directions : `min` or `max` for each objective, m of them
-    allowed : rows within the constraints, shape (n,)
+    objectives : shape (n, m); a row with a NaN is not a candidate
+    directions : `min` or `max` for each of the m objectives
+    allowed : rows that meet the constraints, shape (n,)
 
     Returns
     -------
-    Mask, shape (n,). Equal rows all stay. Cost: n times the size of the set.
+    Mask, shape (n,). Of equal rows, all are in the set.
+
+    Raises
+    ------
+    InputError : a direction is neither `min` nor `max`
+
+    Notes
+    -----
+    Cost: n times the size of the set.
     """
     signs = []
     for direction in directions:
@@ -43,7 +49,7 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.n
     if allowed is not None:
         candidate &= allowed
     rows = np.flatnonzero(candidate)
-    # in lexicographic order a row can be beaten by earlier ones only
+    # in lexicographic order only an earlier row can beat a row
     rows = rows[np.lexsort(costs[rows].T[::-1])]
     front: list[int] = []
     held = np.empty((0, costs.shape[1]))
@@ -58,28 +64,31 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.n
 
 
 def pareto(
-    ds: xr.Dataset, objectives: Mapping[str, str], constraints: Iterable[str] = (), keep: Iterable[str] | None = None
+    ds: xr.Dataset,
+    objectives: Mapping[str, str],
+    constraints: Iterable[str] = (),
+    keep: Iterable[str] | None = None,
 ) -> xr.Dataset:
-    """Pareto set of a solved study.
+    """Find the Pareto set of a solved study.
 
     Parameters
     ----------
     ds : gathered study with its study file as attribute
-    objectives : output, numeric factor or parameter -> `min` or `max`, e.g. {"roller_life_hours": "max",
+    objectives : output, numeric factor or parameter -> `min` or `max`, such as {"roller_life_hours": "max",
         "friction_power": "min"}
-    constraints : comparisons such as "max_pressure < 1200", "regime != full_slip", "slip < 0.1 or slip > 0.2" over
-        outputs, factors, parameters and `regime`; a row in which one of its values is not defined does not pass
-    keep : regimes that are allowed; rolling alone if not given, or any solved one if a constraint speaks of `regime`
+    constraints : comparisons over outputs, factors, parameters and `regime`, such as "max_pressure < 1200",
+        "regime != full_slip" or "slip < 0.1 or slip > 0.2". A row with an undefined value does not meet them.
+    keep : regimes that are allowed. Without it: rolling only, or every solved regime if a constraint names `regime`
 
     Returns
     -------
-    Dataset over `row` (all rows that are allowed, by regime and constraints): the factors, the objectives, the
-    constrained outputs, and `optimal` (1 in the set). Attributes count what each constraint excluded. Of several
-    contact models only the rows of the most exact one are designs (attribute `model`).
+    Dataset over `row` (all rows that meet regime and constraints): the factors, the objectives, the constrained
+    outputs, and `optimal` (1 in the set). The attribute `excluded` counts the rows that each constraint excluded.
+    If a study has several contact models, only the rows of the most exact model count (attribute `model`).
 
     Raises
     ------
-    InputError : unknown names, a constraint that cannot be read, fewer than two objectives
+    InputError : unknown names, a constraint that is not a comparison, or fewer than two objectives
     """
     if len(objectives) < 2:
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
@@ -91,34 +100,22 @@ def pareto(
     dims = case_dims(ds, design.factors)
     regime = regimes(ds, dims)
     columns = {name: _column(ds, design, name, dims) for name in dict.fromkeys([*objectives, *sorted(wanted)])}
-    allowed = np.isin(regime, [REGIMES.index(name) for name in keep])
+    values = {name: column[0] for name, column in columns.items()}
     own, model = _own_rows(design)
-    excluded = {"regime": int((own & ~allowed).sum())}
-    allowed &= own
-    table = np.stack([np.asarray(columns[n][0], dtype=float) for n in objectives], axis=1)
-    for text in constraints:  # first what the user asked for, then what has no number
-        good = np.broadcast_to(_meets(text, columns), allowed.shape)
-        excluded[text] = int((allowed & ~good).sum())
-        allowed &= good
-    defined = ~np.isnan(table).any(axis=1)
-    excluded["an undefined goal"] = int((allowed & ~defined).sum())
-    allowed &= defined
+    kept = np.isin(regime, [REGIMES.index(name) for name in keep])
+    table = np.stack([np.asarray(values[n], dtype=float) for n in objectives], axis=1)
+    allowed, excluded = _allowed(table, values, constraints, own, kept)
     optimal = pareto_mask(table, objectives.values(), allowed)
-    data: dict[str, Any] = {
-        name: ("row", values[0][allowed], {"units": values[1], "long_name": values[2]})
-        for name, values in columns.items()
-    }
-    for name, value in design.columns.items():
-        if name not in data and not (model and name == "contact_model"):
-            shown = np.array([label(v) for v in value], dtype=object) if value.dtype == object else value
-            data[name] = ("row", shown[allowed])
+    shown = {n: c for n, c in design.columns.items() if not (model and n == "contact_model")}
+    data: dict[str, Any] = {name: ("row", _labels(column)[allowed]) for name, column in shown.items()}
+    for name, (value, units, long_name) in columns.items():
+        data[name] = ("row", value[allowed], {"units": units, "long_name": long_name})
     data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
     out = xr.Dataset(data, coords={"row": np.flatnonzero(allowed)})
-    factors = [n for n in design.factors if not (model and n == "contact_model")]
     out.attrs = {
         "objectives": ", ".join(f"{n} {d}" for n, d in objectives.items()),
         "constraints": "; ".join(constraints),
-        "factors": ", ".join(factors),
+        "factors": ", ".join(n for n in design.factors if n in shown),
         "rows": int(own.sum()),
         "model": model,
         "excluded": "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing",
@@ -128,8 +125,29 @@ def pareto(
     return out
 
 
+def _allowed(
+    table: np.ndarray, values: Mapping[str, Any], constraints: list[str], own: np.ndarray, kept: np.ndarray
+) -> tuple[np.ndarray, dict[str, int]]:
+    """Return the mask of allowed rows and the number of rows that each reason excluded."""
+    allowed = own.copy()
+    excluded = {}
+    # constraints come first, so that a row without a value counts for them
+    checks = {"regime": kept}
+    known = {**values, **{name: name for name in REGIMES}}
+    checks |= {text: np.broadcast_to(condition(text, known), own.shape) for text in constraints}
+    checks["an undefined goal"] = ~np.isnan(table).any(axis=1)
+    for reason, good in checks.items():
+        excluded[reason] = int((allowed & ~good).sum())
+        allowed &= good
+    return allowed, excluded
+
+
+def _labels(values: np.ndarray) -> np.ndarray:
+    return np.array([label(v) for v in values], dtype=object) if values.dtype == object else values
+
+
 def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:
-    """Rows of the most exact contact model, and its name where there are several; all rows else."""
+    """Return the rows of the most exact of several contact models and its name; without several models, all rows."""
     column = design.columns.get("contact_model")
     named = np.full(design.size, "") if column is None else column.astype(str)
     found = [m for m in EXACTNESS if (named == m).any()]
@@ -137,13 +155,20 @@ def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:
 
 
 def study_pareto(ds: xr.Dataset) -> xr.Dataset | None:
-    """Pareto set for the keys `pareto` and `constraints` of the study; for two usual goals where it names none.
+    """Find the Pareto set for the keys `pareto` and `constraints` of a study.
 
-    None where there is nothing to choose: a nested study, or results without life and friction power or pressure.
+    Parameters
+    ----------
+    ds : gathered study with its study file as attribute
+
+    Returns
+    -------
+    As `pareto`. Without the key `pareto`, the goals are those of `default_objectives`. None if the study has no
+    such goals, or if its design is `inner_outer`: scattering factors are not free choices.
     """
     study = read_study(ds)
-    if str(study.get("design", ds.attrs.get("design", ""))) == "nested":
-        return None  # a scattered quantity is no one's to choose: the best of chance is no design
+    if current_name(str(study.get("design", ds.attrs.get("design", "")))) == "inner_outer":
+        return None
     goals = study.get("pareto") or default_objectives(ds)
     if not goals:
         return None
@@ -151,7 +176,16 @@ def study_pareto(ds: xr.Dataset) -> xr.Dataset | None:
 
 
 def default_objectives(ds: xr.Dataset) -> dict[str, str]:
-    """Life up, and friction power (else the contact pressure) down, where a study has them."""
+    """Return the usual goals: longest life, and lowest friction power, friction energy or contact pressure.
+
+    Parameters
+    ----------
+    ds : gathered study
+
+    Returns
+    -------
+    Output -> `max` or `min`; empty if the study lacks one of the two goals.
+    """
     found: dict[str, str] = {}
     if "roller_life_hours" in ds and np.isfinite(ds["roller_life_hours"]).any():
         found["roller_life_hours"] = "max"
@@ -168,13 +202,11 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
 
 
 def _column(ds: xr.Dataset, design: SampledDesign, name: str, dims: tuple[str, ...]) -> tuple[np.ndarray, str, str]:
-    """Values (n,), units and words of a factor, a parameter, the regime or an output (whatever its regime)."""
+    """Return values (n,), units and name of a factor, a parameter, the regime or an output in every regime."""
     if name == "regime":
         return np.array(REGIMES, dtype=object)[regimes(ds, dims)], "", "regime"
     if name in design.columns:
-        values = design.columns[name]
-        if values.dtype == object:
-            values = np.array([label(v) for v in values], dtype=object)
+        values = _labels(design.columns[name])
     elif name in PARAMETERS or name in MATERIAL_FIELDS:
         values = flat(ds, name, dims) if name in ds.variables and ds[name].ndim else _constant(ds, name, design.size)
     else:
@@ -190,16 +222,9 @@ def _column(ds: xr.Dataset, design: SampledDesign, name: str, dims: tuple[str, .
 
 
 def _constant(ds: xr.Dataset, name: str, rows: int) -> np.ndarray:
-    """A parameter that is the same in all cases: from the result itself, else from its study file."""
+    """Return a parameter that is the same in all cases, from the result or else from its study file."""
     if name in ds.variables:
         return np.full(rows, ds[name].item())
     base = read_study(ds).get("base", {})
     value = base.get(name, PARAMETERS[name].default if name in PARAMETERS else "")
     return np.full(rows, np.nan if value is None else value)
-
-
-def _meets(text: str, columns: Mapping[str, tuple[np.ndarray, str, str]]) -> np.ndarray:
-    plain, parts = aliased(text)
-    known: dict[str, Any] = {name: column[0] for name, column in columns.items()}
-    known |= {alias: columns[name][0] for alias, name in parts.items()} | {name: name for name in REGIMES}
-    return condition(plain, known)

@@ -1,4 +1,4 @@
-"""The design behind a result: drawn again from the study file stored in it, and checked against its rows."""
+"""The design of a result, drawn again from the study file stored in it and checked against its rows."""
 
 from __future__ import annotations
 
@@ -12,17 +12,28 @@ from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import Factor
-from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
+from trackroller.study.design.sampling import OPTIONS, SampledDesign, current_name, sample
 from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study
 
 
 def design_of(ds: xr.Dataset, study: Mapping[str, Any] | None = None) -> SampledDesign:
-    """The design a study was solved on, drawn again from the stored study file and checked against its rows.
+    """Draw the design of a result again.
 
-    Raises `InputError` if the stored factors do not reproduce the rows.
+    Parameters
+    ----------
+    ds : gathered study with its merged study file as attribute `study`
+    study : that study file, if it has been read already
+
+    Returns
+    -------
+    SampledDesign
+
+    Raises
+    ------
+    InputError : there is no study file, or its factors do not reproduce the rows
     """
     study = read_study(ds) if study is None else study
-    method = str(study.get("design", ds.attrs.get("design", ""))) if study else ""
+    method = current_name(str(study.get("design", ds.attrs.get("design", "")))) if study else ""
     if not method:
         raise InputError("study", ds.attrs.get("study"), "a result with its merged study file as attribute `study`")
     specs = dict(study.get("factors", {}))

@@ -1,7 +1,8 @@
-"""Robustness of design points: what life does when friction, fit and load scatter.
+"""Robust design: the life at each design point if friction, fit and load scatter.
 
-A nested study has a grid of design points outside and the same sample of scattering factors inside each, so
-differences between design points are not differences of luck (common random numbers).
+An inner/outer array design (`inner_outer`) has a grid of design points (outer array) and the same sample of the
+scattering factors (inner array) at each of them. Differences between design points are therefore not chance (common
+random numbers).
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 import xarray as xr
+from scipy import stats
+from scipy.optimize import brentq
 
 from trackroller.damage.fatigue import DECADES, scatter_ranges, woehler_exponent
 from trackroller.errors import InputError
@@ -19,7 +22,7 @@ from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import label
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
-from trackroller.study.outputs import case_dims, default_names, flat, outputs, read_study, regimes
+from trackroller.study.outputs import Output, case_dims, default_names, flat, outputs, read_study, regimes
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
@@ -30,65 +33,69 @@ def robustness(
     names: Iterable[str] | None = None,
     log_life_scatter: float | Mapping[str, np.ndarray] = 0.0,
 ) -> xr.Dataset:
-    """Distribution of every output and probability of each regime at every design point.
+    """Summarise every output and the probability of each regime at every design point.
 
     Parameters
     ----------
-    ds : solved nested study, dimension `case`
+    ds : solved study with an inner/outer array design, dimension `case`
     design : its design (`trackroller.analysis.restore.design_of`)
     names : outputs, see `trackroller.study.outputs.outputs`
-    log_life_scatter : standard deviation of log10 life of the material itself [1], on top of the scatter of
-        the study; lg(T_N) / 2.563 for the scatter range T_N between 10 and 90 % failure. One number, or for
-        each body an array of shape (n,), see `material_deviations`
+    log_life_scatter : standard deviation of log10 life of the material itself [1], besides the scatter of the study:
+        lg(T_N) / 2.563 for the scatter range T_N between 10 and 90 % failure probability. One number, or for each
+        body an array of shape (n,), see `material_deviations`
 
     Returns
     -------
-    Dataset over `point` with the outer factors as coordinates: percentile (output, point, percentile),
-    mean, standard_deviation (output, point) over the rows that roll; for each life `b10`, b10_low, b10_high:
-    the life that 90 % of rollers reach, once over the rows that roll and once (`b10_safe`) with every row in
-    full slip, lift-off or failed counted as life 0; probability (regime, point) with Wilson intervals.
+    Dataset over `point` with the factors of the outer array as coordinates: percentile_value (output, point,
+    percentile); mean, standard_deviation (output, point) over the rolling cases; for each life `b10` with b10_low and
+    b10_high, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in full slip, lift-off or
+    failed counts as life 0; probability (regime, point) with Wilson intervals.
 
     Raises
     ------
-    InputError : not a nested study
+    InputError : the study has another design
     """
-    if design.method != "nested":
-        raise InputError("design", design.method, "a nested study: lists outside, distributions inside")
+    if design.method != "inner_outer":
+        allowed = "design inner_outer (formerly nested): lists as outer array, distributions as inner array"
+        raise InputError("design", design.method, allowed)
     shape = (design.meta["design_points"], design.meta["inner_samples"])
     dims = case_dims(ds, design.factors)
     regime = regimes(ds, dims).reshape(shape)
     wanted = list(names) if names is not None else default_names(ds, design.factors, dims)
     columns = outputs(ds, design.factors, wanted, natural=wanted, unlimited=True)
-    out = xr.Dataset(coords=_coordinates(design, shape, columns))
-    lists: dict[str, list[np.ndarray]] = {}
+    found = []
     for column in columns:
-        values = column.values.reshape(shape)
         body = "guide" if "guide" in column.name else "roller"
         own = log_life_scatter.get(body, 0.0) if isinstance(log_life_scatter, Mapping) else log_life_scatter
         scatter = np.broadcast_to(np.asarray(own, dtype=float), (design.size,)).reshape(shape)
-        for key, value in _statistics(values, regime, "life" in column.name, scatter).items():
-            lists.setdefault(key, []).append(value)
-    for key, found in lists.items():
+        found.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
+    out = xr.Dataset(coords=_coordinates(design, shape, columns))
+    for key in found[0] if found else ():
         axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        out[key] = (axes, np.stack(found), {"comment": "in the units of the output"})
+        out[key] = (axes, np.stack([one[key] for one in found]), {"comment": "in the units of the output"})
     share: np.ndarray = np.stack([np.mean(regime == i, axis=1) for i in range(len(REGIMES))])
     low, high = wilson(share, shape[1])
     for key, value in (("probability", share), ("probability_low", low), ("probability_high", high)):
         out[key] = (("regime", "point"), value, {"units": "1", "long_name": key.replace("_", " ") + " of the regime"})
-    out.attrs = {
-        "method": "nested",
-        "rows": int(np.prod(shape)),
-        "inner_samples": shape[1],
+    out.attrs = _attributes(design, _largest(log_life_scatter)) | {"study": ds.attrs.get("study", "")}
+    return out
+
+
+def _attributes(design: SampledDesign, scatter: float) -> dict[str, str | int | float]:
+    treatment = (
+        "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
+        "other case as life 0; the same inner sample at every design point"
+    )
+    return {
+        "method": design.method,
+        "rows": design.size,
+        "inner_samples": design.meta["inner_samples"],
         "interval": "95 %",
         "outer_factors": ", ".join(design.meta["outer"]),
         "inner_factors": ", ".join(design.meta["inner"]),
-        "log_life_scatter": _largest(log_life_scatter),
-        "study": ds.attrs.get("study", ""),
-        "treatment": "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
-        "other case as life 0; the same inner sample at every design point"
-        + (", the material's own scatter of life in B10" if _largest(log_life_scatter) else ""),
+        "log_life_scatter": scatter,
+        "treatment": treatment + (", the material's own scatter of life in B10" if scatter else ""),
     }
-    return out
 
 
 def _largest(scatter: float | Mapping[str, np.ndarray]) -> float:
@@ -97,16 +104,16 @@ def _largest(scatter: float | Mapping[str, np.ndarray]) -> float:
 
 
 def material_deviations(ds: xr.Dataset, wanted: bool | float) -> dict[str, np.ndarray]:
-    """Standard deviation of log10 life of each body's material in each case, lg(T_N) / 2.563.
+    """Return the standard deviation of log10 life of each body's material in each case, lg(T_N) / 2.563.
 
     Parameters
     ----------
     ds : gathered study with the values of its materials as attribute `materials`
-    wanted : true: T_N (or T_S to the power of k) of the materials; a number: T_N itself; false: none
+    wanted : true: T_N (or T_S to the power of k) of the materials; a number: T_N itself; false: nothing
 
     Returns
     -------
-    body -> array [1] of shape (n,); empty if not wanted. 0 for a material without scatter.
+    body -> array [1] of shape (n,), 0 for a material without scatter. Empty if not wanted.
     """
     if wanted is False or wanted is None:
         return {}
@@ -125,7 +132,16 @@ def material_deviations(ds: xr.Dataset, wanted: bool | float) -> dict[str, np.nd
 
 
 def deviation(material: Mapping[str, float]) -> float:
-    """Standard deviation of log10 life of a material (a mapping with its values), 0 without scatter."""
+    """Return the standard deviation of log10 life of a material.
+
+    Parameters
+    ----------
+    material : its values; `scatter_in_cycles` T_N or `scatter_in_stress` T_S [1]
+
+    Returns
+    -------
+    lg(T_N) / 2.563 [1]; 0 for a material without scatter.
+    """
     t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
     if t_n is None and t_s is None:
         return 0.0
@@ -135,7 +151,7 @@ def deviation(material: Mapping[str, float]) -> float:
     return float(np.log10(scatter_ranges(k, t_n, t_s)[0]) / DECADES)
 
 
-def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list) -> dict:
+def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list[Output]) -> dict:
     first = np.arange(shape[0]) * shape[1]
     outer = {}
     for name in design.meta["outer"]:
@@ -157,15 +173,14 @@ def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list) -
 
 
 def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.ndarray) -> dict[str, np.ndarray]:
-    """Statistics of one output, shapes (points, samples), NaN where not usable."""
+    """Return statistics of one output, shape (points, samples), NaN where a value is not usable."""
     points = len(values)
-    out = {
-        k: np.full(points, np.nan)
-        for k in ("mean", "standard_deviation", "used_share", "b10", "b10_low", "b10_high", "b10_safe")
-    }
+    names = ("mean", "standard_deviation", "used_share", "b10", "b10_low", "b10_high", "b10_safe")
+    out = {name: np.full(points, np.nan) for name in names}
     out["percentile_value"] = np.full((points, len(PERCENTILES)), np.nan)
     for p in range(points):
-        good = values[p][~np.isnan(values[p])]
+        known = ~np.isnan(values[p])
+        good = values[p][known]
         out["used_share"][p] = good.size / values.shape[1]
         if good.size < 2:
             continue
@@ -173,23 +188,20 @@ def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.
         if np.isfinite(good).all():
             out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
         if life:
-            known = ~np.isnan(values[p])
             out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, scatter[p][known])
-            # a row that rolls but has no life (not converged) is no evidence of a long one either
-            safe = np.where(np.isnan(values[p]) | (regime[p] != 0), 0.0, values[p])
+            # a rolling case without a life (not converged) must not count as a long life
+            safe = np.where(~known | (regime[p] != 0), 0.0, values[p])
             out["b10_safe"][p] = b10(safe, scatter[p])[0]
     return out
 
 
 def _quantile(values: np.ndarray, share: np.ndarray | float) -> np.ndarray:
-    """Quantiles by order statistics, without arithmetic between finite and infinite neighbours."""
-    ranked = np.sort(values)
-    at = np.ceil(np.asarray(share) * len(ranked)).astype(int) - 1
-    return ranked[np.clip(at, 0, len(ranked) - 1)]
+    """Return order statistics, so that no arithmetic mixes finite and infinite lives."""
+    return np.asarray(np.quantile(values, share, method="inverted_cdf"))
 
 
 def b10(lives: np.ndarray, log_life_scatter: float | np.ndarray = 0.0) -> tuple[float, float, float]:
-    """Life that 90 % reach, with its 95 % interval.
+    """Estimate the life that 90 % reach, with its 95 % interval.
 
     Parameters
     ----------
@@ -198,13 +210,13 @@ def b10(lives: np.ndarray, log_life_scatter: float | np.ndarray = 0.0) -> tuple[
 
     Returns
     -------
-    B10, lower, upper in the unit of `lives`. Without material scatter the 10 % order statistic and its
-    distribution-free (binomial) interval; with it the root of mean_i Phi((lg t - lg N_i) / s) = 0.1, and the
-    interval moved by the same ratio.
-    """
-    from scipy import stats
-    from scipy.optimize import brentq
+    B10, lower and upper bound in the unit of `lives`.
 
+    Notes
+    -----
+    Without scatter of the material: the 10 % order statistic and its distribution-free (binomial) interval. With it:
+    the root of mean_i Phi((lg t - lg N_i) / s) = 0.1, and the same interval moved by the ratio of both.
+    """
     ranked = np.sort(lives)
     count = len(ranked)
     value = float(_quantile(ranked, 0.1))
@@ -226,8 +238,17 @@ def b10(lives: np.ndarray, log_life_scatter: float | np.ndarray = 0.0) -> tuple[
 
 
 def wilson(share: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Wilson's 95 % interval of a probability seen as `share` of `count` samples; shapes as `share`."""
-    z2 = 1.959964**2
-    middle = (share + z2 / (2 * count)) / (1 + z2 / count)
-    half = np.sqrt(z2 * (share * (1 - share) / count + z2 / (4 * count**2))) / (1 + z2 / count)
-    return np.clip(middle - half, 0, 1), np.clip(middle + half, 0, 1)
+    """Return Wilson's 95 % interval of probabilities.
+
+    Parameters
+    ----------
+    share : observed shares [1], any shape
+    count : number of samples behind each share
+
+    Returns
+    -------
+    Low and high, shape of `share`.
+    """
+    seen, place = np.unique(np.rint(np.asarray(share) * count).astype(int), return_inverse=True)
+    bounds = np.array([stats.binomtest(k, count).proportion_ci(method="wilson") for k in seen.tolist()])
+    return bounds[place, 0].reshape(np.shape(share)), bounds[place, 1].reshape(np.shape(share))

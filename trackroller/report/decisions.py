@@ -49,7 +49,7 @@ def decisions(ds: xr.Dataset, analysis: Path | None) -> dict[str, Any]:
     if analysis is not None and Path(analysis).is_file():
         with xr.open_dataset(analysis) as opened:
             sens = opened.load()
-        name = "robust" if sens.attrs.get("method") == "nested" else "sensitivity"
+        name = "robust" if sens.attrs.get("method") == "inner_outer" else "sensitivity"
         found[name] = _guarded(robust_points if name == "robust" else sensitivity, sens)
     found["pareto"] = _guarded(pareto_designs, ds)
     found["models"] = _guarded(report_section, ds)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 log = logging.getLogger(__name__)
-SAMPLED = ("lhs", "sobol", "morris", "saltelli", "nested")  # designs that `samples` counts for
+SAMPLED = ("lhs", "sobol", "morris", "saltelli", "inner_outer")  # designs that `samples` counts for
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = (
     "contact_model",

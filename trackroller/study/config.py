@@ -28,7 +28,7 @@ from trackroller.parameters import (
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.design.factors import LISTS
-from trackroller.study.design.sampling import METHODS
+from trackroller.study.design.sampling import METHODS, current_name
 from trackroller.study.goals import Analysis, check, comparisons, directions
 
 if TYPE_CHECKING:
@@ -66,8 +66,8 @@ class StudyFile(BaseModel):
     table: str | None = Field(None, description="CSV of cases for design: table, beside the study file")
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
     levels: int | None = Field(None, description="morris: number of levels")
-    inner: Literal["lhs", "sobol"] | None = Field(None, description="nested: how the inside is sampled")
-    grown_from: tuple[int, ...] | None = Field(None, description="lhs, nested: earlier samples, whose rows come first")
+    inner: Literal["lhs", "sobol"] | None = Field(None, description="inner_outer: how the inner array is sampled")
+    grown_from: tuple[int, ...] | None = Field(None, description="lhs, inner_outer: earlier numbers of samples")
     outputs: tuple[str, ...] = Field(DEFAULT_OUTPUTS, description="groups of results, computed only if asked")
     contact_model: str | tuple[str, ...] = Field("sliding", description="one, or a list as a factor")
     spin_model: str | tuple[str, ...] = Field("skewed", description="one, or a list; for sliding only")
@@ -94,7 +94,7 @@ class StudyFile(BaseModel):
     @field_validator("design")
     @classmethod
     def _design(cls, value: str) -> str:
-        return choice(value, "design", METHODS)
+        return choice(current_name(value, warn=True), "design", METHODS)
 
     @field_validator("outputs")
     @classmethod

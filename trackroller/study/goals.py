@@ -15,7 +15,6 @@ None of these keys takes part in the identity of a case: changing them solves no
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -31,7 +30,6 @@ from trackroller.study.outputs import DEFAULTS, FIELDS
 MEASURES = ("first", "delta", "pawn", "prcc")
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
-_PART = re.compile(r"(\w+)\s*\[\s*([\w\s,]+?)\s*\]")
 
 
 class Analysis(BaseModel):
@@ -45,7 +43,7 @@ class Analysis(BaseModel):
     measures: tuple[str, ...] = Field(MEASURES, description="given-data measures to take besides the design's own")
     resamples: int = Field(300, ge=50, le=10_000, description="bootstrap resamples behind the 95 % intervals")
     material_scatter: bool | float = Field(
-        False, description="nested: the material's own scatter in B10; true: that of the database; or T_N"
+        False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"
     )
 
     @field_validator("scale")
@@ -103,23 +101,9 @@ def comparisons(value: Any) -> list[str]:
     return list(value)
 
 
-def aliased(text: str) -> tuple[str, dict[str, str]]:
-    """A constraint with `variable[1,roller]` written as a plain name, and what each such name stands for."""
-    found: dict[str, str] = {}
-
-    def plain(hit: re.Match[str]) -> str:
-        keys = [key.strip() for key in hit[2].split(",")]
-        name = "__".join([hit[1], *keys])
-        found[name] = f"{hit[1]}[{','.join(keys)}]"
-        return name
-
-    return _PART.sub(plain, text), found
-
-
 def names_in(constraint: str) -> set[str]:
-    """Names of outputs and factors in a constraint; regimes are words, not names."""
-    text, parts = aliased(constraint)
-    return {parts.get(name, name) for name in expressions.names(text, "constraints")} - set(REGIMES)
+    """Return the names of outputs and factors in a constraint; names of regimes are values, not names."""
+    return expressions.names(constraint, "constraints") - set(REGIMES)
 
 
 def output_names(groups: Iterable[str]) -> list[str]:
@@ -137,11 +121,12 @@ def output_names(groups: Iterable[str]) -> list[str]:
 
 
 def check_scatter(wanted: bool | float, design: str, materials: Iterable[Any]) -> None:
-    """A nested study that counts the scatter of its materials needs materials that have some."""
+    """Check that materials have a scatter if the analysis counts on it; only design `inner_outer` has a B10."""
     if wanted is False:
         return
-    if design != "nested":
-        raise InputError("analysis.material_scatter", wanted, "design: nested", "Leave it out: there is no B10 here.")
+    if design != "inner_outer":
+        remedy = "Remove the key: only inner_outer has a B10 life."
+        raise InputError("analysis.material_scatter", wanted, "design: inner_outer", remedy)
     bare = [m.name for m in materials if m.scatter_in_cycles is None and m.scatter_in_stress is None]
     if wanted is True and bare:
         raise InputError(
@@ -165,22 +150,21 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
             raise _unknown("pareto", name, free, config.outputs)
         if "expression" not in factors.get(name, {}) and not _numeric(factors.get(name, {})):
             raise InputError("pareto", name, "a number a case", "Names have no more and less.")
-    if config.design == "nested" and config.pareto:
+    if config.design == "inner_outer" and config.pareto:
         raise InputError(
             "pareto",
             dict(config.pareto),
-            "a study that is not nested: what scatters is nobody's to choose",
-            "Compare its design points by B10, or take a grid or a sample.",
+            "a design whose factors are free choices; the scattering factors of inner_outer are not",
+            "Compare the design points by B10, or use design 'grid'.",
         )
     words = [*free, *MATERIAL_FIELDS, "material_pair", "regime"]
     for text in config.constraints:
         for name in names_in(text):
             if name not in words:
                 raise _unknown("constraints", name, [*words, *REGIMES], config.outputs)
-        plain, found = aliased(text)
-        dummy: dict[str, Any] = dict.fromkeys((*free, *found), 1.0) | {name: "" for name in words[len(free) :]}
+        dummy: dict[str, Any] = dict.fromkeys(free, 1.0) | {name: "" for name in words[len(free) :]}
         dummy |= {name: "" for name, spec in factors.items() if not _numeric(spec)} | {name: name for name in REGIMES}
-        expressions.condition(plain, dummy)
+        expressions.condition(text, dummy)
     if config.constraints and not config.pareto:
         raise InputError("constraints", list(config.constraints), "they limit a Pareto set", "Add the key pareto.")
 

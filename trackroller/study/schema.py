@@ -20,7 +20,7 @@ from trackroller.parameters import (
 from trackroller.study.config import NAME, StudyFile
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import DISTRIBUTIONS
-from trackroller.study.design.sampling import METHODS
+from trackroller.study.design.sampling import METHODS, OLD_NAMES
 
 FILE = Path(__file__).resolve().parents[2] / "workflow" / "schemas" / "study.schema.json"
 
@@ -54,7 +54,7 @@ def schema() -> dict[str, Any]:
         for name in (*base, *OPTION_FACTORS)
     }
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
-    properties["design"]["enum"] = list(METHODS)
+    properties["design"]["enum"] = [*METHODS, *OLD_NAMES]
     properties["outputs"]["items"] = {"enum": list(OUTPUT_GROUPS)}
     properties["slip_terms"] |= {"items": {"enum": list(SLIP_TERMS)}, "uniqueItems": True}
     options = {"hertz": HERTZ, "stress_bodies": STRESS_BODIES, "life_rule": LIFE_RULES}

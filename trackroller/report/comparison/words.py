@@ -55,7 +55,7 @@ def overview(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
     if not number:
         return [
             f"The contact models cannot be compared: no design was solved with {reference} and another model. "
-            "A grid, a nested design or a table has such pairs; a sample that draws the model not."
+            "A grid, an inner/outer array or a table has such pairs; a sample that draws the model has none."
         ]
     found = errors(paired)
     said = [

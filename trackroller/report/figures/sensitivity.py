@@ -313,7 +313,7 @@ def draw_all(study_nc: Path, sensitivity_nc: Path, out_dir: Path) -> list[style.
     with xr.open_dataset(study_nc) as a, xr.open_dataset(sensitivity_nc) as b:
         ds, sens = a.load(), b.load()
     jobs: list[Callable[[], Drawn]] = []
-    if sens.attrs.get("method") == "nested":
+    if sens.attrs.get("method") == "inner_outer":
         jobs += [partial(robust_points, sens, str(n)) for n in sens["output"].values if "life" in str(n)]
     else:
         jobs.append(partial(overview, sens))

@@ -1,7 +1,7 @@
-"""How each method draws its rows: quantiles or codes in the unit cube, then values of each factor.
+"""How each method draws its rows: first quantiles or codes, then the values of each factor.
 
-Each function takes the independent factors, the number of samples, the seed and the method's settings, and
-returns (columns, unit, meta) as `trackroller.study.design.sampling.SampledDesign` describes them.
+Each function takes the independent factors, the number of samples, the seed and the options of the method. It returns
+(columns, unit, meta) as `trackroller.study.design.sampling.SampledDesign` describes them.
 """
 
 from __future__ import annotations
@@ -10,89 +10,77 @@ import csv
 import itertools
 import warnings
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from SALib.sample import morris, sobol
+from scipy.stats import qmc
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import PARAMETERS
-from trackroller.study.design import arrays as designs
+from trackroller.study.design import arrays
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 
-MAX_ROWS = 50_000_000  # more rows than this are a typing error, not a study
+MAX_ROWS = 50_000_000  # a larger number is a typing error
 Drawn = tuple[dict[str, np.ndarray], np.ndarray, dict[str, Any]]
+Factors = Mapping[str, Factor]
+Settings = Mapping[str, Any]
 
 
-def _map(free: Mapping[str, Factor], unit: np.ndarray, tail: float = 0.0) -> dict[str, np.ndarray]:
-    return {name: f.from_unit(unit[:, j], tail) for j, (name, f) in enumerate(free.items())}
+def _map(free: Factors, unit: np.ndarray) -> dict[str, np.ndarray]:
+    return {name: f.from_unit(unit[:, j]) for j, (name, f) in enumerate(free.items())}
 
 
-def _grid(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
+def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     for name, factor in free.items():
         if not factor.discrete:
-            raise InputError(
-                f"factors.{name}",
-                factor.kind,
-                "a grid needs values, linspace or logspace",
-                "Or choose a sampled design (lhs, sobol, saltelli, morris).",
-            )
+            allowed = "a grid needs values, linspace or logspace"
+            remedy = "Or choose a sampled design (lhs, sobol, saltelli, morris)."
+            raise InputError(f"factors.{name}", factor.kind, allowed, remedy)
     shape = tuple(len(f.levels) for f in free.values())
     if np.prod([float(s) for s in shape]) > MAX_ROWS:
-        raise InputError(
-            "design",
-            f"grid of {' x '.join(map(str, shape))}",
-            f"at most {MAX_ROWS} rows",
-            "Take fewer levels or a sampled design.",
-        )
+        size = f"grid of {' x '.join(map(str, shape))}"
+        raise InputError("design", size, f"at most {MAX_ROWS} rows", "Take fewer levels or a sampled design.")
     index = np.indices(shape).reshape(len(shape), int(np.prod(shape))).T  # the last factor runs fastest
     columns = {name: f.take(index[:, j]) for j, (name, f) in enumerate(free.items())}
     return columns, index.astype(float), {"shape": shape}
 
 
-def _random(free: Mapping[str, Factor], n: int, seed: int, method: str, earlier: Any) -> np.ndarray:
+def _quantiles(count: int, n: int, seed: int, method: str, earlier: Any) -> np.ndarray:
+    """Return quantiles of a random sample of `count` factors, shape (n, count)."""
     if method == "lhs":
-        return grown_lhs(len(free), [*check_sizes(earlier, n), n], seed)
-    from scipy.stats import qmc
-
-    engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
+        return grown_lhs(count, [*check_sizes(earlier, n), n], seed)
+    engine = qmc.Sobol(d=count, rng=np.random.default_rng(seed))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # balance of a Sobol sequence off a power of two
+        warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
         return engine.random(n)
 
 
-def _lhs(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
-    unit = _random(free, n, seed, "lhs", settings["grown_from"])
+def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
+    unit = _quantiles(len(free), n, seed, method, settings.get("grown_from", ()))
     return _map(free, unit), unit, {}
 
 
-def _sobol(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
-    unit = _random(free, n, seed, "sobol", ())
-    return _map(free, unit), unit, {}
-
-
-def _problem(free: Mapping[str, Factor]) -> dict[str, Any]:
+def _problem(free: Factors) -> dict[str, Any]:
     return {"num_vars": len(free), "names": list(free), "bounds": [[0.0, 1.0]] * len(free)}
 
 
-def _saltelli(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
-    from SALib.sample import sobol
-
+def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     blocks = 1 << max(0, n - 1).bit_length()
     second = bool(settings["second_order"])
     unit = sobol.sample(_problem(free), blocks, calc_second_order=second, seed=seed)
     return _map(free, unit), unit, {"base_samples": blocks, "second_order": second}
 
 
-def _morris(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
-    """Trajectories of SALib; a listed factor moves between a random pair of its different values instead.
+def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
+    """Draw SALib's trajectories; a list moves between a random pair of its different values instead.
 
-    A category mapped from SALib's four levels by bins would never show its fifth value, and its whole steps
-    would be divided by 2/3: mu* would be 1.5 times too large beside continuous factors.
+    Bins over SALib's four levels would never show the fifth value of a list. Its whole steps would be divided by 2/3,
+    so that its mu* would be 1.5 times too large beside continuous factors.
     """
-    from SALib.sample import morris
-
     levels = settings["levels"]
     if not isinstance(levels, int) or levels < 4 or levels % 2:
         raise InputError("design option levels", levels, "an even whole number >= 4")
@@ -114,21 +102,17 @@ def _morris(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str
     return columns, path.reshape(-1, count), {"trajectories": n, "levels": levels}
 
 
-def _coded(free: Mapping[str, Factor], method: str) -> Drawn:
-    """Response-surface designs over continuous factors, repeated for each combination of listed values."""
+def _coded(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
+    """Lay a classical design over the continuous factors, repeated for each combination of listed values."""
     numeric = [name for name, f in free.items() if not f.discrete]
     listed = [name for name, f in free.items() if f.discrete]
     if method == "plackett_burman":
         for name in listed:
             if len(free[name].levels) != 2:
-                raise InputError(
-                    f"factors.{name}",
-                    free[name].levels,
-                    "plackett_burman takes two values a factor",
-                    "Give two values, or choose morris.",
-                )
+                allowed = "plackett_burman takes two values a factor"
+                raise InputError(f"factors.{name}", free[name].levels, allowed, "Give two values, or choose morris.")
         numeric, listed = list(free), []
-    coded = getattr(designs, method)(len(numeric))
+    coded = getattr(arrays, method)(len(numeric))
     combinations = list(itertools.product(*[range(len(free[k].levels)) for k in listed]))
     crossing = np.array(combinations, dtype=float).reshape(len(combinations), len(listed))
     unit = np.empty((len(crossing) * len(coded), len(free)))
@@ -143,47 +127,77 @@ def _coded(free: Mapping[str, Factor], method: str) -> Drawn:
     return columns, unit, {"runs": len(coded), "crossed": listed}
 
 
-def _nested(free: Mapping[str, Factor], n: int, seed: int, settings: Mapping[str, Any]) -> Drawn:
-    """Grid of design points outside, the same scatter sample inside each (common random numbers)."""
+def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
+    """Repeat one sample of the scattering factors (inner array) at each point of a grid (outer array).
+
+    The same inner sample at every design point (common random numbers) keeps chance out of their differences.
+    """
     outer = {name: f for name, f in free.items() if not f.scatter}
     inner = {name: f for name, f in free.items() if f.scatter}
     if not inner:
-        raise InputError("factors", list(free), "a nested study needs a factor that scatters (a distribution)")
+        allowed = "design inner_outer needs a factor that scatters (a distribution)"
+        raise InputError(
+            "factors", list(free), allowed, "Give one factor a distribution such as {normal: [0.1, 0.02]}."
+        )
     if settings["inner"] not in ("lhs", "sobol"):
         raise unknown_name("design option inner", settings["inner"], ("lhs", "sobol"))
-    unit_in = _random(inner, n, seed, settings["inner"], settings["grown_from"])
+    drawn, sample, _ = _random(settings["inner"], inner, n, seed, settings)
     points, index, meta = _grid(outer, 0, 0, {}) if outer else ({}, np.zeros((1, 0)), {"shape": ()})
     count = len(index)
-    drawn = _map(inner, unit_in)
     columns = {name: np.repeat(values, n) for name, values in points.items()}
     columns |= {name: np.tile(values, count) for name, values in drawn.items()}
-    unit = np.empty((count * n, len(free)))
-    for j, name in enumerate(free):
-        unit[:, j] = (
-            np.repeat(index[:, list(outer).index(name)], n)
-            if name in outer
-            else np.tile(unit_in[:, list(inner).index(name)], count)
-        )
+    places = {name: np.repeat(index[:, j], n) for j, name in enumerate(outer)}
+    places |= {name: np.tile(sample[:, j], count) for j, name in enumerate(inner)}
+    unit = np.stack([places[name] for name in free], axis=1)
     meta |= {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": count}
     return columns, unit, meta
 
 
 DRAW: dict[str, Callable[..., Drawn]] = {
     "grid": _grid,
-    "lhs": _lhs,
-    "sobol": _sobol,
+    "lhs": partial(_random, "lhs"),
+    "sobol": partial(_random, "sobol"),
     "saltelli": _saltelli,
     "morris": _morris,
-    "nested": _nested,
-    **{
-        m: (lambda free, n, seed, settings, m=m: _coded(free, m))
-        for m in ("central_composite", "box_behnken", "plackett_burman")
-    },
+    "inner_outer": _inner_outer,
+    **{method: partial(_coded, method) for method in ("central_composite", "box_behnken", "plackett_burman")},
 }
 
 
 def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarray, dict[str, Any]]:
-    """The user's own cases: a CSV with one named column a factor; columns that vary are the factors."""
+    """Read the user's own cases from a CSV file.
+
+    Parameters
+    ----------
+    path : CSV with one named column a factor
+
+    Returns
+    -------
+    Columns (name -> shape (n,)), the factors (columns that vary), the list index of each value (n, factors), and an
+    empty dictionary.
+
+    Raises
+    ------
+    InputError : no such file, a line of another length, an empty cell, or a text where a number is wanted
+    """
+    names, lines = _table_lines(path)
+    columns: dict[str, np.ndarray] = {}
+    for j, name in enumerate(names):
+        cells = [line[j].strip() for line in lines]
+        try:
+            columns[name] = column([float(cell) for cell in cells], numeric=True)
+        except ValueError:
+            if name in PARAMETERS:
+                raise InputError("table", f"column {name}", PARAMETERS[name].allowed()) from None
+            columns[name] = column(cells, numeric=False)
+    levels = {name: tuple(dict.fromkeys(values.tolist())) for name, values in columns.items()}
+    free = {name: Factor(name, "values", levels=found) for name, found in levels.items() if len(found) > 1}
+    unit = np.array([[f.levels.index(v) for v in columns[name]] for name, f in free.items()], dtype=float)
+    return columns, free, unit.reshape(len(free), -1).T if free else np.zeros((len(lines), 0)), {}
+
+
+def _table_lines(path: Any) -> tuple[list[str], list[list[str]]]:
+    """Return the names of the columns and the lines of cells."""
     if path is None or not Path(path).is_file():
         raise InputError("table", path, "the path of a CSV file with one column a factor")
     with open(path, newline="", encoding="utf-8-sig") as stream:
@@ -192,23 +206,8 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
         raise InputError("table", str(path), "a CSV with a line of names and at least one case")
     names = [name.strip() for name in lines[0]]
     if len(set(names)) < len(names) or not all(names):
-        raise InputError("table", ", ".join(names), "each column needs a name of its own")
+        raise InputError("table", ", ".join(names), "a different name for each column")
     for number, line in enumerate(lines[1:], start=2):
         if len(line) != len(names) or not all(cell.strip() for cell in line):
-            raise InputError("table", f"{path}, line {number}", f"{len(names)} values are wanted, none empty")
-    columns: dict[str, np.ndarray] = {}
-    for j, name in enumerate(names):
-        cells = [line[j].strip() for line in lines[1:]]
-        try:
-            columns[name] = column([float(cell) for cell in cells], numeric=True)
-        except ValueError:
-            if name in PARAMETERS:
-                raise InputError("table", f"column {name}", PARAMETERS[name].allowed()) from None
-            columns[name] = column(cells, numeric=False)
-    free = {
-        name: Factor(name, "values", levels=tuple(dict.fromkeys(c.tolist())))
-        for name, c in columns.items()
-        if len(set(c.tolist())) > 1
-    }
-    unit = np.array([[f.levels.index(v) for v in columns[name]] for name, f in free.items()], dtype=float)
-    return columns, free, unit.reshape(len(free), -1).T if free else np.zeros((len(lines) - 1, 0)), {}
+            raise InputError("table", f"{path}, line {number}", f"{len(names)} values, none of them empty")
+    return names, lines[1:]

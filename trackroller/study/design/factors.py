@@ -1,4 +1,4 @@
-"""One factor of a study: what values it takes and with what probability.
+"""One factor of a study: its values and their probability.
 
 A factor is a small dictionary with exactly one of these keys:
 
@@ -14,8 +14,8 @@ logspace         ``[first, last, how many]`` (the values themselves, not exponen
 expression       arithmetic over other factors and base values, e.g. ``"-1.2 * guide_profile_radius"``
 ================ =====================================================================
 
-`scatter: true | false` may stand beside it in a nested study (default: distributions scatter, lists are
-design points).
+In an inner/outer array design (`inner_outer`), `scatter: true | false` may stand beside the key. Without it,
+distributions scatter (inner array) and lists are design points (outer array).
 """
 
 from __future__ import annotations
@@ -26,8 +26,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy import stats
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.numerics import expressions
 
 DISTRIBUTIONS = {"uniform": 2, "loguniform": 2, "normal": 2, "truncnormal": 4, "triangular": 3}
 LISTS = ("values", "linspace", "logspace")
@@ -39,8 +41,14 @@ TAIL = 0.01  # quantile at which a normal factor is cut in designs that visit th
 class Factor:
     """A checked factor.
 
-    `kind` is one of `KINDS`; `numbers` holds the numbers of a distribution, `levels` the listed values,
-    `text` the expression; `scatter` says whether a nested study samples it inside.
+    Parameters
+    ----------
+    name : name of the factor
+    kind : one of `KINDS`
+    numbers : numbers of a distribution
+    levels : listed values
+    text : the expression
+    scatter : whether the factor belongs to the inner array of an inner/outer array design
     """
 
     name: str
@@ -52,25 +60,38 @@ class Factor:
 
     @property
     def discrete(self) -> bool:
-        """Has a list of values."""
+        """Return whether the factor has a list of values."""
         return self.kind in LISTS
 
     @property
     def numeric(self) -> bool:
-        """All its values are numbers (an expression always is one)."""
+        """Return whether all its values are numbers (those of an expression are)."""
         return not self.discrete or all(_is_number(v) for v in self.levels)
 
     @property
     def ordered(self) -> bool:
-        """Has finite numbers, so that 'more' and 'less' mean something."""
+        """Return whether its values are finite numbers, so that more and less mean something."""
         return self.numeric and (not self.discrete or all(math.isfinite(v) for v in self.levels))
 
     def take(self, index: np.ndarray) -> np.ndarray:
-        """Listed values by index, shape (n,): float for numbers, object for categories."""
+        """Return listed values by index.
+
+        Parameters
+        ----------
+        index : numbers of the values in the list, shape (n,)
+
+        Returns
+        -------
+        Values, shape (n,): float for numbers, object for categories.
+        """
         return column([self.levels[i] for i in np.asarray(index, dtype=int)], self.numeric)
 
+    def bin(self, unit: np.ndarray) -> np.ndarray:
+        """Return the index of the listed value at the quantiles `unit`; bins of equal probability, shape (n,)."""
+        return np.minimum((unit * len(self.levels)).astype(int), len(self.levels) - 1)
+
     def from_unit(self, unit: np.ndarray, tail: float = 0.0) -> np.ndarray:
-        """Values at the quantiles `unit`.
+        """Return the values at quantiles.
 
         Parameters
         ----------
@@ -79,12 +100,11 @@ class Factor:
 
         Returns
         -------
-        Values, shape (n,). Listed values fall into bins of equal probability.
+        Values, shape (n,).
         """
         unit = np.clip(np.asarray(unit, dtype=float), 0.0, 1.0)
         if self.discrete:
-            count = len(self.levels)
-            return self.take(np.minimum((unit * count).astype(int), count - 1))
+            return self.take(self.bin(unit))
         if self.kind == "uniform":
             low, high = self.numbers
             return low + unit * (high - low)
@@ -93,8 +113,6 @@ class Factor:
             return low * (high / low) ** unit
         if self.kind == "triangular":
             return _triangular(unit, *self.numbers)
-        from scipy import stats
-
         mean, deviation, *ends = self.numbers
         if self.kind == "normal":
             cut = max(tail, 1e-9)
@@ -105,7 +123,17 @@ class Factor:
 
 
 def column(values: list[Any], numeric: bool) -> np.ndarray:
-    """A column of values: float for numbers, object (lists as tuples) for categories; shape (n,)."""
+    """Return values as a column.
+
+    Parameters
+    ----------
+    values : numbers or categories
+    numeric : whether all of them are numbers
+
+    Returns
+    -------
+    Shape (n,): float for numbers, object for categories (a list as a tuple).
+    """
     if numeric:
         return np.array(values, dtype=float)
     out = np.empty(len(values), dtype=object)
@@ -115,7 +143,7 @@ def column(values: list[Any], numeric: bool) -> np.ndarray:
 
 
 def label(value: Any) -> str:
-    """A value as text for axes, tables and file coordinates."""
+    """Return a value as text for axes, tables and coordinates of a file."""
     if isinstance(value, (tuple, list)):
         return " / ".join(label(v) for v in value)
     if isinstance(value, Mapping):
@@ -124,18 +152,25 @@ def label(value: Any) -> str:
 
 
 def parse(name: str, spec: Any) -> Factor:
-    """Check a factor's dictionary.
+    """Check the dictionary of a factor.
 
-    Raises `InputError` that names the factor, what is wrong and what is allowed.
+    Parameters
+    ----------
+    name : name of the factor
+    spec : its dictionary
+
+    Returns
+    -------
+    Factor
+
+    Raises
+    ------
+    InputError : with the name of the factor, what is wrong and what is allowed
     """
     field = f"factors.{name}"
     if not isinstance(spec, Mapping):
-        raise InputError(
-            field,
-            spec,
-            f"a factor is a dictionary with one of {', '.join(KINDS)}",
-            "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.",
-        )
+        allowed = f"a factor is a dictionary with one of {', '.join(KINDS)}"
+        raise InputError(field, spec, allowed, "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.")
     scatter = spec.get("scatter")
     if not (scatter is None or isinstance(scatter, bool)):
         raise InputError(f"{field}.scatter", scatter, "true or false")
@@ -144,16 +179,14 @@ def parse(name: str, spec: Any) -> Factor:
             raise unknown_name(f"{field} key", key, (*KINDS, "scatter"))
     keys = [key for key in spec if key in KINDS]
     if len(keys) != 1:
-        raise InputError(field, dict(spec), f"exactly one of {', '.join(KINDS)} is wanted")
+        raise InputError(field, dict(spec), f"exactly one of {', '.join(KINDS)}")
     kind = keys[0]
     value, where = spec[kind], f"{field}.{kind}"
     if kind == "expression":
-        from trackroller.numerics.expressions import names
-
-        names(value, where)
+        expressions.names(value, where)
         return Factor(name, kind, text=value)
     if not isinstance(value, (list, tuple)) or not value:
-        raise InputError(where, value, "a list that is not empty is wanted")
+        raise InputError(where, value, "a list that is not empty")
     if kind in DISTRIBUTIONS:
         return Factor(name, kind, _distribution(kind, value, where), scatter=scatter is not False)
     return Factor(name, kind, levels=_levels(kind, list(value), where), scatter=bool(scatter))
@@ -165,35 +198,24 @@ def _is_number(value: Any) -> bool:
 
 def _numbers(values: Any, count: int, where: str) -> tuple[float, ...]:
     if len(values) != count or not all(_is_number(v) and math.isfinite(v) for v in values):
-        remedy = (
-            "Sample a fraction in [0, 1] and write the dependent range as an expression."
-            if any(isinstance(v, str) for v in values)
-            else ""
-        )
-        raise InputError(where, values, f"{count} finite numbers are wanted", remedy)
+        text = any(isinstance(v, str) for v in values)
+        remedy = "Sample a fraction in [0, 1] and write the dependent range as an expression." if text else ""
+        raise InputError(where, values, f"{count} finite numbers", remedy)
     return tuple(float(v) for v in values)
 
 
 def _distribution(kind: str, value: Any, where: str) -> tuple[float, ...]:
     numbers = _numbers(value, DISTRIBUTIONS[kind], where)
-    good, wanted = {
-        "uniform": (numbers[0] < numbers[1], "low < high"),
-        "loguniform": (
-            numbers[0] < numbers[1] and numbers[0] * numbers[1] > 0,
-            "low < high of one sign, not 0",
-        ),
+    low, high = numbers[0], numbers[-1]
+    good, allowed = {
+        "uniform": (low < high, "low < high"),
+        "loguniform": (low < high and low * high > 0, "low < high of one sign, not 0"),
         "normal": (numbers[1] > 0, "a standard deviation > 0"),
-        "truncnormal": (
-            numbers[1] > 0 and numbers[-2] < numbers[-1],
-            "a standard deviation > 0 and low < high",
-        ),
-        "triangular": (
-            numbers[0] <= numbers[1] <= numbers[-1] and numbers[0] < numbers[-1],
-            "low <= most likely <= high, low < high",
-        ),
+        "truncnormal": (numbers[1] > 0 and numbers[-2] < high, "a standard deviation > 0 and low < high"),
+        "triangular": (low <= numbers[1] <= high and low < high, "low <= most likely <= high, low < high"),
     }[kind]
     if not good:
-        raise InputError(where, value, f"{wanted} is wanted")
+        raise InputError(where, value, allowed)
     return numbers
 
 
@@ -201,7 +223,7 @@ def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
     if kind == "values":
         levels: list[Any] = [tuple(v) if isinstance(v, list) else v for v in value]
         if any(_is_number(v) and math.isnan(v) for v in levels):
-            raise InputError(where, value, "NaN is not a value", "Write null for 'not given'.")
+            raise InputError(where, value, "numbers or names, but not NaN", "Write null for 'not given'.")
         if all(_is_number(v) for v in levels):
             levels = [float(v) for v in levels]
     else:
@@ -209,11 +231,11 @@ def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
         if count != int(count) or count < 1:
             raise InputError(where, value, "[first, last, how many] with a whole number >= 1 as the third")
         if kind == "logspace" and first * last <= 0:
-            raise InputError(where, value, "first and last must have one sign and not be 0")
+            raise InputError(where, value, "first and last of one sign, not 0")
         space = np.linspace if kind == "linspace" else np.geomspace
         levels = [float(v) for v in space(first, last, int(count))]
     if len({repr(v) for v in levels}) < len(levels):
-        raise InputError(where, value, "each value may stand once")
+        raise InputError(where, value, "each value once", "Remove the repeated value.")
     return tuple(levels)
 
 

@@ -1,8 +1,8 @@
-"""Samples that grow: the cases of the smaller sample stay, so that only new ones are solved.
+"""Latin hypercubes that grow: a larger sample keeps the rows of the smaller one, so that only new cases are solved.
 
-Rows of `sobol`, `saltelli` and `morris` designs follow one another, so more samples only append. A Latin hypercube
-is a new draw for each size; here a grown one keeps the rows it had and fills the empty strata of the larger size.
-Doubling gives a full Latin hypercube again; between, some strata stay empty (no sample can be one for every size).
+More samples of `sobol`, `saltelli` and `morris` designs append rows to the earlier ones. A Latin hypercube would be
+drawn anew for each size. The grown one here keeps its rows and fills empty strata of the larger size. If the size
+doubles, the result is a full Latin hypercube again. Between, some strata stay empty.
 """
 
 from __future__ import annotations
@@ -12,12 +12,13 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from scipy.stats import qmc
 
 from trackroller.errors import InputError
 
 
 def grown_lhs(count: int, sizes: Sequence[int], seed: int) -> np.ndarray:
-    """A Latin hypercube of sizes[0] rows, grown to each further size.
+    """Draw a Latin hypercube of sizes[0] rows and grow it to each further size.
 
     Parameters
     ----------
@@ -27,10 +28,8 @@ def grown_lhs(count: int, sizes: Sequence[int], seed: int) -> np.ndarray:
 
     Returns
     -------
-    Quantiles in the unit cube, shape (sizes[-1], count); the first sizes[i] rows are those of the sample of that size.
+    Quantiles in the unit cube, shape (sizes[-1], count). The first sizes[i] rows are the sample of that size.
     """
-    from scipy.stats import qmc
-
     unit: np.ndarray = qmc.LatinHypercube(d=count, rng=np.random.default_rng(seed)).random(sizes[0])
     for size in sizes[1:]:
         unit = np.concatenate([unit, _fill(unit, size, np.random.default_rng([seed, size]))])
@@ -38,7 +37,7 @@ def grown_lhs(count: int, sizes: Sequence[int], seed: int) -> np.ndarray:
 
 
 def _fill(unit: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """Rows that bring a sample to `size`, in strata of 1/size that are still empty in each factor."""
+    """Return the rows that bring a sample to `size`, in strata of 1/size that are still empty in each factor."""
     new = size - len(unit)
     columns = []
     for values in unit.T:
@@ -48,9 +47,24 @@ def _fill(unit: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
 
 
 def check_sizes(earlier: Any, samples: int) -> tuple[int, ...]:
-    """The sizes a sample had before, as rising whole numbers below `samples`; raises `InputError`."""
+    """Check the earlier sizes of a sample.
+
+    Parameters
+    ----------
+    earlier : one number, a list of numbers, or nothing
+    samples : size of the sample now
+
+    Returns
+    -------
+    The earlier sizes.
+
+    Raises
+    ------
+    InputError : the sizes are not rising whole numbers below `samples`
+    """
     sizes = [earlier] if isinstance(earlier, int) else list(earlier or ())
     whole = all(isinstance(s, int) and not isinstance(s, bool) and s > 0 for s in sizes)
     if not whole or any(a >= b for a, b in itertools.pairwise([*sizes, samples])):
-        raise InputError("grown_from", sizes, f"rising whole numbers below samples ({samples})")
+        remedy = "Remove the key: the sizes of earlier runs are found in the results folder."
+        raise InputError("grown_from", sizes, f"rising whole numbers below samples ({samples})", remedy)
     return tuple(sizes)

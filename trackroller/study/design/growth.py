@@ -1,4 +1,4 @@
-"""Which sizes the sample of a study had before, so that its cases are found again (see `grown_lhs`)."""
+"""Find the earlier sizes of a sample, so that its solved cases are found again (see `grown_lhs`)."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from trackroller.errors import InputError
 from trackroller.materials.yaml_file import parse_yaml, read_mapping
 from trackroller.study.design.grown_lhs import check_sizes
+from trackroller.study.design.sampling import current_name
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -15,9 +16,17 @@ if TYPE_CHECKING:
 
 
 def with_history(study: Study, folder: StudyFolder) -> Study:
-    """The study with the sizes its sample had before, as told by the study file kept with its results.
+    """Add the earlier sizes of the sample to a study.
 
-    Only for Latin hypercubes whose factors, seed and design are as they were; another study comes back as it is.
+    Parameters
+    ----------
+    study : the study
+    folder : its results; the study file kept there has the earlier sizes
+
+    Returns
+    -------
+    The study with `grown_from`, if it is a Latin hypercube whose factors, seed and design are unchanged. Otherwise
+    the study as it is.
     """
     config = study.config
     if not _is_lhs(config.design, config.inner) or config.grown_from or not (folder.root / "study.yaml").is_file():
@@ -25,6 +34,7 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
     try:
         old = read_mapping(folder.root / "study.yaml", "study")
         now = parse_yaml(study.merged(), "study")
+        old["design"] = current_name(str(old.get("design")))
         if any(old.get(key) != now.get(key) for key in ("factors", "design", "seed", "inner")):
             return study
         sizes = [*old.get("grown_from", ()), int(old["samples"])]
@@ -35,4 +45,4 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
 
 
 def _is_lhs(design: str, inner: str | None) -> bool:
-    return design == "lhs" or (design == "nested" and inner in (None, "lhs"))
+    return design == "lhs" or (design == "inner_outer" and inner in (None, "lhs"))

@@ -1,13 +1,14 @@
-"""From a factor table to the rows of a design.
+"""From the factors of a study to the rows of a design.
 
-Every method first draws quantiles in the unit cube (SALib, scipy.stats.qmc, or a coded classical design) and
-then maps them through each factor's own distribution, so all methods take all factors. Categories are mapped
-honestly: equal-probability bins where the method is about probability (lhs, sobol, saltelli), random pairs of
-different categories in Morris trajectories, a full crossing in response-surface designs.
+Every method first draws quantiles in the unit cube (SALib, scipy.stats.qmc) or a classical design in coded units.
+It then maps them through the distribution of each factor, so that every method takes every factor. The values of a
+list are equally likely in random samples (lhs, sobol, saltelli). In Morris trajectories they are random pairs of
+different values, and in response-surface designs they are crossed with all other rows.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -29,30 +30,50 @@ METHODS = (
     "central_composite",
     "box_behnken",
     "plackett_burman",
-    "nested",
+    "inner_outer",
     "table",
 )
+OLD_NAMES = {"nested": "inner_outer"}  # of designs; they keep working
 OPTIONS: dict[str, dict[str, Any]] = {
     "saltelli": {"second_order": True},
     "morris": {"levels": 4},
     "table": {"table": None},
-    "nested": {"inner": "lhs", "grown_from": ()},
+    "inner_outer": {"inner": "lhs", "grown_from": ()},
     "lhs": {"grown_from": ()},
 }
+ARRAYS = ("grid", "central_composite", "box_behnken", "plackett_burman")  # `samples` does not count for them
+
+
+def current_name(method: str, warn: bool = False) -> str:
+    """Return the present name of a design method.
+
+    Parameters
+    ----------
+    method : name as a study file has it, possibly an old one
+    warn : whether to warn of an old name
+
+    Returns
+    -------
+    The name in `METHODS`; an unknown name comes back as it is.
+    """
+    new = OLD_NAMES.get(method, method)
+    if warn and new != method:
+        warnings.warn(f"design '{method}' is now called '{new}'; the old name keeps working", FutureWarning, 2)
+    return new
 
 
 @dataclass(frozen=True)
 class SampledDesign:
-    """The rows of a design and what an analysis must know of it.
+    """The rows of a design and the facts that an analysis needs.
 
-    Attributes
+    Parameters
     ----------
     columns : every factor, derived ones included: name -> shape (n,), float, or object for categories
-    factors : the independent factors, which indices are given for, by name
+    factors : the independent factors by name; indices are given for them
     method : one of `METHODS`
-    unit : shape (n, number of factors) [1]: quantiles; coded -1..1 in classical designs; the index of the
-        listed value for a listed factor of a grid, nested or Morris design
-    meta : numbers that belong to the method (base_samples, second_order, levels, shape, inner_samples, ...)
+    unit : shape (n, number of factors) [1]: quantiles; codes -1..1 in classical designs; the index of the
+        listed value for a list in a grid, an inner/outer array or a Morris design
+    meta : numbers of the method (base_samples, second_order, levels, shape, inner_samples, ...)
     """
 
     columns: dict[str, np.ndarray]
@@ -63,20 +84,30 @@ class SampledDesign:
 
     @property
     def size(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         return len(next(iter(self.columns.values()))) if self.columns else 0
 
     @property
     def places(self) -> np.ndarray:
-        """As `unit`, with the index of the listed value for every listed factor of a random sample too."""
+        """Return `unit` with the index of the listed value for every list, also in random samples."""
         if self.method not in ("lhs", "sobol", "saltelli"):
             return self.unit
         places = self.unit.copy()
         for j, factor in enumerate(self.factors.values()):
             if factor.discrete:
-                count = len(factor.levels)
-                places[:, j] = np.minimum((self.unit[:, j] * count).astype(int), count - 1)
+                places[:, j] = factor.bin(self.unit[:, j])
         return places
+
+    @property
+    def ordered(self) -> np.ndarray:
+        """Return for which factors more and less mean something, shape (number of factors,)."""
+        return np.array([f.ordered for f in self.factors.values()], dtype=bool)
+
+    @property
+    def listed(self) -> np.ndarray:
+        """Return which factors enter `unit` as list indices, shape (number of factors,)."""
+        values = [f.discrete and self.method != "plackett_burman" for f in self.factors.values()]
+        return np.array(values, dtype=bool)
 
 
 def sample(
@@ -94,41 +125,35 @@ def sample(
     ----------
     factors : name -> dictionary as described in `trackroller.study.design.factors`
     method : one of `METHODS`
-    n : rows (lhs, sobol), trajectories (morris), base samples (saltelli, rounded up to a power of two; the
-        rows are n (2 k + 2), or n (k + 2) without second order), samples per design point (nested); the
-        other methods have their own number
+    n : rows (lhs, sobol), trajectories (morris), base samples (saltelli, rounded up to a power of two; the design has
+        n (2 k + 2) rows, or n (k + 2) without second order), samples per design point (inner_outer). The other
+        methods have their own number
     seed : the same seed gives the same design
     base : values that expressions may use besides the factors
     options : second_order (saltelli, default true), levels (morris, default 4), table (path of the CSV),
-        inner (nested: lhs or sobol), grown_from (lhs, nested: earlier numbers of samples whose rows come first)
+        inner (inner_outer: lhs or sobol), grown_from (lhs, inner_outer: earlier numbers of samples, whose rows
+        come first)
 
     Returns
     -------
-    SampledDesign. Factors with a single value are columns but no independent factor.
+    SampledDesign. Factors with a single value are columns but not independent factors.
 
     Raises
     ------
     InputError : unknown method or option, a factor the method cannot take, a value outside its bounds
     """
+    method = current_name(method)
     settings = _settings(method, options)
     if method == "table":
         columns, free, unit, meta = table(settings["table"])
-        factors = {name: spec for name, spec in factors.items() if name not in columns}
-        parsed = {name: parse(name, spec) for name, spec in factors.items()}
-        if left := [f.name for f in parsed.values() if f.kind != "expression"]:
-            raise InputError(
-                f"factors.{left[0]}",
-                factors[left[0]],
-                "a table has its factors as columns",
-                "Only expressions may stand beside a table.",
-            )
+        parsed = _beside_table({name: spec for name, spec in factors.items() if name not in columns})
     else:
         parsed = {name: parse(name, spec) for name, spec in factors.items()}
         free = {k: f for k, f in parsed.items() if f.kind != "expression" and not _single(f)}
         if not free and method != "grid":
             raise InputError("factors", list(factors), "at least one factor must vary")
-        if method not in ("grid", "central_composite", "box_behnken", "plackett_burman") and int(n) < 1:
-            raise InputError("samples", n, "a whole number >= 1 is wanted")
+        if method not in ARRAYS and int(n) < 1:
+            raise InputError("samples", n, "a whole number >= 1")
         columns, unit, meta = DRAW[method](free, int(n), int(seed), settings)
     if columns and len(unit) > MAX_ROWS:
         raise InputError("design", method, f"at most {MAX_ROWS} rows")
@@ -150,10 +175,20 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
     for key, value in options.items():
         if key not in settings:
             close = nearest(key, settings)
-            allowed = f"{method} takes " + (", ".join(settings) or "none")
+            allowed = f"the options of {method}: " + (", ".join(settings) or "it has none")
             raise InputError(f"design option {key}", value, allowed, f"Did you mean '{close}'?" if close else "")
         settings[key] = value
     return settings
+
+
+def _beside_table(factors: Mapping[str, Any]) -> dict[str, Factor]:
+    """Return the expressions that stand beside a table, and refuse every other factor."""
+    parsed = {name: parse(name, spec) for name, spec in factors.items()}
+    for name, factor in parsed.items():
+        if factor.kind != "expression":
+            allowed = "a table has its factors as columns"
+            raise InputError(f"factors.{name}", factors[name], allowed, "Only expressions may stand beside a table.")
+    return parsed
 
 
 def _single(factor: Factor) -> bool:
@@ -163,7 +198,7 @@ def _single(factor: Factor) -> bool:
 def _derived(
     parsed: Mapping[str, Factor], columns: Mapping[str, np.ndarray], base: dict[str, Any], rows: int
 ) -> dict[str, np.ndarray]:
-    """Expressions in the order of their needs."""
+    """Evaluate the expressions, each after the expressions that it needs."""
     pending = {name: f.text for name, f in parsed.items() if f.kind == "expression"}
     defaults = {name: p.default for name, p in PARAMETERS.items()}
     known: dict[str, Any] = {**defaults, **base, **columns}
@@ -174,38 +209,28 @@ def _derived(
         ready = [n for n, text in pending.items() if not expressions.names(text) & set(pending)]
         if not ready:
             name, text = next(iter(pending.items()))
-            raise InputError(
-                f"factors.{name}.expression",
-                text,
-                "expressions must not need each other in a circle: " + ", ".join(pending),
-            )
+            allowed = "expressions must not need each other in a circle: " + ", ".join(pending)
+            raise InputError(f"factors.{name}.expression", text, allowed)
         for name in ready:
             value = expressions.evaluate(pending.pop(name), known, f"factors.{name}.expression")
             known[name] = out[name] = np.broadcast_to(value, (rows,)).copy()
             if bad := int(np.isnan(out[name]).sum()):
-                raise InputError(
-                    f"factors.{name}.expression",
-                    parsed[name].text,
-                    f"it is not a number in {bad} of {rows} rows",
-                )
+                allowed = f"it is not a number in {bad} of {rows} rows"
+                raise InputError(f"factors.{name}.expression", parsed[name].text, allowed)
     return out
 
 
 def _check_bounds(columns: Mapping[str, np.ndarray], parsed: Mapping[str, Factor]) -> None:
-    """A distribution that reaches outside a parameter's bounds is refused before anything is solved."""
+    """Refuse a distribution that reaches outside a parameter's bounds before anything is solved."""
+    remedies = {
+        "normal": "Cut the distribution: truncnormal: [mean, sd, low, high].",
+        "expression": "Change the expression or the ranges of its factors.",
+    }
     for name, values in columns.items():
         if name not in PARAMETERS or values.dtype == object:
             continue
         good = PARAMETERS[name].accepts(values)
         if not good.all():
             kind = parsed[name].kind if name in parsed else "table"
-            remedy = {
-                "normal": "Cut the distribution: truncnormal: [mean, sd, low, high].",
-                "expression": "Mend the expression or the ranges it draws on.",
-            }.get(kind, "")
-            raise InputError(
-                f"factors.{name}",
-                float(values[~good][0]),
-                f"{PARAMETERS[name].allowed()} (outside: {int((~good).sum())} of {good.size} rows)",
-                remedy,
-            )
+            allowed = f"{PARAMETERS[name].allowed()} (outside: {int((~good).sum())} of {good.size} rows)"
+            raise InputError(f"factors.{name}", float(values[~good][0]), allowed, remedies.get(kind, ""))
