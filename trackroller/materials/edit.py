@@ -14,7 +14,7 @@ from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.materials.entries import TEXTS, VALUE_KEYS
+from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
@@ -23,7 +23,7 @@ from trackroller.materials.yaml_file import needs_quotes, read_text
 HEADER = """\
 # Your own materials and friction coefficients, laid over the built-in ones.
 """
-FIELDS = (*PROPERTIES, *TEXTS, "source", "placeholder")
+FIELDS = (*NUMBERS, *TEXTS, "source", "placeholder")
 
 
 def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
@@ -68,7 +68,7 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
     common = {"source": values.get("source", "user's own"), "placeholder": values.get("placeholder", False)}
     note = {"note": values["note"]} if "note" in values else {}
     entry: dict[str, Any] = {key: values[key] for key in ("description", "family", "like") if key in values}
-    for key, prop in PROPERTIES.items():
+    for key, prop in NUMBERS.items():
         if key not in values:
             continue
         given = values[key] if isinstance(values[key], Mapping) else {"value": _plain(values[key])}

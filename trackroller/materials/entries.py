@@ -8,6 +8,7 @@ from typing import Any
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.material import Material
 from trackroller.materials.properties import (
+    ALTERNATIVES,
     PROPERTIES,
     REQUIRED,
     FrictionValue,
@@ -15,10 +16,12 @@ from trackroller.materials.properties import (
     Value,
     check_number,
 )
+from trackroller.materials.sn_curve import complete_curve
 from trackroller.parameters import FRICTION_LEVELS
 
 TEXTS = ("family", "description", "like", "note")
 VALUE_KEYS = ("value", "unit", "source", "placeholder", "note")
+NUMBERS = PROPERTIES | ALTERNATIVES
 UNITS = {
     "MPa": {"MPa": 1.0, "N/mm2": 1.0, "N/mm^2": 1.0, "N/mm²": 1.0, "GPa": 1e3, "kN/mm2": 1e3, "Pa": 1e-6},
     "-": {"-": 1.0, "1": 1.0, "": 1.0},
@@ -85,16 +88,21 @@ class EntryParser:
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, f"it must be a mapping with {', '.join(REQUIRED)}")
         for key in entry:
-            if key not in PROPERTIES and key not in TEXTS:
-                raise unknown_name(f"{where}: field", str(key), (*PROPERTIES, *TEXTS))
+            if key not in NUMBERS and key not in TEXTS:
+                raise unknown_name(f"{where}: field", str(key), (*NUMBERS, *TEXTS))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 raise InputError(f"{where}.{key}", entry[key], "it must be a text", "Put it in quotes.")
         base = self._base(entry, known.get(name), known, where)
-        records = dict(base.records) if base else {}
-        for key, prop in PROPERTIES.items():
-            if key in entry and not (entry[key] is None and prop.optional):
-                records[key] = self.value(prop, entry[key], where)
+        inherited = dict(base.records) if base else {}
+        given = {
+            key: self.value(prop, entry[key], where)
+            for key, prop in NUMBERS.items()
+            if key in entry and not (entry[key] is None and prop.optional)
+        }
+        records = inherited | {key: value for key, value in given.items() if key in PROPERTIES}
+        if ALTERNATIVES.keys() & given.keys():
+            records |= complete_curve(given, inherited, where)
         missing = [key for key in REQUIRED if key not in records]
         if missing:
             given = ", ".join(map(str, entry)) or "nothing"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -64,6 +65,12 @@ class Material:
     def fatigue_limit(self) -> float:
         """Fatigue limit sigma_D [MPa] at N_k cycles."""
         return self.fatigue_strength_ratio * self.tensile_strength
+
+    @property
+    def woehler_exponent(self) -> float:
+        """Exponent k of the S-N curve [-], positive."""
+        cycles = self.cycles_at_fatigue_limit / self.cycles_at_tensile_strength
+        return -math.log(cycles) / math.log(self.fatigue_strength_ratio)
 
     @property
     def shear_modulus(self) -> float:

@@ -50,6 +50,12 @@ _PROPERTIES = (
     Property("scatter_in_stress", "T_S", "-", "scatter of strength S_90/S_10", 1.0, 1e3, True, True),
 )
 PROPERTIES: dict[str, Property] = {p.name: p for p in _PROPERTIES}
+# Other ways to give the S-N curve; they are turned into the properties above (see `trackroller.materials.sn_curve`).
+_ALTERNATIVES = (
+    Property("fatigue_limit", "sigma_D", "MPa", "fatigue limit", 0.0, 2e5),
+    Property("woehler_exponent", "k", "-", "exponent of the S-N curve", 0.0, 1e3),
+)
+ALTERNATIVES: dict[str, Property] = {p.name: p for p in _ALTERNATIVES}
 REQUIRED = tuple(p.name for p in _PROPERTIES if not p.optional)
 
 

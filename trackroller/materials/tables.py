@@ -32,8 +32,9 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
             continue
         record = material.records.get(prop.name, Value(value, prop.unit, "not given"))
         rows.append(_row(prop.name, prop.symbol, record))
-    derived = Value(material.fatigue_limit, "MPa", "R_m times sigma_D/R_m", origin="derived")
-    return [*rows, _row("fatigue_limit", "sigma_D", derived)]
+    limit = Value(material.fatigue_limit, "MPa", "R_m times sigma_D/R_m", origin="derived")
+    exponent = Value(material.woehler_exponent, "-", "ln(N_k/N_Rm) / ln(R_m/sigma_D)", origin="derived")
+    return [*rows, _row("fatigue_limit", "sigma_D", limit), _row("woehler_exponent", "k", exponent)]
 
 
 def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
