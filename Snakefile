@@ -14,7 +14,7 @@ configfile: "config/config.yaml"
 try:
     PLAN = workflow_plan(
         config,
-        check=workflow.is_main_process,
+        main=workflow.is_main_process,
         tell=lambda line: print(line, file=sys.stderr),
     )
 except (InputError, WorkError) as error:

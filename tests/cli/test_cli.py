@@ -167,8 +167,8 @@ def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
             ],
             **quiet,
         )
-        store = tmp_path / "results" / "tiny" / "store"
-        wait_until(lambda: any(store.glob("*.parts/*.nc")) or any(store.glob("*.nc")))
+        folder = tmp_path / "results" / "tiny"
+        wait_until(lambda: any(folder.glob("parts/*.nc")) or any(folder.glob("chunks/*.nc")))
         helpers[1].kill()
         assert run.wait(timeout=120) == 0
     finally:

@@ -77,7 +77,7 @@ def test_full_disk_is_named_and_finished_cases_are_kept(study, disk):
     place = disk("size=300k")
     refused(run(study, place), place, "disk is full")
     assert not list(place.rglob("*.tmp"))
-    kept = len(list(place.rglob("store/*.nc")))
+    kept = len(list(place.rglob("chunks/*.nc")))
     disk("size=20m")
     code, told = run(study, place)
     assert code == 0 and told.count("already") + told.count("solved now") == 4 - kept

@@ -56,11 +56,16 @@ def run(data, results, **more):
 def run_apart(results, kill=None):
     """The same run in a process of its own, which may kill itself with SIGKILL."""
     code = f"import test_resume as t; t.run(t.DATA, {str(results)!r})"
+<<<<<<< HEAD
     env = (
         os.environ
         | ({"FAKE_KILL": str(kill)} if kill else {})
         | {"PYTHONPATH": f"{HERE.parent}:{HERE}:{HERE / 'study'}"}
     )
+=======
+    paths = os.pathsep.join(map(str, (HERE.parent, HERE, HERE / "study")))
+    env = os.environ | ({"FAKE_KILL": str(kill)} if kill else {}) | {"PYTHONPATH": paths}
+>>>>>>> d82128b (Keep solved cases in one place and let one loop solve what is missing)
     return subprocess.run([sys.executable, "-c", code], cwd=HERE, env=env, capture_output=True, text=True, timeout=120)
 
 
@@ -162,7 +167,7 @@ def put_another_in_its_place(path):
 
 
 @pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle, put_another_in_its_place])
-@pytest.mark.parametrize("place", ["store", "chunks", "plan"])
+@pytest.mark.parametrize("place", ["chunks", "plan"])
 def test_damaged_file_is_found_named_and_mended(tmp_path, solved, damage, place):
     plan, whole, _ = run(DATA, tmp_path)
     victim = sorted((plan.folder.root / place).glob("*.n*"))[1]
@@ -173,24 +178,68 @@ def test_damaged_file_is_found_named_and_mended(tmp_path, solved, damage, place)
     assert any(victim.name in line and "corrupt" in line for line in lines)
 
 
-def test_chunk_whose_one_copy_is_damaged_is_mended_from_the_other(tmp_path, solved):
-    plan, _, _ = run(DATA, tmp_path)
-    shown, kept = (plan.folder.chunk(n) for n in plan.chunks), list(map(plan.folder.kept, plan.chunks))
-    for place in shown:  # as after copying the folder: two files in place of two names
-        data = place.read_bytes()
-        place.unlink()
-        place.write_bytes(data)
-    flip(kept[0])
-    run(DATA, tmp_path)
-    assert max(solved().values()) == 1 and kept[0].is_file()
+class Stopped(BaseException):
+    """Ends a run as a user's Ctrl-C does."""
 
 
-def test_deleted_shown_chunk_is_made_again_from_the_store(tmp_path, solved):
-    plan, _, _ = run(DATA, tmp_path)
-    shutil.rmtree(plan.folder.root / "chunks")
-    run(DATA, tmp_path)
+@pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle])
+def test_damaged_part_of_an_unfinished_chunk_is_found_named_and_solved_again(tmp_path, solved, damage):
+    data = changed(friction_coefficient=np.linspace(0.05, 0.4, 14).tolist()) | {"chunk_size": 420}
+
+    def solver(design, database=None, **options):
+        if sum(solved().values()) >= 100:
+            raise Stopped
+        return fake_solver.solve(design)
+
+    with pytest.raises(Stopped):
+        run_study(parse_study(data), tmp_path, solver=solver)
+    parts = sorted((tmp_path / "s" / "parts").glob("*.nc"), key=lambda path: len(store.read(path).cases))
+    assert [len(store.read(path).cases) for path in parts] == [64, 256]
+    damage(parts[0])
+    _, ds, lines = run(data, tmp_path)
+    assert sum(n - 1 for n in solved().values()) == 64, "the cases of the damaged part"
+    assert any(parts[0].name in line and "corrupt" in line for line in lines)
+    assert np.isfinite(ds["normal_force"]).all()
+    assert not list((tmp_path / "s" / "parts").iterdir()), "a complete chunk needs no parts"
+
+
+@pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle])
+@pytest.mark.parametrize("name", ["design.nc", "study.nc"])
+def test_altered_design_or_study_is_found_named_and_made_anew(tmp_path, solved, damage, name):
+    plan, whole, _ = run(DATA, tmp_path)
+    victim = plan.folder.root / name
+    before = xr.load_dataset(victim)
+    damage(victim)
+    _, again, lines = run(DATA, tmp_path)
+    xr.testing.assert_identical(xr.load_dataset(victim).drop_attrs(), before.drop_attrs())
+    xr.testing.assert_identical(again.drop_attrs(), whole.drop_attrs())
     assert max(solved().values()) == 1
-    assert len(list((plan.folder.root / "chunks").glob("*.nc"))) == len(plan.chunks)
+    assert any(str(victim) in line and "altered" in line for line in lines)
+
+
+def test_design_follows_a_study_that_grows(tmp_path):
+    run(DATA, tmp_path)
+    plan, _, _ = run(changed(axial_force=[10.0, *LOADS]), tmp_path)
+    assert xr.load_dataset(plan.folder.design).sizes["case"] == 62
+
+
+def test_copied_folder_goes_on_without_solving(tmp_path, solved):
+    run(DATA, tmp_path / "here")
+    shutil.copytree(tmp_path / "here", tmp_path / "there")
+    run(DATA, tmp_path / "there")
+    assert max(solved().values()) == 1
+
+
+def test_workflow_marks_are_made_again_where_the_chunk_is_there_and_nowhere_else(tmp_path, solved):
+    plan, _, _ = run(DATA, tmp_path)
+    first, second, *_ = plan.chunks
+    plan.folder.mark(first).unlink()
+    plan.folder.chunk(second).unlink()
+    plan = make_plan(parse_study(DATA), tmp_path)
+    assert plan.folder.mark(first).is_file() and not plan.folder.mark(second).is_file()
+    run(DATA, tmp_path)
+    assert plan.folder.mark(second).is_file()
+    assert sum(n - 1 for n in solved().values()) == 20
 
 
 def test_failed_cases_are_rows_with_a_reason_and_the_rest_goes_on(tmp_path, monkeypatch, solved):

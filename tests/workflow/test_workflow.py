@@ -97,12 +97,11 @@ def test_killed_workflow_goes_on_without_unlocking_and_solves_no_finished_chunk_
         time.sleep(0.1)
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
-    kept = place / "results" / "tiny" / "store"
-    before = {path.name: path.stat().st_ino for path in kept.glob("*.nc")}
+    before = {path.name: path.stat().st_ino for path in chunks.glob("*.nc")}
     assert len(before) >= 2
     told = snakemake(place, target)
     assert "unlock" not in told
-    assert all((kept / name).stat().st_ino == inode for name, inode in before.items())
+    assert all((chunks / name).stat().st_ino == inode for name, inode in before.items())
     with xr.open_dataset(place / target) as ds:
         assert ds.sizes["axial_force"] == 200 and int(ds["regime"].max()) < 3
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from trackroller.study.config import load_study
-from trackroller.study.cost import bytes_a_case, duration, measured_rate, size, study_rate
+from trackroller.study.cost import bytes_a_case, duration, size
 
 MOST = 20_000  # cases of a study that --explain looks at
 
@@ -27,21 +27,20 @@ def print_plan(path: Path | None, results: Path, explain: bool, words: list[str]
 
 def _print_study(path: Path, results: Path) -> None:
     """Cases, chunks, expected time and disk; nothing is written."""
-    from trackroller.study.plan import chunk_size, study_folder
+    from trackroller.study.plan import chunk_size
     from trackroller.study.status import status_of
 
     study = load_study(path)
     status = status_of(study, results)
     chunk = chunk_size(study, status.missing)
-    measured = measured_rate(study_folder(study.name, results).root / "store")
     chunks = -(-status.missing // chunk)
-    speed = measured or study_rate(study)
-    seconds = status.missing / speed
-    told = "measured" if measured else "estimated"
+    seconds = status.seconds_left
+    told = "measured" if status.measured else "estimated"
     print(f"study     {study.name} ({study.config.design})")
     print(f"cases     {status.total}, {status.done} of them solved already")
     print(f"chunks    {chunks} of up to {chunk} cases")
-    print(f"time      {duration(seconds)} on one core, {duration(seconds / 2)} on two ({told} cases/s: {speed:.3g})")
+    times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
+    print(f"time      {times} ({told} cases/s: {status.speed:.3g})")
     print(f"disk      about {size(status.total * bytes_a_case(study.config.outputs))}")
 
 
@@ -71,10 +70,10 @@ def _explain_study(path: Path, no_shortcuts: bool) -> None:
         table, group = table.take(np.arange(MOST)), group[:MOST]
     for number in np.unique(group):
         rows = np.flatnonzero(group == number)
-        told = dict(options if isinstance(options, dict) else options[rows[0]])
+        told = dict(options[number])
         if no_shortcuts:
             told["shortcuts"] = False
-        if not isinstance(options, dict):
+        if len(options) > 1:
             varied = [name for name in OPTION_FACTORS if name in study.factors]
             print(", ".join(f"{name.replace('_', ' ')} {told[name]}" for name in varied) + ":")
         _print_stages(table.take(rows), Options(**told))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,7 +11,8 @@ from typing import Any
 from trackroller.errors import InputError, unknown_name
 from trackroller.report.build import analyse_study, draw_study, report_study
 from trackroller.study.config import Study, load_study
-from trackroller.study.plan import Plan, make_plan
+from trackroller.study.files import WorkError
+from trackroller.study.plan import Plan, read_plan, study_folder, working_plan
 
 __all__ = [
     "analyse_study",
@@ -24,6 +26,7 @@ __all__ = [
 ]
 CONFIG_KEYS = ("study", "results")
 log = logging.getLogger("trackroller")
+_held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
 
 
 def workflow_study(config: Mapping[str, Any]) -> Study:
@@ -41,9 +44,28 @@ def workflow_study(config: Mapping[str, Any]) -> Study:
     return load_study(config["study"])
 
 
-def workflow_plan(config: Mapping[str, Any], check: bool, tell: Any = None) -> Plan:
-    """Plan of the workflow's study. `check` reads all kept chunks for damage (the main process does)."""
-    return make_plan(workflow_study(config), str(config.get("results", "results")), tell=tell, check=check)
+def workflow_plan(config: Mapping[str, Any], main: bool, tell: Any = None) -> Plan:
+    """Return the plan of the workflow's study.
+
+    The main process plans, and keeps other processes from changing the plan until it ends. Its jobs read the plan.
+
+    Raises
+    ------
+    InputError
+        If the configuration or the study is wrong.
+    WorkError
+        If the study was edited after the main process had planned it.
+    """
+    study, results = workflow_study(config), str(config.get("results", "results"))
+    if main:
+        return _held.enter_context(working_plan(study, results, tell=tell))
+    plan = read_plan(study, study_folder(study.name, results))
+    if plan is None:
+        raise WorkError(
+            f"study '{study.name}' was edited while the workflow runs: this workflow solves the earlier version and "
+            "stops here. Start it again: every finished case is kept."
+        )
+    return plan
 
 
 def study_inputs(study: Study) -> list[str]:

@@ -1,4 +1,4 @@
-"""The list of cases of a chunk on the disk, named by its content."""
+"""Read and write the list of cases of a chunk; the name of a list is the hash of its cases."""
 
 from __future__ import annotations
 
@@ -6,81 +6,84 @@ import json
 import zipfile
 import zlib
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.study.design.build import case_columns
-from trackroller.study.files import StudyFolder, write_whole
+from trackroller.study.files import StudyFolder, WorkError, write_whole
 from trackroller.study.identity import chunk_name
-from trackroller.study.mend import Tell
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @dataclass(frozen=True)
 class CaseList:
-    """The cases of a chunk: fingerprints (n,), the design's rows and the solver's options."""
+    """Cases of a chunk.
+
+    Attributes
+    ----------
+    name : str
+        Name of the chunk.
+    cases : numpy.ndarray of dtype S32, shape (n,)
+        Fingerprints.
+    columns : dict
+        Case fields by name, shape (n,) each.
+    options : dict
+        Keyword arguments of `solve`, the same for all cases of a chunk.
+    """
 
     name: str
     cases: np.ndarray
     columns: dict[str, np.ndarray]
     options: dict[str, Any]
 
-    def design(self, index: np.ndarray | None = None) -> xr.Dataset:
-        """Rows as a design that `solve` takes."""
-        import xarray as xr
+    def take(self, rows: np.ndarray) -> CaseList:
+        """Return the rows with the indices `rows`."""
+        columns = {name: values[rows] for name, values in self.columns.items()}
+        return CaseList(self.name, self.cases[rows], columns, self.options)
 
-        rows = slice(None) if index is None else index
-        return xr.Dataset({name: ("case", values[rows]) for name, values in self.columns.items()})
+    def design(self, rows: np.ndarray | None = None) -> xr.Dataset:
+        """Return all rows, or the rows with the indices `rows`, as a design for `solve`."""
+        index = slice(None) if rows is None else rows
+        return xr.Dataset({name: ("case", values[index]) for name, values in self.columns.items()})
 
 
 def load_list(folder: StudyFolder, name: str) -> CaseList:
-    """The case list of a chunk."""
-    with np.load(folder.case_list(name), allow_pickle=False) as file:
-        columns = {key: file[key] for key in case_columns(file)}
-        columns = {k: v.astype(object) if v.dtype.kind == "U" else v for k, v in columns.items()}
-        return CaseList(name, file["cases"], columns, json.loads(str(file["options"])))
+    """Read the case list of a chunk.
 
-
-def sound_cases(path: Path, tell: Tell) -> np.ndarray | None:
-    """Fingerprints of a case list; a corrupt list is named and removed."""
+    Raises
+    ------
+    WorkError
+        If the list is missing, damaged, or holds the cases of another chunk.
+    """
+    path = folder.case_list(name)
     try:
         with np.load(path, allow_pickle=False) as file:
-            cases = file["cases"]
-            for key in file.files:  # reading compares each with its checksum
-                file[key]
-        if chunk_name(cases) == path.stem:
-            return cases
-        why = "its content does not fit its name"
+            cases, options = file["cases"], json.loads(str(file["options"]))
+            columns = {key: file[key] for key in case_columns(file)}
+    except FileNotFoundError:
+        raise list_is_gone(folder, name) from None
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as exc:
-        why = str(exc)
-    tell(f"{path}: corrupt case list ({why}); its cases are planned anew")
-    path.unlink(missing_ok=True)
-    return None
+        raise WorkError(f"{path}: corrupt case list ({exc}). Start again: its cases are planned anew.") from None
+    if chunk_name(cases) != name:
+        raise WorkError(f"{path}: corrupt case list (its cases do not fit its name). Start again.")
+    columns = {key: v.astype(object) if v.dtype.kind == "U" else v for key, v in columns.items()}
+    return CaseList(name, cases, columns, options)
 
 
-def write_list(
-    folder: StudyFolder, design: xr.Dataset, cases: np.ndarray, rows: np.ndarray, options: dict[str, Any]
-) -> str:
-    """Write rows of a design as the list of a chunk unless it is there already; returns the chunk's name."""
-    listed = cases[rows]
-    name = chunk_name(listed)
-    path = folder.case_list(name)
-    if not path.is_file():
-        columns = {key: design[key].values[rows] for key in case_columns(design)}
-        save_list(path, listed, columns, options)
-    return name
+def list_is_gone(folder: StudyFolder, name: str) -> WorkError:
+    """Return the error for a chunk that is no longer planned."""
+    why = "the study was edited and planned anew by another process"
+    return WorkError(f"{folder.case_list(name)} is missing: {why}. Start again: every finished case is kept.")
 
 
-def save_list(path: Path, cases: np.ndarray, columns: dict[str, np.ndarray], options: dict[str, Any]) -> None:
-    """Write a case list, whole or not at all."""
+def write_list(folder: StudyFolder, cases: CaseList) -> None:
+    """Write the case list of a chunk, whole or not at all."""
+    plain = {k: v.astype(str) if v.dtype == object else v for k, v in cases.columns.items()}
+    options = np.array(json.dumps(cases.options))
 
-    def save(beside: Path) -> None:
-        plain = {k: v.astype(str) if v.dtype == object else v for k, v in columns.items()}
+    def save(beside: Any) -> None:
         with open(beside, "wb") as stream:
-            np.savez_compressed(stream, cases=cases, options=np.array(json.dumps(options)), allow_pickle=False, **plain)
+            np.savez_compressed(stream, cases=cases.cases, options=options, allow_pickle=False, **plain)
 
-    write_whole(path, save)
+    write_whole(folder.case_list(cases.name), save)

@@ -1,36 +1,47 @@
-"""The same chunks on dask workers: batches of cases out, blocks back; only this process writes files."""
+"""Solve cases on dask workers: workers receive batches of cases and return blocks; only this process writes files."""
 
 from __future__ import annotations
 
+import contextlib
 import math
-from collections.abc import Callable
+import os
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.study import store
-from trackroller.study.caselists import CaseList, load_list
-from trackroller.study.files import WorkError, locked
-from trackroller.study.mend import Tell
-from trackroller.study.plan import Plan, read_parts
-from trackroller.study.solve import check_identity, finish, missing_rows, solve_rows, write_part
+from trackroller.study.caselists import CaseList
+from trackroller.study.cost import rate
+from trackroller.study.files import WorkError
+from trackroller.study.solve import Executor, solve_rows
 
 BATCH_SECONDS = 2.0
 
 
-def solve_chunks(
-    plan: Plan, names: list[str], scheduler: str, *, tell: Tell, progress: Callable[[int], None] | None = None
-) -> None:
-    """Solve chunks on the workers of `scheduler` ('local' starts two processes here).
+@contextlib.contextmanager
+def workers(scheduler: str) -> Iterator[Executor]:
+    """Connect to dask workers.
 
-    A batch that kills its worker again and again is halved until the case that does so stands alone and is
-    kept as failed.
+    Parameters
+    ----------
+    scheduler : str
+        'local' starts one process for each processor of this machine; 'tcp://host:port' names a running scheduler.
+
+    Yields
+    ------
+    callable
+        An executor for `trackroller.study.solve.solve_chunk`.
+
+    Raises
+    ------
+    InputError
+        If the address is wrong or no scheduler answers.
     """
     client = _client(scheduler)
     try:
-        for name in names:
-            _solve_chunk(plan, name, client, tell, progress)
+        yield lambda cases, database: _solve(client, cases, database)
     finally:
         client.close()
         if scheduler == "local":
@@ -38,74 +49,52 @@ def solve_chunks(
 
 
 def _client(scheduler: str) -> Any:
-    import dask
+    import dask  # dask is optional and slow to import
     from distributed import Client, LocalCluster
 
     if scheduler != "local" and not scheduler.startswith(("tcp://", "tls://")):
         raise InputError("--scheduler", scheduler, "local, or the address of a dask scheduler: tcp://host:port")
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
     if scheduler == "local":
-        import os
-
         count = len(os.sched_getaffinity(0))
         return Client(LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None))
     try:
         return Client(scheduler, timeout="10s")
     except (OSError, ValueError) as exc:
-        raise InputError(
-            "--scheduler",
-            scheduler,
-            f"no dask scheduler answers there ({exc})",
-            "Start one: dask scheduler, dask worker ADDRESS.",
-        ) from None
+        why = f"no dask scheduler answers there ({exc})"
+        remedy = "Start one: dask scheduler, dask worker ADDRESS."
+        raise InputError("--scheduler", scheduler, why, remedy) from None
 
 
 def _work(cases: CaseList, database: Any) -> store.Block:
     return solve_rows(cases, np.arange(len(cases.cases)), database)
 
 
-def _part(cases: CaseList, rows: np.ndarray) -> CaseList:
-    return CaseList(cases.name, cases.cases[rows], {k: v[rows] for k, v in cases.columns.items()}, cases.options)
+def _solve(client: Any, cases: CaseList, database: Any) -> Iterator[store.Block]:
+    """Yield the blocks of a list; halve a batch that kills its workers until the responsible case is alone."""
+    from distributed import KilledWorker, as_completed  # dask is optional and slow to import
 
+    def submit(index: np.ndarray) -> Any:
+        future = client.submit(_work, cases.take(index), database, pure=False)
+        waiting[future.key] = index
+        return future
 
-def _solve_chunk(plan: Plan, name: str, client: Any, tell: Tell, progress: Callable[[int], None] | None) -> None:
-    from distributed import KilledWorker, as_completed
-
-    from trackroller.study.cost import rate
-
-    folder, database = plan.folder, plan.study.materials
-    with locked(folder.lock(name), tell):
-        cases = load_list(folder, name)
-        check_identity(cases, database)
-        blocks = read_parts(folder, name, tell)
-        rows = missing_rows(cases, blocks)
-        size = max(8, min(2000, math.ceil(BATCH_SECONDS * rate(cases.options))))
-        batches = np.array_split(rows, max(1, math.ceil(len(rows) / size))) if len(rows) else []
-
-        def submit(index: np.ndarray) -> Any:
-            future = client.submit(_work, _part(cases, index), database, pure=False)
-            waiting[future.key] = index
-            return future
-
-        waiting: dict[str, np.ndarray] = {}
-        queue = as_completed([submit(index) for index in batches])
-        for future in queue:
-            index = waiting.pop(future.key)
-            try:
-                block = future.result()
-            except KilledWorker:
-                if len(index) > 1:
-                    for half in np.array_split(index, 2):
-                        queue.add(submit(half))
-                    continue
-                block = store.failure(cases.cases[index], "killed its worker process")
-            except (InputError, WorkError):
-                raise
-            except Exception as exc:
-                raise WorkError(f"a dask worker failed: {exc}. Start again: finished cases are kept.") from exc
-            write_part(folder, name, block)
-            blocks.append(block)
-            if progress is not None:
-                progress(len(index))
-        chunk = finish(folder, cases, blocks)
-    tell(f"chunk {name}: {len(cases.cases)} cases, {len(rows)} solved now, {int(chunk.failed.sum())} failed")
+    waiting: dict[str, np.ndarray] = {}
+    count = len(cases.cases)
+    size = max(8, min(2000, math.ceil(BATCH_SECONDS * rate(cases.options))))
+    batches = np.array_split(np.arange(count), max(1, math.ceil(count / size))) if count else []
+    queue = as_completed([submit(index) for index in batches])
+    for future in queue:
+        index = waiting.pop(future.key)
+        try:
+            yield future.result()
+        except KilledWorker:
+            if len(index) > 1:
+                for half in np.array_split(index, 2):
+                    queue.add(submit(half))
+            else:
+                yield store.failure(cases.cases[index], "killed its worker process")
+        except (InputError, WorkError):
+            raise
+        except Exception as exc:
+            raise WorkError(f"a dask worker failed: {exc}. Start again: finished cases are kept.") from exc

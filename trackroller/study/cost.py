@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -66,22 +65,6 @@ def study_rate(study: Study) -> float:
 def bytes_a_case(outputs: tuple[str, ...]) -> int:
     """Expected size of a case on the disk, chunk and gathered set together."""
     return 2 * (60 + sum(_BYTES[group] for group in set(outputs)))
-
-
-def measured_rate(folder: Path) -> float | None:
-    """Cases a second of one process, from the files already solved; None without any."""
-    import netCDF4
-
-    cases, seconds = 0, 0.0
-    for path in sorted(folder.glob("*.nc"))[:20]:
-        try:
-            with netCDF4.Dataset(path) as file:
-                if (spent := float(file.seconds)) > 0:
-                    cases += len(file.dimensions["case"])
-                    seconds += spent
-        except (OSError, AttributeError, KeyError):
-            continue
-    return cases / seconds if seconds > 0 else None
 
 
 def duration(seconds: float) -> str:

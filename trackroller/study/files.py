@@ -1,104 +1,143 @@
-"""Files that appear whole or not at all, locks that die with their process, and a study's folder."""
+"""Write files whole or not at all, lock files, and name the files of a study."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
+import fcntl
+import hashlib
 import os
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 from trackroller.errors import InputError
 
+Tell = Callable[[str], None]
+NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
+
 
 class WorkError(RuntimeError):
-    """The work failed for a reason outside the input (full disk, broken file); says what to do."""
+    """Report that the work failed for a reason outside the input, and what to do about it."""
 
 
 @dataclass(frozen=True)
 class StudyFolder:
-    """Where a study's files lie: `results/NAME/`."""
+    """Paths of the files of one study, `results/NAME/`."""
 
     root: Path
 
     @property
     def design(self) -> Path:
-        """The cases."""
+        """The cases of the study."""
         return self.root / "design.nc"
 
     @property
     def gathered(self) -> Path:
-        """The gathered data set."""
+        """The gathered results."""
         return self.root / "study.nc"
 
     @property
+    def study_file(self) -> Path:
+        """The study file with every default written out."""
+        return self.root / "study.yaml"
+
+    @property
     def plan_file(self) -> Path:
-        """Which chunks the study consists of."""
+        """The names of the chunks that the study consists of."""
         return self.root / "plan.json"
 
     @property
-    def plan_lock(self) -> Path:
-        """Lock of the planner."""
-        return self.root / "store" / ".plan.lock"
+    def lock(self) -> Path:
+        """Lock that processes share while they work from the plan; only its sole holder may change the plan."""
+        return self.root / "plan" / ".lock"
 
     def case_list(self, chunk: str) -> Path:
         """The cases of a chunk."""
         return self.root / "plan" / f"{chunk}.npz"
 
+    def mark(self, chunk: str) -> Path:
+        """Empty file that tells the workflow that a chunk is solved. The workflow may delete it at any time."""
+        return self.root / "plan" / f"{chunk}.solved"
+
     def chunk(self, chunk: str) -> Path:
-        """A solved chunk, as the workflow sees it."""
+        """The results of a solved chunk."""
         return self.root / "chunks" / f"{chunk}.nc"
 
-    def kept(self, chunk: str) -> Path:
-        """The same file under a name that the workflow never deletes."""
-        return self.root / "store" / f"{chunk}.nc"
+    def part(self, chunk: str, first_case: str) -> Path:
+        """The results of one block of a chunk that is not complete yet."""
+        return self.root / "parts" / f"{chunk}-{first_case}.nc"
 
-    def parts(self, chunk: str) -> Path:
-        """Folder of the blocks of an unfinished chunk."""
-        return self.root / "store" / f"{chunk}.parts"
+    def parts(self, chunk: str = "*") -> list[Path]:
+        """Return the existing blocks of one chunk, or of all chunks."""
+        return sorted((self.root / "parts").glob(f"{chunk}-*.nc"))
 
-    def lock(self, chunk: str) -> Path:
-        """Lock of a chunk."""
-        return self.root / "store" / f"{chunk}.lock"
+    def solved_files(self) -> Iterator[Path]:
+        """Find the files with results of solved cases: parts first, as a process may complete a chunk meanwhile."""
+        yield from self.parts()
+        yield from sorted((self.root / "chunks").glob("*.nc"))
+
+    def checksum(self, path: Path) -> Path:
+        """The file that holds the checksum of `design.nc` or `study.nc`."""
+        return self.root / "plan" / f"{path.name}.sha256"
 
     def create(self) -> StudyFolder:
-        """Make the folders; raises `WorkError` where nothing can be written, `InputError` for what is no folder."""
+        """Create the folders of the study.
+
+        Returns
+        -------
+        StudyFolder
+            This folder.
+
+        Raises
+        ------
+        InputError
+            If the path exists and is not a folder.
+        WorkError
+            If the folder cannot be written.
+        """
         try:
-            for name in ("plan", "chunks", "store"):
+            for name in ("plan", "chunks", "parts"):
                 (self.root / name).mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=self.root / "store"):
+            with open(self.lock, "a"):
                 pass
         except OSError as exc:
-            if exc.errno in (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP):
-                raise InputError(
-                    "results folder",
-                    str(self.root),
-                    f"it cannot be a folder ({exc.strerror})",
-                    "Choose another with --results.",
-                ) from None
+            if exc.errno in NO_FOLDER:
+                allowed = f"it cannot be a folder ({exc.strerror})"
+                raise InputError("results folder", str(self.root), allowed, "Choose another with --results.") from None
             raise disk_error(exc, self.root) from None
         return self
 
 
 def disk_error(exc: OSError, path: Path) -> WorkError:
-    """A message for a write that failed, with what to do."""
+    """Return the message for a failed write, with the remedy."""
     if exc.errno in (errno.ENOSPC, errno.EDQUOT):
         what, remedy = "the disk is full", "Free some space"
     elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
-        what, remedy = f"it cannot be written ({exc.strerror})", "Mend its rights (or choose another --results)"
+        what, remedy = f"it cannot be written ({exc.strerror})", "Change its permissions (or choose another --results)"
     else:
-        what, remedy = f"writing failed ({exc.strerror or exc})", "Mend the folder or the disk"
+        what, remedy = f"writing failed ({exc.strerror or exc})", "Repair the folder or the disk"
     return WorkError(f"{path}: {what}. {remedy}, then start again: every finished case is kept.")
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file beside its place, flush it to the disk, and move it there in one step.
+    """Write a file under a temporary name, flush it to the disk and rename it.
 
-    `write` gets the path of the temporary file. A failure leaves nothing behind; `OSError` (and netCDF's
-    RuntimeError for a full disk) becomes `WorkError`.
+    A failure leaves no file behind, and a killed process leaves the previous file unchanged.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file to write.
+    write : callable
+        Writes the content; it receives the temporary path.
+
+    Raises
+    ------
+    WorkError
+        If the operating system or the netCDF library cannot write.
     """
     beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
@@ -119,8 +158,13 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
             beside.unlink()
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text file whole or not at all; see `write_whole`."""
+    write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8"))
+
+
 def _sync_folder(folder: Path) -> None:
-    with contextlib.suppress(OSError):  # some file systems cannot sync a folder
+    with contextlib.suppress(OSError):  # some file systems cannot flush a folder
         handle = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(handle)
@@ -128,49 +172,58 @@ def _sync_folder(folder: Path) -> None:
             os.close(handle)
 
 
-def link_or_copy(source: Path, target: Path) -> None:
-    """The same content under a second name: a hard link, or a copy where there are none."""
+def record_checksum(folder: StudyFolder, path: Path) -> None:
+    """Write the SHA-256 of a file, in the format of `sha256sum`, into the folder `plan`."""
+    write_text(folder.checksum(path), f"{_sha256(path)}  ../{path.name}\n")
 
-    def write(beside: Path) -> None:
-        try:
-            os.link(source, beside)
-        except OSError:
-            beside.write_bytes(source.read_bytes())
 
-    write_whole(target, write)
+def matches_checksum(folder: StudyFolder, path: Path) -> bool:
+    """Return whether a file is as it was when its checksum was recorded."""
+    try:
+        return folder.checksum(path).read_text().split()[:1] == [_sha256(path)]
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def _sha256(path: Path) -> str:
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
+    """Take or convert the lock of an open file, unless another process holds a conflicting lock.
+
+    Return True on a file system without locks: files are replaced whole there, so no result can be lost, but
+    two processes may solve the same case.
+    """
+    try:
+        fcntl.flock(stream, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+    return True
+
+
+def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Tell | None = None) -> None:
+    """Wait until `try_lock` succeeds; call `tell` once if another process holds the lock."""
+    while not try_lock(stream, shared):
+        if tell is not None:
+            tell(f"{Path(stream.name).stem}: another process works on this, waiting for it")
+            tell = None
+        time.sleep(0.05)
 
 
 @contextlib.contextmanager
-def locked(path: Path, tell: Callable[[str], None] | None = None) -> Iterator[None]:
-    """Hold a lock that the system releases when the process ends, however it ends."""
-    import fcntl
-
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        stream = open(path, "a")
-    except OSError as exc:
-        raise disk_error(exc, path) from None
-    with stream:
-        told = False
-        while True:
-            try:
-                fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
-            except BlockingIOError:
-                if tell is not None and not told:
-                    tell(f"{path.stem}: another process works on this, waiting for it")
-                    told = True
-                time.sleep(0.2)
-            except OSError:  # a file system without locks: atomic files are safe, work may be done twice
-                break
+def locked(path: Path, shared: bool = False, tell: Tell | None = None) -> Iterator[None]:
+    """Hold the lock of an existing file; the system releases the lock when the process ends, however it ends."""
+    with open(path, "rb+") as stream:
+        wait_for_lock(stream, shared, tell)
         yield
 
 
-def sweep(folder: Path) -> None:
-    """Remove temporary files that killed processes left behind."""
-    for path in folder.glob(".*.tmp"):
-        parts = path.name.split(".")
-        owner = parts[-2] if len(parts) > 2 else ""
-        if not (owner.isdigit() and Path(f"/proc/{owner}").exists()):
-            with contextlib.suppress(OSError):
-                path.unlink()
+def sweep(folder: StudyFolder) -> None:
+    """Remove the temporary files of killed processes. Only the sole holder of the lock may call this."""
+    for path in (*folder.root.glob(".*.tmp"), *folder.root.glob("*/.*.tmp")):
+        if path.is_file():  # the figures are drawn in a temporary folder
+            path.unlink(missing_ok=True)

@@ -1,22 +1,24 @@
-"""One labelled file from the chunks: a grid gets its factors as dimensions, a sample the dimension `case`."""
+"""Gather solved cases into one file: a grid gets a dimension for each factor, a sample the dimension `case`."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import os
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import netCDF4
 import numpy as np
 
+from trackroller import __version__
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import provenance, store
-from trackroller.study.caselists import load_list
 from trackroller.study.design.build import build, case_columns, draw
 from trackroller.study.design.factors import Factor, label
-from trackroller.study.files import WorkError, write_whole
-from trackroller.study.mend import Tell
+from trackroller.study.files import StudyFolder, Tell, WorkError, record_checksum, write_whole
+from trackroller.study.inventory import Inventory, take_inventory
 from trackroller.study.plan import Plan, identify
 
 if TYPE_CHECKING:
@@ -24,206 +26,184 @@ if TYPE_CHECKING:
 
     from trackroller.study.config import Study
 
-BATCH_BYTES = 300_000_000  # of values in memory at once
+MOST_MEMORY = 300_000_000  # bytes of results in memory; more results go through a temporary file
 
 
 @dataclass(frozen=True)
 class Axes:
-    """How rows become dimensions: `dims` and `shape` of the cases, `factors` of a grid by dimension."""
+    """Dimensions of the gathered cases: names, lengths, and the factors of a grid by dimension."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
     factors: dict[str, Factor]
 
 
-def write_design(study: Study, path: Path, design: xr.Dataset | None = None) -> None:
-    """Write `design.nc`, the cases of a study."""
+def write_design(study: Study, folder: StudyFolder, design: xr.Dataset | None = None) -> None:
+    """Write `design.nc`, the cases of a study, and record its checksum."""
     design = build(study) if design is None else design
+    title = f"Cases of the parameter study '{study.name}' of locating-bearing track rollers"
+    history = f"drawn by trackroller {__version__}"
+    described = design.assign_attrs({"Conventions": "CF-1.11", "title": title, "history": history} | design.attrs)
+    encoding = {str(name): {"_FillValue": None} for name in described.variables}
+    write_whole(folder.design, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
+    record_checksum(folder, folder.design)
 
-    def save(beside: Path) -> None:
-        design.to_netcdf(beside, engine="netcdf4")
 
-    write_whole(path, save)
+def gather(plan: Plan, tell: Tell | None = None) -> Path:
+    """Gather the solved cases of a plan into `study.nc`, and write `design.nc` if it is missing.
 
+    Parameters
+    ----------
+    plan : Plan
+        A plan whose chunks are solved.
+    tell : callable, optional
+        Receives one line when the file is complete.
 
-def gather(plan: Plan, out: Path | None = None, tell: Tell | None = None) -> Path:
-    """Gather the solved chunks of a plan into one data set.
+    Returns
+    -------
+    pathlib.Path
+        Path of `study.nc`.
 
-    Raises `WorkError` when cases are missing; a corrupt chunk is named and removed, so that the next run
-    solves its cases again.
+    Raises
+    ------
+    WorkError
+        If cases are missing or a file is damaged; the next run solves these cases.
+
+    Notes
+    -----
+    The time is proportional to the number of results. Above `MOST_MEMORY` the results pass through a temporary
+    file in the study's folder.
     """
-    out = plan.folder.gathered if out is None else out
-    sampled = draw(plan.study)
-    design = build(plan.study, sampled)
-    cases = identify(plan.study, design)
-    if not plan.folder.design.is_file():
-        write_design(plan.study, plan.folder.design, design)
-    listed = np.concatenate([load_list(plan.folder, name).cases for name in plan.chunks])
-    order = np.argsort(listed, kind="stable")
-    place = np.searchsorted(listed[order], cases).clip(max=len(listed) - 1)
-    source = order[place]
-    if missing := int((listed[source] != cases).sum()):
-        raise WorkError(f"{missing} of {len(cases)} cases are in no chunk: start the run again.")
-    grid = sampled.method == "grid" and bool(sampled.factors)
-    axes = (
-        Axes(tuple(sampled.factors), tuple(sampled.meta["shape"]), sampled.factors)
-        if grid
-        else Axes(("case",), (len(cases),), {})
-    )
+    study, folder = plan.study, plan.folder
+    sampled = draw(study)
+    design = build(study, sampled)
+    cases = identify(study, design)
+    if not folder.design.is_file():
+        write_design(study, folder, design)
+    found = take_inventory(folder)
+    place = found.find(cases)
+    if missing := int((place < 0).sum()):
+        damaged = "".join(f" Corrupt: {why}." for why in found.corrupt.values())
+        raise WorkError(f"{missing} of {len(cases)} cases are not solved.{damaged} Start the run again.")
+    axes = Axes(("case",), (len(cases),), {})
+    if sampled.method == "grid" and sampled.factors:
+        axes = Axes(tuple(sampled.factors), tuple(sampled.meta["shape"]), sampled.factors)
 
     def save(beside: Path) -> None:
-        import netCDF4
-
         with netCDF4.Dataset(beside, "w") as file:
-            _write(file, plan, design, cases, source, axes, sampled.columns)
+            labels = _write_axes(file, design, axes, sampled.columns)
+            numbers, first = np.unique(found.file[place], return_index=True)
+            headers = [found.headers[i] for i in numbers[np.argsort(first)]]
+            labels += _write_coordinates(file, headers)
+            _write_results(file, folder, axes, found, place, headers)
+            file.setncatts(_attributes(study, design, headers) | {"coordinates": " ".join(labels)})
 
-    write_whole(out, save)
+    write_whole(folder.gathered, save)
+    record_checksum(folder, folder.gathered)
     if tell is not None:
-        tell(f"gathered {len(cases)} cases into {out}")
-    return out
+        tell(f"gathered {len(cases)} cases into {folder.gathered}")
+    return folder.gathered
 
 
-def _read_chunk(plan: Plan, name: str) -> store.Block:
-    try:
-        return store.read_chunk(plan.folder.kept(name))
-    except FileNotFoundError:
-        raise WorkError(f"chunk {name} is not solved yet: start the run again.") from None
-    except store.CorruptFile as exc:
-        plan.folder.kept(name).unlink(missing_ok=True)
-        plan.folder.chunk(name).unlink(missing_ok=True)
-        raise WorkError(f"corrupt chunk, removed: {exc}. Start the run again: only its cases are solved.") from None
-
-
-def _layout(plan: Plan) -> tuple[dict[str, store.Layout], dict[str, Any], dict[str, Any], dict[str, str]]:
-    layouts: list[dict[str, store.Layout]] = []
-    coords: dict[str, Any] = {}
+def _attributes(study: Study, design: xr.Dataset, headers: list[store.Block]) -> dict[str, Any]:
+    """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
+    names = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
     attrs: dict[str, Any] = {}
-    reasons: dict[str, str] = {}
-    for name in plan.chunks:
-        block = _read_chunk(plan, name)
-        layouts.append(block.layout)
-        coords = block.coords | coords
-        attrs = block.attrs | attrs
-        reasons |= block.reasons
-    return store.merged_layout(sorted(layouts, key=lambda entry: -len(entry))), coords, attrs, reasons
+    for header in headers:
+        attrs = header.attrs | attrs
+    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in study.factors}
+    return kept | provenance.attributes(study, names)
 
 
-def _batches(layout: dict[str, store.Layout], rows: int) -> Iterator[dict[str, store.Layout]]:
-    batch: dict[str, store.Layout] = {}
-    for name, entry in layout.items():
-        if batch and 8 * rows * (sum(e.size for e in batch.values()) + entry.size) > BATCH_BYTES:
-            yield batch
-            batch = {}
-        batch[name] = entry
-    yield batch
-
-
-def _write(
-    file: Any,
-    plan: Plan,
-    design: Any,
-    cases: np.ndarray,
-    source: np.ndarray,
-    axes: Axes,
-    drawn: dict[str, np.ndarray],
-) -> None:
-    layout, coords, attrs, reasons = _layout(plan)
-    study = plan.study
-    materials = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
-    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k != "solver_digest"}
-    for name in study.factors:
-        kept.pop(name, None)
-    file.setncatts(kept | provenance.attributes(study, materials))
-    for dim, length in zip(axes.dims, axes.shape, strict=True):
-        file.createDimension(dim, length)
-    labels = _write_axes(file, design, axes, drawn)
+def _write_coordinates(file: netCDF4.Dataset, headers: list[store.Block]) -> list[str]:
+    """Write the results without a case dimension; return the names of the auxiliary coordinates."""
+    coords: dict[str, Any] = {}
+    for header in headers:
+        coords = header.coords | coords
     for name, entry in coords.items():
-        values = np.asarray(entry["values"])
-        for dim, length in zip(entry["dims"], values.shape, strict=True):
-            if dim not in file.dimensions:
-                file.createDimension(dim, length)
-        _put(file, name, tuple(entry["dims"]), values, entry["attrs"])
-        if entry["coordinate"] and name not in file.dimensions:
-            labels.append(name)
-    for batch in _batches(layout, len(cases)):
-        blocks = (_read_chunk(plan, name) for name in plan.chunks)
-        values = np.concatenate([store.aligned(block, batch) for block in blocks])[source]
+        _put(file, name, tuple(entry["dims"]), np.asarray(entry["values"]), entry["attrs"], coordinate=True)
+    return [name for name, entry in coords.items() if entry["coordinate"] and name not in file.dimensions]
+
+
+def _write_results(
+    file: netCDF4.Dataset,
+    folder: StudyFolder,
+    axes: Axes,
+    found: Inventory,
+    place: np.ndarray,
+    headers: list[store.Block],
+) -> None:
+    layout = store.merged_layout(header.layout for header in headers)
+    with tempfile.TemporaryFile(dir=folder.root) as scratch:
+        values = _collect(scratch, layout, found, place)
         start = 0
-        for name, entry in batch.items():
-            for dim, length in zip(entry.dims, entry.shape, strict=True):
-                if dim not in file.dimensions:
-                    file.createDimension(dim, length)
-            part = values[:, start : start + entry.size].reshape(*axes.shape, *entry.shape)
+        for name, entry in layout.items():
+            part = values[start : start + entry.size].T.reshape(*axes.shape, *entry.shape)
             _put(file, name, (*axes.dims, *entry.dims), part.astype(entry.dtype), entry.attrs)
             start += entry.size
-    told = np.array([reasons.get(case, "") for case in np.char.decode(cases)], dtype=object) if reasons else None
-    told = np.full(len(cases), "", dtype=object) if told is None else told
-    _put(
-        file, "reason", axes.dims, told.reshape(axes.shape), {"long_name": "why a case failed or misses its tolerance"}
-    )
-    if labels:
-        file.setncattr("coordinates", " ".join(labels))
+    reasons = np.full(len(place), "", dtype=object)
+    known = np.array([case.encode() for case in found.reasons], dtype="S32")
+    why = dict(zip(found.find(known).tolist(), found.reasons.values(), strict=True))
+    for i in np.flatnonzero(np.isin(place, list(why))):
+        reasons[i] = why[place[i]]
+    attrs = {"long_name": "why a case failed or misses its tolerance"}
+    _put(file, "reason", axes.dims, reasons.reshape(axes.shape), attrs)
 
 
-def _write_axes(file: Any, design: Any, axes: Axes, drawn: dict[str, np.ndarray]) -> list[str]:
-    """Labels of the dimensions and every parameter as a coordinate; returns the names of the latter."""
+def _collect(scratch: Any, layout: dict[str, store.Layout], found: Inventory, place: np.ndarray) -> np.ndarray:
+    """Return the results of the cases, shape (columns, n); each file is read once."""
+    shape = (sum(entry.size for entry in layout.values()), len(place))
+    if 8 * shape[0] * shape[1] <= MOST_MEMORY:
+        values = np.empty(shape)
+    else:
+        os.posix_fallocate(scratch.fileno(), 0, 8 * shape[0] * shape[1])  # a full disk must not end in SIGBUS
+        values = np.memmap(scratch, dtype=float, mode="r+", shape=shape)
+    order = np.argsort(found.file[place], kind="stable")
+    numbers, start = np.unique(found.file[place][order], return_index=True)
+    for number, rows in zip(numbers, np.split(order, start[1:]), strict=True):
+        try:
+            block = store.read_named(found.paths[number])
+        except (store.CorruptFile, FileNotFoundError) as exc:
+            raise WorkError(f"corrupt results: {exc}. Start again: only its cases are solved.") from None
+        values[:, rows] = store.aligned(block, layout)[found.row[place[rows]]].T
+    return values
+
+
+def _write_axes(file: netCDF4.Dataset, design: xr.Dataset, axes: Axes, drawn: dict[str, np.ndarray]) -> list[str]:
+    """Write the dimensions and every parameter as a coordinate; return the names of the auxiliary coordinates."""
     labels: list[str] = []
+    for dim, length in zip(axes.dims, axes.shape, strict=True):
+        file.createDimension(dim, length)
+
+    def add(name: str, dims: tuple[str, ...], values: np.ndarray, attrs: dict[str, Any]) -> None:
+        _put(file, name, dims, values, attrs, coordinate=True)
+        if name not in axes.dims:
+            labels.append(name)
+
     for dim, factor in axes.factors.items():
-        values = (
-            np.array(factor.levels, dtype=float)
-            if factor.numeric
-            else np.array([label(v) for v in factor.levels], dtype=object)
-        )
-        _put(file, dim, (dim,), values, _parameter_attrs(dim))
+        levels = factor.levels if factor.numeric else [label(v) for v in factor.levels]
+        add(dim, (dim,), np.array(levels, dtype=float if factor.numeric else object), _parameter_attrs(dim))
         if dim == "material_pair":
             for i, name in enumerate(MATERIAL_FIELDS):
-                _put(
-                    file,
-                    name,
-                    (dim,),
-                    np.array([pair[i] for pair in factor.levels], dtype=object),
-                    {"long_name": name.replace("_", " ")},
-                )
-                labels.append(name)
-    if "case" not in axes.dims:
-        _put(
-            file,
-            "case",
-            axes.dims,
-            np.arange(design.sizes["case"]).reshape(axes.shape),
-            {"long_name": "case number, for `trackroller repeat`", "units": "1"},
-        )
-        labels.append("case")
-    else:
-        _put(file, "case", ("case",), np.arange(design.sizes["case"]), {"long_name": "case number", "units": "1"})
+                materials = np.array([pair[i] for pair in factor.levels], dtype=object)
+                add(name, (dim,), materials, _parameter_attrs(name))
+    number = np.arange(design.sizes["case"]).reshape(axes.shape)
+    add("case", axes.dims, number, {"long_name": "case number, for `trackroller repeat`", "units": "1"})
     extra = {name: design[name].values for name in design.coords if name != "case"}
     if "material_pair" in drawn and "material_pair" not in axes.factors:
         extra["material_pair"] = np.array([label(v) for v in drawn["material_pair"]], dtype=object)
-    columns = {name: design[name].values for name in case_columns(design)} | extra
-    for name, values in columns.items():
+    for name, values in ({name: design[name].values for name in case_columns(design)} | extra).items():
         if name in axes.factors and set(axes.factors[name].levels) & {*FRICTION_LEVELS, None}:
             name = f"{name}_value"
-        if name in file.variables:
-            continue
-        labels.append(name)
-        used = _varying(values, axes)
-        if used is None:
-            _put(file, name, (), values[0], _parameter_attrs(name))
-        else:
-            dims, part = used
-            _put(file, name, dims, part, _parameter_attrs(name))
+        if name not in file.variables:
+            dims, part = _varying(values, axes)
+            add(name, dims, part, _parameter_attrs(name))
     return labels
 
 
-def _varying(values: np.ndarray, axes: Axes) -> tuple[tuple[str, ...], np.ndarray] | None:
-    """The dimensions a column really depends on, and its values over these; None for a constant."""
-    full = values.reshape(axes.shape)
-    same = full == full.reshape(-1)[0]
-    if values.dtype.kind == "f":
-        same |= np.isnan(full) & np.isnan(full.reshape(-1)[0])
-    if np.all(same):
-        return None
-    dims, part = list(axes.dims), full
+def _varying(values: np.ndarray, axes: Axes) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return the dimensions that a column depends on, and its values over these dimensions."""
+    dims, part = list(axes.dims), values.reshape(axes.shape)
     for dim in axes.dims:
         axis = dims.index(dim)
         first = part.take([0], axis=axis)
@@ -244,27 +224,33 @@ def _parameter_attrs(name: str) -> dict[str, Any]:
     return {"long_name": name.replace("_", " ")}
 
 
-def _put(file: Any, name: str, dims: tuple[str, ...], values: Any, attrs: dict[str, Any]) -> None:
+def _put(
+    file: netCDF4.Dataset,
+    name: str,
+    dims: tuple[str, ...],
+    values: np.ndarray,
+    attrs: dict[str, Any],
+    coordinate: bool = False,
+) -> None:
+    """Write a variable and create its missing dimensions; only results have a fill value."""
     values = np.asarray(values)
+    for dim, length in zip(dims, values.shape, strict=True):
+        if dim not in file.dimensions:
+            file.createDimension(dim, length)
     if values.dtype.kind in "OSU":
         variable = file.createVariable(name, str, dims)
         variable[...] = values.astype(object) if values.ndim else str(values)
     else:
         packed = {"compression": "zlib", "complevel": 4, "shuffle": True} if dims else {}
-        fill = np.nan if values.dtype.kind == "f" else None
+        fill = np.nan if values.dtype.kind == "f" and not coordinate else None
         variable = file.createVariable(name, values.dtype, dims, fill_value=fill, **packed)
         variable[...] = values
-    variable.setncatts(
-        {
-            key: _attribute(key, value, values.dtype)
-            for key, value in attrs.items()
-            if value is not None and key != "_FillValue"
-        }
-    )
+    kept = {key: value for key, value in attrs.items() if value is not None and key != "_FillValue"}
+    variable.setncatts({key: _attribute(key, value, values.dtype) for key, value in kept.items()})
 
 
 def _attribute(key: str, value: Any, dtype: np.dtype) -> Any:
-    """An attribute as netCDF can hold it: flags in the type of their variable, no truth values."""
+    """Convert an attribute to a netCDF type: flags take the type of their variable, booleans become numbers."""
     if key in ("flag_values", "flag_masks", "valid_range"):
         return np.asarray(value, dtype=dtype)
     if isinstance(value, bool):

@@ -1,8 +1,9 @@
-"""Which chunks a study consists of, so that each missing case is solved once and no finished one again.
+"""Plan which cases of a study must be solved, and in which chunks.
 
-A chunk is a list of cases under `plan/`, named by its content. The planner keeps every list that still holds
-wanted cases, and makes new lists only for cases that stand in none: growing a study adds chunks and touches no
-old one. Planning twice gives the same plan.
+A case that any file of the study holds is never planned again. The other cases go into chunks, each with a case
+list under `plan/` that is named by its content. Growing a study therefore adds chunks and changes no finished one.
+A lock protects the plan: every process that works from it holds the lock together with the others, and only its
+sole holder may change the plan.
 """
 
 from __future__ import annotations
@@ -11,32 +12,39 @@ import contextlib
 import hashlib
 import json
 import math
-import shutil
-import zipfile
-import zlib
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.roller.case import to_table
-from trackroller.study import store
-from trackroller.study.caselists import load_list, save_list, sound_cases, write_list
-from trackroller.study.design.build import build, table_path
+from trackroller.study.caselists import CaseList, load_list, write_list
+from trackroller.study.config import check_name
+from trackroller.study.cost import study_rate
+from trackroller.study.design.build import build, case_columns, table_path
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.growth import with_history
-from trackroller.study.files import StudyFolder, link_or_copy, locked, write_whole
+from trackroller.study.files import (
+    StudyFolder,
+    Tell,
+    WorkError,
+    matches_checksum,
+    sweep,
+    try_lock,
+    wait_for_lock,
+    write_text,
+)
 from trackroller.study.identity import chunk_name, fingerprints
-from trackroller.study.mend import Tell, drop_corrupt
+from trackroller.study.inventory import Inventory, forget_failed, remove_corrupt, take_inventory
 from trackroller.study.sources import solver_digest
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from trackroller.study.config import Study
 
-SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: starting a job (1-2 s) must stay a small part
+SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: the start of a job (1-2 s) must remain a small part
 MOST_CHUNKS = 400
 SMALLEST_CHUNK = 100
 LARGEST_CHUNK = 20_000
@@ -44,49 +52,74 @@ LARGEST_CHUNK = 20_000
 
 @dataclass(frozen=True)
 class Plan:
-    """Chunks of a study (in order) and how many cases it has; `cases` only when freshly made."""
+    """Chunks of a study.
+
+    Attributes
+    ----------
+    study : Study
+        The study; a grown Latin hypercube knows its earlier sizes.
+    folder : StudyFolder
+        Files of the study.
+    chunks : dict
+        Number of cases by the name of the chunk, in the order of the design.
+    size : int
+        Number of cases of the design.
+    distinct : int
+        Number of different cases among these.
+    uses : tuple of str
+        Names of the files that hold the cases which are in no chunk of this plan.
+    """
 
     study: Study
     folder: StudyFolder
     chunks: dict[str, int]
     size: int
-    design: xr.Dataset | None = None
-    cases: np.ndarray | None = None
-    notes: list[str] = field(default_factory=list)
+    distinct: int
+    uses: tuple[str, ...] = ()
+
+    @property
+    def open(self) -> list[str]:
+        """Names of the chunks that are not complete."""
+        return [name for name in self.chunks if not self.folder.chunk(name).is_file()]
 
 
 def study_folder(study_name: str, results: Path | str = "results") -> StudyFolder:
-    """Folder of a study's results."""
-    from trackroller.study.config import check_name
-
+    """Return the folder of a study's results."""
     return StudyFolder(Path(results) / check_name(study_name))
 
 
-def case_options(study: Study, design: xr.Dataset) -> tuple[list[dict[str, Any]] | dict[str, Any], np.ndarray]:
-    """Options of `solve` for each case, and the group of equal options each case belongs to, shape (n,)."""
-    n = design.sizes["case"]
+def case_options(study: Study, design: xr.Dataset) -> tuple[list[dict[str, Any]], np.ndarray]:
+    """Return the different options of `solve` in a design, and the index of each case's options, shape (n,)."""
     varying = [name for name in OPTION_FACTORS if name in design.coords]
     if not varying:
-        return study.options, np.zeros(n, dtype=int)
+        return [study.options], np.zeros(design.sizes["case"], dtype=int)
     keys = list(zip(*[design[name].values.tolist() for name in varying], strict=True))
     known = {key: i for i, key in enumerate(dict.fromkeys(keys))}
-    ready = [study.options | dict(zip(varying, key, strict=True)) for key in known]
-    group = np.array([known[key] for key in keys])
-    return [ready[i] for i in group], group
+    options = [study.options | dict(zip(varying, key, strict=True)) for key in known]
+    return options, np.array([known[key] for key in keys])
 
 
 def identify(study: Study, design: xr.Dataset) -> np.ndarray:
-    """Fingerprint of each case of a design, shape (n,); raises `InputError` for a case that is no case."""
-    options, _ = case_options(study, design)
-    return fingerprints(to_table(design.drop_vars(list(design.coords)), study.materials), options)
+    """Return the fingerprint of each case of a design, dtype S32, shape (n,).
+
+    Raises
+    ------
+    InputError
+        If a case of the design is not valid.
+    """
+    options, group = case_options(study, design)
+    table = to_table(design.drop_vars(list(design.coords)), study.materials)
+    cases = np.empty(len(group), dtype="S32")
+    for number, told in enumerate(options):
+        rows = np.flatnonzero(group == number)
+        cases[rows] = fingerprints(table.take(rows) if len(options) > 1 else table, told)
+    return cases
 
 
 def chunk_size(study: Study, cases: int) -> int:
-    """Cases a job: some seconds of solving, but at least two chunks when there is work for two cores."""
+    """Return the number of cases of a chunk: some seconds of solving, and at least two chunks for two processors."""
     if study.config.chunk_size:
         return study.config.chunk_size
-    from trackroller.study.cost import study_rate
-
     speed = study_rate(study)
     wanted = math.ceil(speed * min(max(cases / speed / 16, SHORTEST), LONGEST))
     wanted = max(min(wanted, math.ceil(cases / 2)), SMALLEST_CHUNK, math.ceil(cases / MOST_CHUNKS))
@@ -94,13 +127,12 @@ def chunk_size(study: Study, cases: int) -> int:
 
 
 def plan_key(study: Study) -> str:
-    """Hash of everything a plan depends on, found without drawing the design."""
+    """Return the hash of everything that a plan depends on, found without drawing the design."""
     digest = hashlib.sha256(f"{solver_digest()}\n{study.merged()}".encode())
-    material_names = {*study.materials.names()}
-    for name in sorted(material_names):
+    names = sorted(study.materials.names())
+    for name in names:
         digest.update(repr(study.materials.material(name)).encode())
-    pairs = [(a, b) for a in sorted(material_names) for b in sorted(material_names)]
-    for pair in pairs:
+    for pair in ((a, b) for a in names for b in names):
         with contextlib.suppress(ValueError):
             digest.update(repr(study.materials.friction(*pair)).encode())
     if study.config.table is not None:
@@ -108,35 +140,94 @@ def plan_key(study: Study) -> str:
     return digest.hexdigest()
 
 
-def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | None = None, check: bool = True) -> Plan:
-    """Plan a study and write its case lists.
+def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | None = None) -> Plan:
+    """Plan a study, write its case lists, and release the study's folder; see `working_plan`."""
+    with working_plan(study, results, tell=tell) as plan:
+        return plan
+
+
+@contextlib.contextmanager
+def working_plan(
+    study: Study, results: Path | str = "results", *, tell: Tell | None = None, rerun_failed: bool = False
+) -> Iterator[Plan]:
+    """Plan a study and keep other processes from changing the plan.
 
     Parameters
     ----------
-    study : the checked study
-    results : parent of the study's folder
-    tell : called with one line for each thing the user should know (a corrupt file, a changed solver)
-    check : read every kept file and drop the corrupt ones
+    study : Study
+        The checked study.
+    results : path
+        Parent of the study's folder.
+    tell : callable, optional
+        Receives one line for each event that the user should read, such as a damaged file.
+    rerun_failed : bool
+        Remove the failed cases, so that they are solved again.
 
-    Raises `InputError` for a design with bad cases or a folder that cannot be written.
+    Yields
+    ------
+    Plan
+        The plan, which stays as it is until the context ends.
+
+    Raises
+    ------
+    InputError
+        If the design holds an invalid case or the results folder cannot be a folder.
+    WorkError
+        If another process works on another version of the study, or the folder cannot be written.
     """
-    folder = study_folder(study.name, results).create()
     tell = tell or (lambda line: None)
+    folder = study_folder(study.name, results).create()
+    with open(folder.lock, "rb+") as lock:
+        if alone := try_lock(lock):
+            _repair_and_plan(study, folder, tell, rerun_failed)
+        wait_for_lock(lock, shared=True)
+        plan = read_plan(study, folder)
+        if plan is None or (rerun_failed and not alone):
+            raise WorkError(
+                f"study '{study.name}': another process is solving it, from another version of the study file or "
+                f"of the materials. Wait until that process ends, or stop it; then start again: {folder.root} keeps "
+                "every finished case. To solve both versions at once, give this one another name."
+            )
+        yield plan
+
+
+def read_plan(study: Study, folder: StudyFolder) -> Plan | None:
+    """Return the plan on the disk, or None if it is missing or was made for another version of the study."""
     study = with_history(study, folder)
-    with locked(folder.plan_lock):
-        if check:
-            drop_corrupt(folder, tell)
-            for path in sorted((folder.root / "plan").glob("*.npz")):
-                sound_cases(path, tell)
-        _tell_changed_solver(folder, tell)
-        ready = _kept_plan(study, folder)
-        if ready is None and study.config.grown_from:
-            tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
-        return ready if ready is not None else _new_plan(study, folder, tell)
+    try:
+        data = json.loads(folder.plan_file.read_text())
+        if data["key"] != plan_key(study):
+            return None
+        return Plan(study, folder, data["chunks"], data["size"], data["distinct"], tuple(data["uses"]))
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _repair_and_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> None:
+    """Remove damaged files, and plan anew unless the plan on the disk accounts for every case."""
+    sweep(folder)
+    _tell_changed_solver(folder, tell)
+    for path in (folder.design, folder.gathered):
+        if path.exists() and not matches_checksum(folder, path):
+            tell(f"{path} is truncated or was altered (its checksum differs): it is made anew")
+            path.unlink()
+    found = take_inventory(folder)
+    remove_corrupt(folder, found, tell)
+    if rerun_failed:
+        tell(f"{forget_failed(folder, found)} failed cases are solved again")
+        found = take_inventory(folder)
+    plan = read_plan(study, folder)
+    if plan is None or not _is_complete(plan, found, tell):
+        plan = _new_plan(with_history(study, folder), folder, found, tell)
+    for name in plan.chunks:
+        if not folder.chunk(name).is_file():
+            folder.mark(name).unlink(missing_ok=True)
+        elif not folder.mark(name).is_file():
+            folder.mark(name).touch()
 
 
 def _tell_changed_solver(folder: StudyFolder, tell: Tell) -> None:
-    """Say so when the cases of a folder were planned for another version of the solver's code."""
+    """Say so if the cases of a folder were planned for another version of the solver's code."""
     try:
         known = json.loads(folder.plan_file.read_text()).get("solver_digest")
     except (OSError, ValueError, AttributeError):
@@ -145,126 +236,45 @@ def _tell_changed_solver(folder: StudyFolder, tell: Tell) -> None:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
 
 
-def _kept_plan(study: Study, folder: StudyFolder) -> Plan | None:
-    """The plan on the disk when nothing it depends on has changed."""
-    try:
-        data = json.loads(folder.plan_file.read_text())
-        if data["key"] != plan_key(study) or not all(folder.case_list(name).is_file() for name in data["chunks"]):
-            return None
-        return Plan(study, folder, data["chunks"], data["size"])
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
+def _is_complete(plan: Plan, found: Inventory, tell: Tell) -> bool:
+    """Return whether each case of a plan is in a solved file or in a sound case list."""
+    sound = set(plan.uses) <= {path.name for path in found.paths}
+    for name in plan.chunks:
+        try:
+            load_list(plan.folder, name)
+        except WorkError as exc:
+            tell(str(exc))
+            sound = False
+    return sound
 
 
-def _new_plan(study: Study, folder: StudyFolder, tell: Tell) -> Plan:
+def _new_plan(study: Study, folder: StudyFolder, found: Inventory, tell: Tell) -> Plan:
+    """Plan the cases that no file holds; the plan file is written last."""
+    if study.config.grown_from:
+        tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
     design = build(study)
     cases = identify(study, design)
-    wanted, first = np.unique(cases, return_index=True)
     options, group = case_options(study, design)
-    _relist(folder, design, cases, options)
-    chunks: dict[str, int] = {}
-    covered = np.zeros(len(wanted), dtype=bool)
-    for path in sorted((folder.root / "plan").glob("*.npz")):
-        name = path.stem
-        listed = sound_cases(path, tell)
-        if listed is None:
-            continue
-        place = np.searchsorted(wanted, listed).clip(max=max(len(wanted) - 1, 0))
-        hit = wanted[place] == listed
-        if not hit.any() or covered[place[hit]].all():
-            continue
-        if not folder.kept(name).is_file() and not hit.all():
-            name, listed = _seal(folder, name, tell)
-            if name == "":
-                continue
-            place = np.searchsorted(wanted, listed).clip(max=len(wanted) - 1)
-            hit = wanted[place] == listed
-            if not hit.any():
-                continue
-        covered[place[hit]] = True
-        chunks[name] = len(listed)
-    missing = np.sort(first[~covered])
+    wanted, first = np.unique(cases, return_index=True)
+    place = found.find(wanted)
+    missing = np.sort(first[place < 0])
     size = chunk_size(study, len(missing))
-    for number in range(int(group.max()) + 1 if len(group) else 0):
+    columns = {name: design[name].values for name in case_columns(design)}
+    chunks: dict[str, int] = {}
+    for number, told in enumerate(options):
         rows = missing[group[missing] == number]
-        count = max(1, math.ceil(len(rows) / size))
-        for part in np.array_split(rows, count):
+        for part in np.array_split(rows, max(1, math.ceil(len(rows) / size))):
             if len(part):
-                told = options if isinstance(options, dict) else options[part[0]]
-                chunks[write_list(folder, design, cases, part, told)] = len(part)
-    data = {
-        "key": plan_key(study),
-        "solver_digest": solver_digest(),
-        "study": study.name,
-        "size": len(cases),
-        "chunks": chunks,
-    }
-    _write_text(folder.plan_file, json.dumps(data))
-    _write_text(folder.root / "study.yaml", study.merged(whole_paths=True))
-    return Plan(study, folder, chunks, len(cases), design, cases)
-
-
-def _write_text(path: Path, text: str) -> None:
-    write_whole(path, lambda beside: Path(beside).write_text(text, encoding="utf-8"))
-
-
-def read_parts(folder: StudyFolder, name: str, tell: Tell) -> list[store.Block]:
-    """Finished blocks of an unfinished chunk; corrupt ones are named and removed."""
-    blocks = []
-    for path in sorted(folder.parts(name).glob("*.nc")):
-        try:
-            blocks.append(store.read(path))
-        except store.CorruptFile as exc:
-            tell(f"corrupt block of finished cases, they are solved again: {exc}")
+                name = chunk_name(cases[part])
+                write_list(folder, CaseList(name, cases[part], {k: v[part] for k, v in columns.items()}, told))
+                chunks[name] = len(part)
+    uses = sorted(found.paths[i].name for i in np.unique(found.file[place[place >= 0]]))
+    folder.design.unlink(missing_ok=True)
+    write_text(folder.study_file, study.merged(whole_paths=True))
+    data = {"key": plan_key(study), "solver_digest": solver_digest(), "study": study.name}
+    data |= {"size": len(cases), "distinct": len(wanted), "chunks": chunks, "uses": uses}
+    write_text(folder.plan_file, json.dumps(data))
+    for path in (*folder.root.glob("plan/*.npz"), *folder.root.glob("plan/*.solved")):
+        if path.stem not in chunks:
             path.unlink(missing_ok=True)
-    return blocks
-
-
-def _relist(folder: StudyFolder, design: xr.Dataset, cases: np.ndarray, options: Any) -> None:
-    """Case lists for solved chunks that have lost theirs, of the cases that are still wanted."""
-    for path in sorted((folder.root / "store").glob("*.nc")):
-        if folder.case_list(path.stem).is_file():
-            continue
-        with contextlib.suppress(store.CorruptFile):
-            block = store.read(path)
-            where = {case: i for i, case in enumerate(cases.tolist())}
-            kept = np.array([i for i, case in enumerate(block.cases.tolist()) if case in where], dtype=int)
-            if not len(kept):
-                continue
-            block = block.take(kept)
-            rows = np.array([where[case] for case in block.cases.tolist()])
-            told = options if isinstance(options, dict) else options[rows[0]]
-            name = write_list(folder, design, cases, rows, told)
-            if name != path.stem:
-                keep(folder, name, block)
-                path.unlink()
-                folder.chunk(path.stem).unlink(missing_ok=True)
-
-
-def _seal(folder: StudyFolder, name: str, tell: Tell) -> tuple[str, np.ndarray]:
-    """Turn what is finished of a chunk that is no longer wanted whole into a chunk of its own."""
-    blocks = read_parts(folder, name, tell)
-    try:
-        listed = load_list(folder, name)
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error):
-        listed = None
-    sealed = ("", np.empty(0, dtype="S32"))
-    if blocks and listed is not None:
-        block = store.concatenate(blocks)
-        where = {case: i for i, case in enumerate(listed.cases.tolist())}
-        rows = np.array([where[case] for case in block.cases.tolist()])
-        new = chunk_name(block.cases)
-        save_list(folder.case_list(new), block.cases, {k: v[rows] for k, v in listed.columns.items()}, listed.options)
-        keep(folder, new, block)
-        sealed = (new, block.cases)
-    if sealed[0] != name:
-        folder.case_list(name).unlink(missing_ok=True)
-        shutil.rmtree(folder.parts(name), ignore_errors=True)
-    return sealed
-
-
-def keep(folder: StudyFolder, name: str, block: store.Block) -> None:
-    """Store a finished chunk, under both its names."""
-    store.write(folder.kept(name), block)
-    link_or_copy(folder.kept(name), folder.chunk(name))
-    shutil.rmtree(folder.parts(name), ignore_errors=True)
+    return Plan(study, folder, chunks, len(cases), len(wanted), tuple(uses))

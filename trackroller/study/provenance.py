@@ -1,4 +1,4 @@
-"""What is needed to repeat a result: versions, commit, study, materials, date."""
+"""Record what is needed to repeat a result: versions, commit, study, materials, date."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "SALib", "snakemake
 
 
 def git_commit() -> str:
-    """Commit of the source tree ('+changed' when it differs from it), 'unknown' outside one."""
+    """Return the commit of the source tree, with '+changed' after an edit; 'unknown' outside a source tree."""
     root = Path(__file__).resolve().parents[2]
     if not (root / ".git").exists():
         return "unknown"
     try:
 
         def git(*words: str) -> str:
-            # no optional locks: a run that is killed here must not leave the repository locked
+            # without optional locks, a run that is killed here does not leave the repository locked
             return subprocess.run(
                 ["git", "--no-optional-locks", "-C", str(root), *words],
                 capture_output=True,
@@ -43,7 +43,7 @@ def git_commit() -> str:
 
 
 def versions() -> dict[str, str]:
-    """Versions of this package, Python and what the numbers come from."""
+    """Return the versions of this package, of Python and of the packages that compute the numbers."""
     found = {"trackroller": __version__, "python": platform.python_version()}
     for name in _PACKAGES:
         try:
@@ -54,16 +54,17 @@ def versions() -> dict[str, str]:
 
 
 def materials_used(study: Study, names: list[str]) -> dict[str, Any]:
-    """Values of the materials by name."""
+    """Return the values of materials by name."""
     return {name: study.materials.material(name).as_dict() for name in names}
 
 
 def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
-    """Global attributes of the gathered set."""
+    """Return the global attributes of the gathered file for a study that uses the named materials."""
     config = study.config
     told = {
         "Conventions": "CF-1.11",
         "title": f"Parameter study '{study.name}' of locating-bearing track rollers",
+        "history": f"solved and gathered by trackroller {__version__}",  # without a time: equal studies, equal files
         "comment": config.description,
         "source": f"trackroller {__version__}",
         "study": study.merged(),

@@ -1,4 +1,4 @@
-"""From a row of a study back to its case: solve it anew and compare."""
+"""Solve one case of a study again and compare it with the stored result."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from trackroller.study import store
 from trackroller.study.design.build import build, case_columns
 from trackroller.study.design.growth import with_history
 from trackroller.study.files import WorkError
+from trackroller.study.inventory import take_inventory
 from trackroller.study.plan import case_options, identify, study_folder
 
 if TYPE_CHECKING:
@@ -23,7 +24,17 @@ if TYPE_CHECKING:
 
 @dataclass
 class Repeat:
-    """A case solved anew: its values and options, and for each variable the largest relative difference."""
+    """A case that was solved again.
+
+    Attributes
+    ----------
+    case : dict
+        Values of the case.
+    options : dict
+        Keyword arguments of `solve`.
+    differences : dict
+        Largest relative difference to the stored result [1], by variable.
+    """
 
     case: dict[str, Any]
     options: dict[str, Any]
@@ -31,11 +42,11 @@ class Repeat:
 
     @property
     def largest(self) -> float:
-        """Largest relative difference of all variables."""
+        """Largest relative difference of all variables [1]."""
         return max(self.differences.values(), default=0.0)
 
     def command(self) -> str:
-        """A command that solves the case without the study."""
+        """Return a command that solves the case without the study."""
         words = ["trackroller", "solve"]
         for key, value in (self.case | self.options).items():
             if isinstance(value, (list, tuple)):
@@ -46,11 +57,30 @@ class Repeat:
 
 
 def repeat_case(study: Study, number: int, results: Path | str = "results") -> Repeat:
-    """Solve case `number` of a study anew and compare it with what is stored.
+    """Solve a case of a study again and compare it with the stored result.
 
-    Raises `InputError` for a number outside the study, `WorkError` for a case that is not solved yet.
+    Parameters
+    ----------
+    study : Study
+        The checked study.
+    number : int
+        Number of the case: the variable `case` of `study.nc`.
+    results : path
+        Parent of the study's folder.
+
+    Returns
+    -------
+    Repeat
+        The case and the differences.
+
+    Raises
+    ------
+    InputError
+        If the study has no such case.
+    WorkError
+        If the case is not solved yet.
     """
-    from trackroller.roller.solver import solve
+    from trackroller.roller.solver import solve  # numba compiles on import; the checks come first
 
     folder = study_folder(study.name, results)
     study = with_history(study, folder)
@@ -58,18 +88,22 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     if not 0 <= number < design.sizes["case"]:
         raise InputError("case", number, f"a case number from 0 to {design.sizes['case'] - 1}")
     cases = identify(study, design)
-    options, _ = case_options(study, design)
-    told = options if isinstance(options, dict) else options[number]
-    before = _stored(folder.root, cases[number])
+    options, group = case_options(study, design)
+    found = take_inventory(folder)
+    place = found.find(cases[[number]])[0]
+    if place < 0:
+        raise WorkError("this case is not solved yet: run the study first.")
+    before = store.read_named(found.paths[found.file[place]]).take(found.row[[place]])
     row = design.drop_vars(list(design.coords)).isel(case=[number])
-    again = store.from_dataset(solve(row, database=study.materials, **told), cases[[number]])
+    again = store.from_dataset(solve(row, database=study.materials, **options[group[number]]), cases[[number]])
     differences = {}
     for name in before.layout:
         old = before.columns(name)[0]
         new = again.columns(name)[0] if name in again.layout else np.full(old.shape, np.nan)
         differences[name] = _difference(old, new)
     case = {name: row[name].values[0] for name in case_columns(row)}
-    return Repeat({k: float(v) if k in PARAMETERS else str(v) for k, v in case.items()}, dict(told), differences)
+    case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
+    return Repeat(case, dict(options[group[number]]), differences)
 
 
 def _difference(old: np.ndarray, new: np.ndarray) -> float:
@@ -79,12 +113,3 @@ def _difference(old: np.ndarray, new: np.ndarray) -> float:
     scale = np.maximum(np.abs(old), np.abs(new))
     apart = np.where(same, 0.0, np.abs(old - new) / np.where(scale > 0, scale, 1.0))
     return float(np.where(np.isnan(apart), np.inf, apart).max())
-
-
-def _stored(root: Path, case: bytes) -> store.Block:
-    for path in sorted([*(root / "store").glob("*.nc"), *(root / "store").glob("*.parts/*.nc")]):
-        block = store.read(path)
-        hit = np.flatnonzero(block.cases == case)
-        if hit.size:
-            return block.take(hit[:1])
-    raise WorkError("this case is not solved yet: run the study first.")

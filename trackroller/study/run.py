@@ -1,19 +1,23 @@
-"""Running a study in this process (or on dask workers), with progress, resumable at any time."""
+"""Run a study in this process or on dask workers; a run that was interrupted goes on where it stopped."""
 
 from __future__ import annotations
 
+import contextlib
+import functools
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trackroller.study.mend import Tell
-from trackroller.study.plan import Plan, make_plan, read_parts
-from trackroller.study.solve import Solver, forget_failed, solve_chunk, solved
+from trackroller.study.caselists import load_list
+from trackroller.study.cluster import workers
+from trackroller.study.files import Tell
+from trackroller.study.gather import gather
+from trackroller.study.inventory import take_inventory
+from trackroller.study.plan import Plan, working_plan
+from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
-
-Progress = Callable[[int], None]
 
 
 def run_study(
@@ -24,40 +28,71 @@ def run_study(
     scheduler: str | None = None,
     tell: Tell | None = None,
     started: Callable[[int, int], None] | None = None,
-    progress: Progress | None = None,
+    progress: Callable[[int], None] | None = None,
     solver: Solver | None = None,
 ) -> Plan:
-    """Plan a study, solve what is missing and gather it.
+    """Plan a study, solve the missing cases and gather the results.
 
     Parameters
     ----------
-    study : the checked study
-    results : parent of the study's folder
-    rerun_failed : solve the failed cases anew as well
-    scheduler : None for this process, 'local' or 'tcp://host:port' for dask.distributed
-    tell : called with one line for each thing worth telling
-    started : called once with (number of cases in the plan's chunks, of these finished already)
-    progress : called with the number of cases of each finished block
+    study : Study
+        The checked study.
+    results : path
+        Parent of the study's folder.
+    rerun_failed : bool
+        Solve the failed cases again as well.
+    scheduler : str, optional
+        'local' or 'tcp://host:port' solves on dask workers; by default this process solves.
+    tell : callable, optional
+        Receives one line for each event that the user should read.
+    started : callable, optional
+        Receives the number of different cases and how many of them are solved already.
+    progress : callable, optional
+        Receives the number of cases of each finished block.
+    solver : callable, optional
+        Replaces `trackroller.solve` in this process.
 
-    Raises `InputError` for bad input and `WorkError` for a full disk and the like; what is finished is kept.
+    Returns
+    -------
+    Plan
+        The plan that was carried out.
+
+    Raises
+    ------
+    InputError
+        If the study or the address of the scheduler is wrong.
+    WorkError
+        If the work cannot be completed, for example on a full disk; every finished case is kept.
     """
-    from trackroller.study.gather import gather
-
     tell = tell or (lambda line: None)
-    plan = make_plan(study, results, tell=tell)
-    if rerun_failed:
-        tell(f"{forget_failed(plan.folder, list(plan.chunks), tell)} failed cases are solved again")
-    open_chunks = [name for name in plan.chunks if not solved(plan.folder, name, tell)]
-    done = sum(n for name, n in plan.chunks.items() if name not in open_chunks)
-    done += sum(len(b.cases) for name in open_chunks for b in read_parts(plan.folder, name, tell))
-    if started is not None:
-        started(sum(plan.chunks.values()), done)
-    if scheduler is None:
+    before = _text(study.path)
+    with contextlib.ExitStack() as stack:
+        plan = stack.enter_context(working_plan(study, results, tell=tell, rerun_failed=rerun_failed))
+        open_chunks = plan.open
+        if started is not None:
+            started(plan.distinct, plan.distinct - _missing(plan, open_chunks))
+        executor: Executor = functools.partial(solve_here, solver=solver)
+        if scheduler is not None and open_chunks:
+            executor = stack.enter_context(workers(scheduler))
         for name in open_chunks:
-            tell(solve_chunk(plan.folder, name, study.materials, tell=tell, progress=progress, solver=solver))
-    elif open_chunks:
-        from trackroller.study.cluster import solve_chunks
-
-        solve_chunks(plan, open_chunks, scheduler, tell=tell, progress=progress)
-    gather(plan, tell=tell)
+            tell(solve_chunk(plan.folder, name, study.materials, executor=executor, tell=tell, progress=progress))
+        gather(plan, tell=tell)
+    if _text(study.path) != before:
+        tell(
+            f"{study.path} was edited during this run, which solved the earlier version. Start again to solve the new."
+        )
     return plan
+
+
+def _missing(plan: Plan, open_chunks: list[str]) -> int:
+    if not open_chunks:
+        return 0
+    found = take_inventory(plan.folder)
+    return sum(int((found.find(load_list(plan.folder, name).cases) < 0).sum()) for name in open_chunks)
+
+
+def _text(path: Path | None) -> bytes:
+    try:
+        return path.read_bytes() if path is not None else b""
+    except OSError:
+        return b""

@@ -1,8 +1,7 @@
-"""Solving a chunk: block by block, each kept on the disk, a case that raises kept as a failed row."""
+"""Solve the missing cases of a chunk. Every runner calls `solve_chunk`; runners differ in where cases are solved."""
 
 from __future__ import annotations
 
-import contextlib
 import logging
 import time
 from collections.abc import Callable, Iterator
@@ -11,31 +10,47 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, ShapeError
+from trackroller.roller.case import to_table
 from trackroller.study import store
-from trackroller.study.caselists import CaseList, load_list
-from trackroller.study.files import StudyFolder, WorkError, link_or_copy, locked
+from trackroller.study.caselists import CaseList, list_is_gone, load_list
+from trackroller.study.files import StudyFolder, Tell, WorkError, locked
 from trackroller.study.identity import fingerprints
-from trackroller.study.mend import Tell
-from trackroller.study.plan import keep, read_parts
-from trackroller.study.sources import solver_digest
 
 log = logging.getLogger("trackroller")
-BLOCK_SECONDS = 3.0  # at most so much work is lost when a process is killed
+BLOCK_SECONDS = 3.0  # a killed process loses at most the block that it works on
 SMALLEST_BLOCK, LARGEST_BLOCK = 16, 8192
 Solver = Callable[..., Any]
+Executor = Callable[[CaseList, Any], Iterator[store.Block]]  # solves the cases of a list, block by block
 
 
 def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver | None = None) -> store.Block:
-    """Solve the rows `index` of a list.
+    """Solve some rows of a case list.
 
-    When the solver raises, the rows are halved until the case that does so stands alone; it becomes a row
-    with regime failed and the exception as its reason. `InputError` (options that cannot be) goes on; `ShapeError`
-    is a case's own.
+    If the solver raises, the rows are halved until the responsible case is alone. That case becomes a row with
+    regime failed and the exception as its reason.
+
+    Parameters
+    ----------
+    cases : CaseList
+        The cases of a chunk.
+    index : numpy.ndarray of int, shape (n,)
+        Rows to solve.
+    database : MaterialDatabase or None
+        The materials; None takes the built-in ones and the user's.
+    solver : callable, optional
+        Replaces `trackroller.solve`.
+
+    Returns
+    -------
+    store.Block
+        Results of the n rows.
+
+    Raises
+    ------
+    InputError
+        If an option is wrong for all cases. A `ShapeError` concerns one case only and becomes a failed row.
     """
-    if solver is None:
-        from trackroller.roller.solver import solve
-
-        solver = solve
+    solver = _default_solver() if solver is None else solver
     started = time.perf_counter()
     blocks: list[store.Block] = []
     pending = [index]
@@ -59,13 +74,19 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
     return block
 
 
+def _default_solver() -> Solver:
+    from trackroller.roller.solver import solve  # numba compiles on import; planning needs no solver
+
+    return solve
+
+
 def _reason(exc: Exception) -> str:
-    told = str(exc).splitlines()[0] if str(exc) else "no message"
-    return told[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {told}"[:200]
+    text = str(exc).splitlines()[0] if str(exc) else "no message"
+    return text[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {text}"[:200]
 
 
 def _explain_shapes(block: store.Block, cases: CaseList, rows: np.ndarray, solve: Callable[[Any], Any]) -> None:
-    """Beside others, a case whose shapes cannot touch is just a failed row; alone it says why."""
+    """Solve failed cases alone: in a batch, the solver does not say why two shapes cannot touch."""
     if len(rows) < 2:
         return
     for i in np.flatnonzero(block.failed):
@@ -75,55 +96,16 @@ def _explain_shapes(block: store.Block, cases: CaseList, rows: np.ndarray, solve
             block.reasons[block.cases[i].decode()] = _reason(exc)
 
 
-def check_identity(cases: CaseList, database: Any) -> None:
-    """The materials must still be those of the plan."""
-    from trackroller.roller.case import to_table
-
-    if (fingerprints(to_table(cases.design(), database), cases.options) != cases.cases).any():
-        raise WorkError(
-            f"chunk {cases.name}: the materials or the solver changed after the study was planned. "
-            "Start the run again: it plans anew."
-        )
-
-
-def missing_rows(cases: CaseList, blocks: list[store.Block]) -> np.ndarray:
-    """Rows of a list that stand in no finished block."""
-    if not blocks:
-        return np.arange(len(cases.cases))
-    return np.flatnonzero(~np.isin(cases.cases, np.concatenate([b.cases for b in blocks])))
-
-
-def finish(folder: StudyFolder, cases: CaseList, blocks: list[store.Block]) -> store.Block:
-    """Put the blocks of a chunk in the order of its list and keep the chunk."""
-    block = store.concatenate(blocks)
-    _, first = np.unique(block.cases, return_index=True)
-    block = block.take(np.sort(first))
-    where = {case: i for i, case in enumerate(block.cases.tolist())}
-    block = block.take(np.array([where[case] for case in cases.cases.tolist()]))
-    block.attrs["solver_digest"] = solver_digest()
-    keep(folder, cases.name, block)
-    return block
-
-
-def solved(folder: StudyFolder, name: str, tell: Tell) -> bool:
-    """Is the chunk finished? If only one of its two names is there, the other is made again."""
-    kept, shown = folder.kept(name), folder.chunk(name)
-    if not kept.is_file():
-        return False
-    if not shown.is_file():
-        try:
-            store.read_chunk(kept)
-        except store.CorruptFile as exc:
-            tell(f"corrupt chunk, its cases are solved again: {exc}")
-            kept.unlink(missing_ok=True)
-            return False
-        link_or_copy(kept, shown)
-    return True
-
-
-def write_part(folder: StudyFolder, name: str, block: store.Block) -> None:
-    """Keep a finished block of an unfinished chunk."""
-    store.write(folder.parts(name) / f"{block.cases[0].decode()}.nc", block)
+def solve_here(cases: CaseList, database: Any, solver: Solver | None = None) -> Iterator[store.Block]:
+    """Solve cases in this process, in blocks of about `BLOCK_SECONDS`."""
+    start, size = 0, 64
+    while start < len(cases.cases):
+        rows = np.arange(start, min(start + size, len(cases.cases)))
+        begun = time.perf_counter()
+        yield solve_rows(cases, rows, database, solver)
+        start += size
+        spent = max(time.perf_counter() - begun, 1e-3)
+        size = min(max(int(size * min(4.0, BLOCK_SECONDS / spent)), SMALLEST_BLOCK), LARGEST_BLOCK)
 
 
 def solve_chunk(
@@ -131,66 +113,106 @@ def solve_chunk(
     name: str,
     database: Any = None,
     *,
-    tell: Tell | None = None,
+    executor: Executor = solve_here,
+    tell: Tell = log.warning,
     progress: Callable[[int], None] | None = None,
-    solver: Solver | None = None,
 ) -> str:
-    """Solve what is missing of a chunk and keep it.
+    """Solve the missing cases of a chunk and write its file.
 
-    `progress` is called with the number of cases after each block. Returns one line that sums it up.
+    Each finished block is written at once, so that a killed process loses only the blocks in work.
+
+    Parameters
+    ----------
+    folder : StudyFolder
+        Files of the study.
+    name : str
+        Name of the chunk.
+    database : MaterialDatabase, optional
+        The materials; the built-in ones and the user's by default.
+    executor : callable
+        Solves the cases of a list and yields blocks: `solve_here`, or the dask workers of `cluster`.
+    tell : callable
+        Receives one line for each event that the user should read.
+    progress : callable, optional
+        Receives the number of cases of each finished block.
+
+    Returns
+    -------
+    str
+        One line that sums up the work.
+
+    Raises
+    ------
+    WorkError
+        If the chunk is no longer planned, the materials have changed, or a file cannot be written.
     """
-    tell = tell or log.warning
-    with locked(folder.lock(name), tell):
-        if solved(folder, name, tell):
-            return f"chunk {name}: already solved"
-        cases = load_list(folder, name)
-        check_identity(cases, database)
-        blocks = read_parts(folder, name, tell)
-        rows = missing_rows(cases, blocks)
-        started = time.perf_counter()
-        for index in _blocks(rows):
-            block = solve_rows(cases, index, database, solver)
-            write_part(folder, name, block)
-            blocks.append(block)
-            if progress is not None:
-                progress(len(index))
-        chunk = finish(folder, cases, blocks)
-    with contextlib.suppress(OSError):
-        folder.lock(name).unlink()
+    try:
+        with locked(folder.lock, shared=True), locked(folder.case_list(name), tell=tell):
+            return _solve_locked(folder, name, database, executor, tell, progress)
+    except FileNotFoundError:
+        raise list_is_gone(folder, name) from None
+
+
+def _solve_locked(
+    folder: StudyFolder,
+    name: str,
+    database: Any,
+    executor: Executor,
+    tell: Tell,
+    progress: Callable[[int], None] | None,
+) -> str:
+    if folder.chunk(name).is_file():
+        folder.mark(name).touch()
+        return f"chunk {name}: already solved"
+    cases = load_list(folder, name)
+    _check_identity(cases, database)
+    blocks = _finished_blocks(folder, name, tell)
+    finished = [b.cases for b in blocks]
+    missing = (
+        np.flatnonzero(~np.isin(cases.cases, np.concatenate(finished))) if finished else np.arange(len(cases.cases))
+    )
+    started = time.perf_counter()
+    for block in executor(cases.take(missing), database):
+        store.write_part(folder, name, block)
+        blocks.append(block)
+        if progress is not None:
+            progress(len(block.cases))
     spent = time.perf_counter() - started
-    speed = f", {len(rows) / spent:.0f} cases/s" if spent > 0 and len(rows) else ""
+    chunk = _complete(folder, cases, blocks)
+    speed = f", {len(missing) / spent:.0f} cases/s" if spent > 0 and len(missing) else ""
     return (
-        f"chunk {name}: {len(cases.cases)} cases, {len(rows)} solved now in {spent:.1f} s{speed}, "
+        f"chunk {name}: {len(cases.cases)} cases, {len(missing)} solved now in {spent:.1f} s{speed}, "
         f"{int(chunk.failed.sum())} failed"
     )
 
 
-def _blocks(rows: np.ndarray) -> Iterator[np.ndarray]:
-    """Pieces of rows whose size follows the time they take."""
-    start, size = 0, min(64, max(SMALLEST_BLOCK, len(rows)))
-    while start < len(rows):
-        begun = time.perf_counter()
-        yield rows[start : start + size]
-        start += size
-        spent = max(time.perf_counter() - begun, 1e-3)
-        wanted = int(size * min(4.0, BLOCK_SECONDS / spent))
-        size = min(max(wanted, SMALLEST_BLOCK), LARGEST_BLOCK)
+def _check_identity(cases: CaseList, database: Any) -> None:
+    """Raise `WorkError` unless the materials and the solver are those of the plan."""
+    if (fingerprints(to_table(cases.design(), database), cases.options) != cases.cases).any():
+        raise WorkError(
+            f"chunk {cases.name}: the materials or the solver changed after the study was planned. "
+            "Start the run again: it plans anew."
+        )
 
 
-def forget_failed(folder: StudyFolder, chunks: list[str], tell: Tell) -> int:
-    """Take failed cases out of finished chunks, so that the next run solves just those; returns how many."""
-    count = 0
-    for name in chunks:
-        if not folder.kept(name).is_file():
-            continue
-        with locked(folder.lock(name), tell):
-            block = store.read_chunk(folder.kept(name))
-            failed = block.failed
-            if not failed.any():
-                continue
-            count += int(failed.sum())
-            if not failed.all():
-                write_part(folder, name, block.take(np.flatnonzero(~failed)))
-            folder.chunk(name).unlink(missing_ok=True)
-            folder.kept(name).unlink(missing_ok=True)
-    return count
+def _finished_blocks(folder: StudyFolder, name: str, tell: Tell) -> list[store.Block]:
+    blocks = []
+    for path in folder.parts(name):
+        try:
+            blocks.append(store.read_named(path))
+        except store.CorruptFile as exc:
+            tell(f"corrupt results, their cases are solved again: {exc}")
+            path.unlink(missing_ok=True)
+    return blocks
+
+
+def _complete(folder: StudyFolder, cases: CaseList, blocks: list[store.Block]) -> store.Block:
+    """Write the blocks of a chunk in the order of its list, and remove the parts."""
+    block = store.concatenate(blocks)
+    ascending = np.argsort(block.cases, kind="stable")
+    block = block.take(ascending[np.searchsorted(block.cases[ascending], cases.cases)])
+    store.write(folder.chunk(cases.name), block)
+    folder.mark(cases.name).touch()
+    for path in folder.parts(cases.name):
+        path.unlink(missing_ok=True)
+    return block

@@ -1,4 +1,4 @@
-"""How far a study is: done, missing, failed by reason and by factor level, and the time left."""
+"""Count the cases of a study: solved, missing, failed by reason and by factor level, and estimate the time left."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ import numpy as np
 from trackroller.errors import InputError, nearest
 from trackroller.materials.yaml_file import read_mapping
 from trackroller.parameters import REGIMES
-from trackroller.study import store
 from trackroller.study.config import load_study, parse_study
-from trackroller.study.cost import measured_rate, rate
+from trackroller.study.cost import study_rate
 from trackroller.study.design.build import build, draw
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
+from trackroller.study.inventory import take_inventory
 from trackroller.study.plan import identify, study_folder
 
 if TYPE_CHECKING:
@@ -26,26 +26,58 @@ if TYPE_CHECKING:
 
 @dataclass
 class Status:
-    """Numbers of cases of a study; `by_level` maps factor and level to failed cases."""
+    """State of a study.
+
+    Attributes
+    ----------
+    total, done, failed : int
+        Cases of the design, solved cases, and solved cases that failed.
+    regimes : dict
+        Number of solved cases by regime.
+    by_reason : dict
+        Number of failed cases by reason.
+    by_level : dict
+        Number of failed cases by factor and level.
+    speed : float
+        Cases a second of one processor, measured or estimated.
+    measured : bool
+        Whether `speed` was measured on solved cases of this study.
+    gathered : bool
+        Whether `study.nc` exists.
+    corrupt : list of str
+        Damaged files.
+    """
 
     total: int
-    done: int = 0
-    failed: int = 0
-    regimes: dict[str, int] = field(default_factory=dict)
-    by_reason: dict[str, int] = field(default_factory=dict)
+    done: int
+    failed: int
+    regimes: dict[str, int]
+    by_reason: dict[str, int]
+    speed: float
+    measured: bool
+    gathered: bool
     by_level: dict[tuple[str, str], int] = field(default_factory=dict)
-    seconds_left: float = 0.0
-    gathered: bool = False
     corrupt: list[str] = field(default_factory=list)
 
     @property
     def missing(self) -> int:
-        """Cases not solved yet."""
+        """Cases that are not solved."""
         return self.total - self.done
+
+    @property
+    def seconds_left(self) -> float:
+        """Expected time to solve the missing cases on one processor [s]."""
+        return self.missing / self.speed
 
 
 def find_study(study: str, results: Path | str = "results") -> Study:
-    """A study from the path of its file, its results folder, or its name."""
+    """Find a study by the path of its file, by its results folder, or by its name.
+
+    Raises
+    ------
+    InputError
+        If there is no such study; the message names the known ones.
+    """
     path = Path(study)
     if path.suffix in (".yaml", ".yml") or path.is_file():
         return load_study(path)
@@ -59,42 +91,47 @@ def find_study(study: str, results: Path | str = "results") -> Study:
 
 
 def status_of(study: Study, results: Path | str = "results") -> Status:
-    """State of a study from the files it has; nothing is written."""
+    """Determine the state of a study from its files; nothing is written.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study.
+    results : path
+        Parent of the study's folder.
+
+    Returns
+    -------
+    Status
+        Numbers of cases and the expected time. The time is proportional to the number of cases.
+    """
     folder = study_folder(study.name, results)
     study = with_history(study, folder)
     sampled = draw(study)
-    design = build(study, sampled)
-    cases = identify(study, design)
-    status = Status(len(cases), gathered=folder.gathered.is_file())
-    regime: dict[bytes, int] = {}
-    reasons: dict[str, str] = {}
-    files = [*(folder.root / "store").glob("*.nc"), *(folder.root / "store").glob("*.parts/*.nc")]
-    for path in files:
-        try:
-            block = store.read(path)
-        except store.CorruptFile as exc:
-            status.corrupt.append(str(exc))
-            continue
-        except FileNotFoundError:  # a running process has just moved it
-            continue
-        codes = block.columns("regime")[:, 0].astype(int).tolist()
-        regime.update(zip(block.cases.tolist(), codes, strict=True))
-        reasons |= block.reasons
-    found = np.array([regime.get(case, -1) for case in cases.tolist()])
-    status.done = int((found >= 0).sum())
-    status.failed = int((found == store.FAILED).sum())
-    status.regimes = {name: int((found == code).sum()) for code, name in enumerate(REGIMES)}
-    failed = np.flatnonzero(found == store.FAILED)
-    status.by_reason = dict(Counter(reasons.get(cases[i].decode(), "unknown") for i in failed).most_common())
+    cases = identify(study, build(study, sampled))
+    found = take_inventory(folder)
+    place = found.find(cases)
+    regime = found.regime[place[place >= 0]]
+    failed = np.flatnonzero(found.failed(place))
+    measured = found.seconds > 0
+    status = Status(
+        total=len(cases),
+        done=int((place >= 0).sum()),
+        failed=len(failed),
+        regimes={name: int((regime == code).sum()) for code, name in enumerate(REGIMES)},
+        by_reason=dict(Counter(found.reasons.get(cases[i].decode(), "unknown") for i in failed).most_common()),
+        speed=len(found.cases) / found.seconds if measured else study_rate(study),
+        measured=measured,
+        gathered=folder.gathered.is_file(),
+        corrupt=list(found.corrupt.values()),
+    )
     for name, factor in sampled.factors.items():
         if factor.discrete:
-            counts = Counter(_told(name, sampled.columns[name][i]) for i in failed)
+            counts = Counter(_level(name, sampled.columns[name][i]) for i in failed)
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
-    speed = measured_rate(folder.root / "store") or rate(study.options)
-    status.seconds_left = status.missing / speed
     return status
 
 
-def _told(name: str, level: Any) -> str:
-    """A level with all its digits, so that neighbours are told apart."""
+def _level(name: str, level: Any) -> str:
+    """Return a level with all its digits, so that neighbouring levels remain distinct."""
     return f"{level:.10g}" if isinstance(level, float) else in_words(name, level)

@@ -1,8 +1,8 @@
-"""Solved cases in files: blocks of rows with the layout of their variables.
+"""Store solved cases in files: blocks of rows, and a description of their columns.
 
-A file holds one 2-D variable `values (case, quantity)`, light to write and to concatenate. The global
-attribute `layout` (JSON) says which columns make up which variable; `digest` is the SHA-256 of all content,
-so that a file that was cut off or changed is found when it is read.
+A file holds one variable `values (case, quantity)`, which is quick to write and to concatenate. The global
+attribute `layout` (JSON) names the columns of each result variable. The attribute `digest` is the SHA-256 of the
+content, so that a truncated or altered file is noticed when it is read.
 """
 
 from __future__ import annotations
@@ -12,31 +12,34 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import netCDF4
 import numpy as np
+import xarray as xr
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.study.files import write_whole
+from trackroller.study.files import StudyFolder, write_whole
 from trackroller.study.identity import chunk_name
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 FAILED = 3  # value of `regime`
+_ATTRIBUTES = {
+    "Conventions": "CF-1.11",
+    "title": "Solved cases of a parameter study, one row a case",
+    "history": "written by trackroller",
+}
 
 
 class CorruptFile(Exception):
-    """A file of solved cases that cannot be trusted; says which and why."""
+    """Report a file of solved cases that is truncated or altered; the message names the file and the reason."""
 
     def __init__(self, path: Path, why: str) -> None:
         super().__init__(f"{path}: {why}")
-        self.path = path
 
 
 @dataclass(frozen=True)
 class Layout:
-    """A result variable without its case axis."""
+    """Describe a result variable without its case dimension."""
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
@@ -50,13 +53,31 @@ class Layout:
 
     @property
     def missing(self) -> float:
-        """Value of a case that has none."""
+        """Value that marks a missing result."""
         return np.nan if self.dtype.startswith("f") else 0.0
 
 
 @dataclass
 class Block:
-    """Solved cases: `values` (n, columns) in the order of `layout`, `reasons` of rows without a good solution."""
+    """Results of some cases.
+
+    Attributes
+    ----------
+    cases : numpy.ndarray of dtype S32, shape (n,)
+        Fingerprints.
+    values : numpy.ndarray of float, shape (n, columns)
+        Results, in the column order of `layout`.
+    layout : dict
+        `Layout` of each result variable, by name.
+    coords : dict
+        Variables without a case dimension: dims, values, attrs, and whether each is a coordinate.
+    reasons : dict
+        Why a case failed or misses its tolerance, by fingerprint.
+    seconds : float
+        Time spent on solving [s].
+    attrs : dict
+        Global attributes of the solver's dataset.
+    """
 
     cases: np.ndarray
     values: np.ndarray
@@ -67,7 +88,7 @@ class Block:
     attrs: dict[str, Any] = field(default_factory=dict)
 
     def columns(self, name: str) -> np.ndarray:
-        """The columns of a variable, shape (n, size)."""
+        """Return the columns of a variable, shape (n, size)."""
         start = 0
         for key, layout in self.layout.items():
             if key == name:
@@ -77,13 +98,13 @@ class Block:
 
     @property
     def failed(self) -> np.ndarray:
-        """Which rows failed, shape (n,)."""
+        """Whether each case failed, shape (n,)."""
         return self.columns("regime")[:, 0] == FAILED
 
     def take(self, index: np.ndarray) -> Block:
-        """The rows `index`."""
+        """Return the rows with the indices `index`."""
         cases = self.cases[index]
-        kept = {case.decode() for case in cases}
+        kept = {case.decode() for case in cases} if self.reasons else set()
         reasons = {case: why for case, why in self.reasons.items() if case in kept}
         return Block(cases, self.values[index], self.layout, self.coords, reasons, self.seconds, self.attrs)
 
@@ -94,8 +115,8 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def from_dataset(dataset: xr.Dataset, cases: np.ndarray, seconds: float = 0.0) -> Block:
-    """A block from what `solve` returned for `cases` (fingerprints, shape (n,))."""
+def from_dataset(dataset: xr.Dataset, cases: np.ndarray) -> Block:
+    """Convert the dataset that `solve` returned for the cases with the fingerprints `cases` (n,) to a block."""
     layout: dict[str, Layout] = {}
     coords: dict[str, dict[str, Any]] = {}
     columns = []
@@ -112,38 +133,31 @@ def from_dataset(dataset: xr.Dataset, cases: np.ndarray, seconds: float = 0.0) -
                 "coordinate": name in dataset.coords,
             }
             continue
-        values = variable.transpose("case", ...).values
-        dims = tuple(str(d) for d in variable.transpose("case", ...).dims[1:])
+        ordered = variable.transpose("case", ...)
+        dims, values = tuple(str(d) for d in ordered.dims[1:]), ordered.values
         dtype = "f8" if values.dtype.kind == "f" else f"i{min(values.dtype.itemsize, 8)}"
         layout[str(name)] = Layout(dims, values.shape[1:], dtype, attrs)
         columns.append(values.reshape(len(cases), -1).astype(float))
-    block = Block(
-        np.asarray(cases, dtype="S32"),
-        np.hstack(columns),
-        layout,
-        coords,
-        {},
-        seconds,
-        {k: _plain(v) for k, v in dataset.attrs.items()},
-    )
-    told = np.atleast_1d(dataset["reason"].values) if "reason" in dataset else np.full(len(block.cases), "")
+    attrs = {k: _plain(v) for k, v in dataset.attrs.items()}
+    block = Block(np.asarray(cases, dtype="S32"), np.hstack(columns), layout, coords, attrs=attrs)
+    why = np.atleast_1d(dataset["reason"].values) if "reason" in dataset else np.full(len(block.cases), "")
     for i, failed in enumerate(block.failed):
-        if told[i] or failed:
-            block.reasons[block.cases[i].decode()] = str(told[i]) or "no convergence"
+        if why[i] or failed:
+            block.reasons[block.cases[i].decode()] = str(why[i]) or "no convergence"
     return block
 
 
 def failure(cases: np.ndarray, reason: str) -> Block:
-    """Rows of cases that raised: regime failed, not converged, everything else missing."""
+    """Return rows for cases that raised: regime failed, not converged, every other result missing."""
     layout = {"regime": Layout((), (), "i1", {}), "converged": Layout((), (), "i1", {})}
     values = np.tile([float(FAILED), 0.0], (len(cases), 1))
     return Block(np.asarray(cases, dtype="S32"), values, layout, reasons={c.decode(): reason for c in cases})
 
 
 def merged_layout(blocks: Iterable[Mapping[str, Layout]]) -> dict[str, Layout]:
-    """Every variable of any block; the first block with attributes describes it."""
+    """Combine layouts, the longest first; the first layout with attributes describes a variable."""
     layout: dict[str, Layout] = {}
-    for block in blocks:
+    for block in sorted(blocks, key=lambda entry: -len(entry)):
         for name, entry in block.items():
             if name not in layout or (entry.attrs and not layout[name].attrs):
                 layout[name] = entry
@@ -151,7 +165,7 @@ def merged_layout(blocks: Iterable[Mapping[str, Layout]]) -> dict[str, Layout]:
 
 
 def aligned(block: Block, layout: Mapping[str, Layout]) -> np.ndarray:
-    """Values of a block in the columns of another layout, shape (n, columns); missing ones filled."""
+    """Return the values of a block in the columns of another layout, shape (n, columns)."""
     if list(block.layout) == list(layout):
         return block.values
     parts = []
@@ -164,22 +178,15 @@ def aligned(block: Block, layout: Mapping[str, Layout]) -> np.ndarray:
 
 
 def concatenate(blocks: list[Block]) -> Block:
-    """Blocks one after the other."""
-    layout = merged_layout(b.layout for b in sorted(blocks, key=lambda b: -len(b.layout)))
+    """Join blocks of different cases."""
+    layout = merged_layout(b.layout for b in blocks)
     first = max(blocks, key=lambda b: len(b.layout))
     reasons: dict[str, str] = {}
     for block in blocks:
         reasons |= block.reasons
+    cases = np.concatenate([b.cases for b in blocks])
     values = np.concatenate([aligned(b, layout) for b in blocks])
-    return Block(
-        np.concatenate([b.cases for b in blocks]),
-        values,
-        layout,
-        first.coords,
-        reasons,
-        sum(b.seconds for b in blocks),
-        first.attrs,
-    )
+    return Block(cases, values, layout, first.coords, reasons, sum(b.seconds for b in blocks), first.attrs)
 
 
 def _header(block: Block) -> str:
@@ -195,45 +202,36 @@ def _digest(header: str, cases: np.ndarray, values: np.ndarray) -> str:
 
 
 def write(path: Path, block: Block) -> None:
-    """Write a block; the file appears whole or not at all."""
+    """Write a block, whole or not at all."""
     header = _header(block)
 
     def save(beside: Path) -> None:
-        import netCDF4
-
         with netCDF4.Dataset(beside, "w") as file:
             n, width = block.values.shape
-            file.createDimension("case", n)
-            file.createDimension("quantity", width)
-            file.createDimension("hex", 32)
-            values = file.createVariable(
-                "values", "f8", ("case", "quantity"), compression="zlib", complevel=1, shuffle=n >= 64
-            )
+            for name, length in (("case", n), ("quantity", width), ("hex", 32)):
+                file.createDimension(name, length)
+            packed = {"compression": "zlib", "complevel": 1, "shuffle": n >= 64}
+            values = file.createVariable("values", "f8", ("case", "quantity"), **packed)
             values[:] = block.values
-            file.createVariable("cases", "S1", ("case", "hex"))[:] = block.cases.view("S1").reshape(n, 32)
-            file.setncatts(
-                {
-                    "layout": header,
-                    "seconds": float(block.seconds),
-                    "digest": _digest(header, block.cases, block.values),
-                }
-            )
+            values.setncatts({"long_name": "results, in the columns that the attribute layout names"})
+            cases = file.createVariable("cases", "S1", ("case", "hex"))
+            cases[:] = block.cases.view("S1").reshape(n, 32)
+            cases.setncatts({"long_name": "fingerprint of the case"})
+            digest = _digest(header, block.cases, block.values)
+            file.setncatts(_ATTRIBUTES | {"layout": header, "seconds": float(block.seconds), "digest": digest})
 
     write_whole(path, save)
 
 
-def read_chunk(path: Path) -> Block:
-    """Read a finished chunk, whose name is the hash of its cases; raises `CorruptFile` as `read` does."""
-    block = read(path)
-    if chunk_name(block.cases) != path.stem:
-        raise CorruptFile(path, "it holds the cases of another chunk")
-    return block
+def write_part(folder: StudyFolder, chunk: str, block: Block) -> Path:
+    """Write a finished block of a chunk that is not complete yet; return its path."""
+    path = folder.part(chunk, block.cases[0].decode())
+    write(path, block)
+    return path
 
 
 def read(path: Path) -> Block:
-    """Read a block back; raises `CorruptFile` for a file that is not exactly as it was written."""
-    import netCDF4
-
+    """Read a block; raise `CorruptFile` if the file is not exactly as it was written."""
     try:
         with netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)
@@ -246,9 +244,19 @@ def read(path: Path) -> Block:
         data = json.loads(header)
         layout = {k: Layout(tuple(v[0]), tuple(v[1]), v[2], v[3]) for k, v in data["layout"].items()}
         return Block(cases, values, layout, data["coords"], data["reasons"], seconds, data["attrs"])
-    except CorruptFile:
+    except (CorruptFile, FileNotFoundError):
         raise
-    except FileNotFoundError:
-        raise
-    except Exception as exc:  # whatever the library makes of a damaged file
+    except Exception as exc:  # the netCDF library raises errors of many types for a damaged file
         raise CorruptFile(path, f"damaged ({str(exc).splitlines()[0] if str(exc) else type(exc).__name__})") from exc
+
+
+def read_named(path: Path) -> Block:
+    """Read a block of a study and verify that it holds the cases which its name announces.
+
+    A complete chunk is named by the hash of its cases; the name of a part ends with its first case.
+    """
+    block = read(path)
+    _, _, first = path.stem.partition("-")
+    if first != block.cases[0].decode() if first else chunk_name(block.cases) != path.stem:
+        raise CorruptFile(path, "it holds other cases than its name announces")
+    return block

@@ -58,7 +58,8 @@ def hand_out() -> None:
     from trackroller.study.caselists import load_list
     from trackroller.study.config import load_study
     from trackroller.study.plan import make_plan
-    from trackroller.study.solve import finish, solve_rows
+    from trackroller.study import store
+    from trackroller.study.solve import solve_rows
 
     made = make_plan(load_study("study.yaml"), "results")
     solved = None
@@ -68,7 +69,7 @@ def hand_out() -> None:
             solved = solve_rows(cases, np.arange(min(2048, len(cases.cases))), made.study.materials)
         block = solved.take(np.arange(len(cases.cases)) % len(solved.cases))
         block.cases = cases.cases
-        finish(made.folder, cases, [block])
+        store.write(made.folder.chunk(name), block)
 
 
 def measured(words: list[str], place: Path) -> tuple[float, float, float]:

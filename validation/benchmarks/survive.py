@@ -40,16 +40,18 @@ SPY = """
 import os
 if os.environ.get("SURVIVE_LOG"):
     import trackroller.study.solve as solve
+    import trackroller.study.store as store
     def told(mark, cases):
         with open(os.environ["SURVIVE_LOG"], "ab", buffering=0) as stream:
             stream.write(b"".join(mark + case + b"\\n" for case in cases.tolist()))
     def rows(cases, index, *more, inner=solve.solve_rows, **named):
         told(b"S", cases.cases[index])
         return inner(cases, index, *more, **named)
-    def part(folder, name, block, inner=solve.write_part):
-        inner(folder, name, block)
+    def part(folder, name, block, inner=store.write_part):
+        path = inner(folder, name, block)
         told(b"W", block.cases)
-    solve.solve_rows, solve.write_part = rows, part
+        return path
+    solve.solve_rows, store.write_part = rows, part
 """
 FLOW, RUN, DASK = "snakemake", "run", "run --scheduler local"
 ALL, HEAD, WORKER = "everything", "the main process", "one worker"
@@ -108,7 +110,7 @@ def finished(place: Path) -> set[bytes]:
     from trackroller.study import store
 
     found: set[bytes] = set()
-    for path in [*results(place).glob("store/*.nc"), *results(place).glob("store/*.parts/*.nc")]:
+    for path in StudyFolder(results(place)).solved_files():
         try:
             found |= set(store.read(path).cases.tolist())
         except FileNotFoundError:  # a process that is still alive has moved it
@@ -119,7 +121,7 @@ def finished(place: Path) -> set[bytes]:
 def moment(place: Path, phase: str, before: int) -> Callable[[], bool]:
     """Is the wanted work going on?"""
     if phase == "solving":  # blocks of an unfinished chunk are there, and more of them than at the start
-        return lambda: any(results(place).glob("store/*.parts/*.nc")) and marks(place, b"W") > before
+        return lambda: any(results(place).glob("parts/*.nc")) and marks(place, b"W") > before
     pattern = {"gathering": ".study.nc.*.tmp", "drawing": ".figures.tmp/*", "reporting": "logs/report.log"}[phase]
     return lambda: any(results(place).glob(pattern))
 

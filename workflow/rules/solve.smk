@@ -1,4 +1,6 @@
-# Design, chunks of solved cases, one gathered file. Case lists under plan/ are written when the study is planned.
+# Write the design, solve the cases in chunks, gather the results into one file. Planning writes the case lists plan/*.npz.
+# The output of the rule solve is an empty mark: Snakemake deletes the outputs of a job that it repeats, and the solved
+# cases in chunks/ must survive that.
 localrules:
     design,
 
@@ -20,7 +22,7 @@ rule solve:
     input:
         f"{RESULTS}/plan/{{chunk}}.npz",
     output:
-        f"{RESULTS}/chunks/{{chunk}}.nc",
+        f"{RESULTS}/plan/{{chunk}}.solved",
     log:
         f"{RESULTS}/logs/solve/{{chunk}}.log",
     conda:
@@ -34,7 +36,7 @@ rule gather:
     input:
         study=study_inputs(PLAN.study),
         design=rules.design.output,
-        chunks=expand(f"{RESULTS}/chunks/{{chunk}}.nc", chunk=PLAN.chunks),
+        chunks=expand(f"{RESULTS}/plan/{{chunk}}.solved", chunk=PLAN.chunks),
     output:
         f"{RESULTS}/study.nc",
     log:

@@ -1,0 +1,113 @@
+"""A run that is killed before any rename or removal of a file ends, started again, with the same results."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+from collections import Counter
+from pathlib import Path
+
+import fake_solver
+import pytest
+import xarray as xr
+
+from trackroller.study.config import parse_study
+from trackroller.study.run import run_study
+
+SMALL = {
+    "name": "s",
+    "outputs": ["forces"],
+    "chunk_size": 4,
+    "design": "lhs",
+    "samples": 4,
+    "factors": {"axial_force": {"uniform": [20, 50]}, "friction_coefficient": {"values": [0.1, 0.2]}},
+}
+GROWN = SMALL | {"samples": 12}
+
+
+def run(data, results, **more):
+    run_study(parse_study(data), results, solver=fake_solver.solve, **more)
+
+
+def run_and_kill(data, results: Path, point: int, **more) -> bool:
+    """Run in a forked process, which kills itself before the rename or removal number `point`; was it killed?"""
+    child = os.fork()
+    if child == 0:
+        calls = iter(range(10_000))
+
+        def counted(action):
+            def act(*words, **named):
+                if next(calls) == point:
+                    os.kill(os.getpid(), signal.SIGKILL)
+                return action(*words, **named)
+
+            return act
+
+        try:
+            os.replace, os.unlink = counted(os.replace), counted(os.unlink)
+            run(data, results, **more)
+        finally:
+            os._exit(0)
+    return os.WIFSIGNALED(os.waitpid(child, 0)[1])
+
+
+@pytest.fixture
+def count_solved(tmp_path, monkeypatch):
+    """Count how often each case was solved."""
+    file = tmp_path / "solved.txt"
+    file.touch()
+    monkeypatch.setenv("FAKE_SOLVED", str(file))
+    return lambda: Counter(file.read_text().splitlines())
+
+
+def same(one: Path, other: Path) -> None:
+    """The same variables, coordinates and attributes; only the date may differ."""
+    sets = [xr.load_dataset(path) for path in (one, other)]
+    for ds in sets:
+        ds.attrs.pop("date_created", None)
+    xr.testing.assert_identical(*sets)
+
+
+def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, count_solved):
+    data = GROWN | {"samples": 8}
+    run(data, tmp_path / "calm")
+    before = count_solved()
+    point = 0
+    while run_and_kill(data, tmp_path / f"{point}", point):
+        killed = tmp_path / f"{point}"
+        run(data, killed)
+        for name in ("design.nc", "study.nc"):
+            same(killed / "s" / name, tmp_path / "calm" / "s" / name)
+        twice = sum(n - 1 for n in (count_solved() - before).values())
+        assert twice <= 4, f"only the block in work is lost, at kill point {point}"
+        assert not list(killed.rglob("*.tmp")) and not list((killed / "s" / "parts").iterdir())
+        before = count_solved()
+        point += 1
+    assert point >= 20, "lists, plan, parts, chunks, design, study and their checksums"
+
+
+def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tmp_path, count_solved):
+    def failing(design, database=None, **options):
+        ds = fake_solver.solve(design)
+        return ds.assign(regime=ds["regime"].copy(data=(design["axial_force"] > 35).astype("i1") * 3))
+
+    for place in ("start", "calm"):  # of the same history: a grown Latin hypercube has other rows than a new one
+        run_study(parse_study(SMALL), tmp_path / place, solver=failing)
+    run(GROWN, tmp_path / "calm", rerun_failed=True)
+    assert not (xr.load_dataset(tmp_path / "calm" / "s" / "study.nc")["regime"] == 3).any()
+    point = 0
+    while True:
+        place = tmp_path / f"{point}"
+        shutil.copytree(tmp_path / "start", place)
+        before = count_solved()
+        killed = run_and_kill(GROWN, place, point, rerun_failed=True)
+        run(GROWN, place, rerun_failed=True)
+        same(place / "s" / "study.nc", tmp_path / "calm" / "s" / "study.nc")
+        again = count_solved() - before
+        assert sum(n - 1 for n in again.values()) <= 4, f"only the block in work is lost, at kill point {point}"
+        assert len(again) == 8 + 2, "the new cases and the failed ones"
+        if not killed:
+            break
+        point += 1
+    assert point >= 20

@@ -1,0 +1,113 @@
+"""List the solved cases of a study: which file and row holds each, and which files are damaged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from trackroller.study import store
+from trackroller.study.files import StudyFolder, Tell
+
+
+@dataclass
+class Inventory:
+    """Solved cases of a study, each once.
+
+    Attributes
+    ----------
+    cases : numpy.ndarray of dtype S32, shape (m,)
+        Fingerprints, in ascending order.
+    file, row : numpy.ndarray of int, shape (m,)
+        Index into `paths` and row in that file.
+    regime : numpy.ndarray of int, shape (m,)
+        Code of `REGIMES`.
+    paths : list of pathlib.Path
+        Sound files.
+    headers : list of store.Block
+        For each file its layout, coordinates and attributes; the blocks have no rows.
+    reasons : dict
+        Why a case failed or misses its tolerance, by fingerprint.
+    corrupt : dict
+        Damaged files, and what is wrong with each.
+    seconds : float
+        Time spent on solving [s].
+    """
+
+    cases: np.ndarray
+    file: np.ndarray
+    row: np.ndarray
+    regime: np.ndarray
+    paths: list[Path]
+    headers: list[store.Block]
+    reasons: dict[str, str] = field(default_factory=dict)
+    corrupt: dict[Path, str] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    def find(self, wanted: np.ndarray) -> np.ndarray:
+        """Return the index of each wanted case in `cases`, shape (n,); -1 marks a case that is not solved."""
+        if not len(self.cases):
+            return np.full(len(wanted), -1)
+        place = np.searchsorted(self.cases, wanted).clip(max=len(self.cases) - 1)
+        return np.where(self.cases[place] == wanted, place, -1)
+
+    def failed(self, place: np.ndarray) -> np.ndarray:
+        """Return whether the cases with the indices `place` (see `find`) are solved and failed, shape (n,)."""
+        return (place >= 0) & (self.regime[place] == store.FAILED) if len(self.cases) else np.zeros(len(place), bool)
+
+
+def take_inventory(folder: StudyFolder) -> Inventory:
+    """Read every file with solved cases and verify its checksum."""
+    found = Inventory(*(np.empty(0, dtype=t) for t in ("S32", int, int, int)), paths=[], headers=[])
+    cases, regimes = [], []
+    for path in folder.solved_files():
+        try:
+            block = store.read_named(path)
+        except store.CorruptFile as exc:
+            found.corrupt[path] = str(exc)
+            continue
+        except FileNotFoundError:  # a running process has just completed the chunk
+            continue
+        cases.append(block.cases)
+        regimes.append(block.columns("regime")[:, 0].astype(int))
+        found.paths.append(path)
+        found.headers.append(block.take(np.empty(0, dtype=int)))
+        found.reasons |= block.reasons
+        found.seconds += block.seconds
+    if not cases:
+        return found
+    for each in (cases, regimes, found.paths, found.headers):
+        each.reverse()  # a complete chunk counts before a part of it
+    count = [len(part) for part in cases]
+    found.cases, first = np.unique(np.concatenate(cases), return_index=True)
+    found.file = np.repeat(np.arange(len(count)), count)[first]
+    found.row = np.concatenate([np.arange(n) for n in count])[first]
+    found.regime = np.concatenate(regimes)[first]
+    return found
+
+
+def remove_corrupt(folder: StudyFolder, found: Inventory, tell: Tell) -> None:
+    """Name and remove damaged files, and the blocks of chunks that are complete."""
+    for path, why in found.corrupt.items():
+        tell(f"corrupt results, their cases are solved again: {why}")
+        path.unlink(missing_ok=True)
+    for path in folder.parts():
+        if folder.chunk(path.stem.partition("-")[0]).is_file():
+            path.unlink(missing_ok=True)
+
+
+def forget_failed(folder: StudyFolder, found: Inventory) -> int:
+    """Remove the failed cases from the files, so that the next run solves them; return their number."""
+    count = 0
+    for number in np.unique(found.file[found.regime == store.FAILED]):
+        path = found.paths[number]
+        block = store.read_named(path)
+        good = np.flatnonzero(~block.failed)
+        count += len(block.cases) - len(good)
+        kept = path
+        if len(good):
+            kept = store.write_part(folder, path.stem.partition("-")[0], block.take(good))
+        if kept != path or not len(good):
+            path.unlink(missing_ok=True)
+    return count
