@@ -55,10 +55,10 @@ def hand_out() -> None:
     """Fill every chunk with the results of the first one, over and over."""
     import numpy as np
 
+    from trackroller.study import store
     from trackroller.study.caselists import load_list
     from trackroller.study.config import load_study
     from trackroller.study.plan import make_plan
-    from trackroller.study import store
     from trackroller.study.solve import solve_rows
 
     made = make_plan(load_study("study.yaml"), "results")

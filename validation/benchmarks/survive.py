@@ -108,6 +108,7 @@ def results(place: Path) -> Path:
 def finished(place: Path) -> set[bytes]:
     """Fingerprints of the cases that are kept."""
     from trackroller.study import store
+    from trackroller.study.files import StudyFolder
 
     found: set[bytes] = set()
     for path in StudyFolder(results(place)).solved_files():
