@@ -56,16 +56,8 @@ def run(data, results, **more):
 def run_apart(results, kill=None):
     """The same run in a process of its own, which may kill itself with SIGKILL."""
     code = f"import test_resume as t; t.run(t.DATA, {str(results)!r})"
-<<<<<<< HEAD
-    env = (
-        os.environ
-        | ({"FAKE_KILL": str(kill)} if kill else {})
-        | {"PYTHONPATH": f"{HERE.parent}:{HERE}:{HERE / 'study'}"}
-    )
-=======
     paths = os.pathsep.join(map(str, (HERE.parent, HERE, HERE / "study")))
     env = os.environ | ({"FAKE_KILL": str(kill)} if kill else {}) | {"PYTHONPATH": paths}
->>>>>>> d82128b (Keep solved cases in one place and let one loop solve what is missing)
     return subprocess.run([sys.executable, "-c", code], cwd=HERE, env=env, capture_output=True, text=True, timeout=120)
 
 
