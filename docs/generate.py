@@ -21,23 +21,9 @@ START, END = "<!-- presets: made by docs/generate.py -->\n", "<!-- end of preset
 USES = {"preview": "a first look", "standard": "studies", "reference": "to check `standard`; single cases"}
 HEAD = """# Parameters, options and results
 
-*Made by `python docs/generate.py` from `trackroller/parameters.py` and `trackroller/dataset.py`; do not edit.
+*Made by `python docs/generate.py` from `trackroller/parameters/` and `trackroller/roller/dataset.py`; do not edit.
 What the quantities mean physically is told in [theory.md](theory.md).*
 """
-OPTIONS = (
-    ("outputs", p.OUTPUT_GROUPS, ", ".join(p.DEFAULT_OUTPUTS), "groups of results; computed only when asked for"),
-    ("contact_model", p.CONTACT_MODELS, "sliding", "how friction is distributed over the patch"),
-    ("spin_model", p.SPIN_MODELS, "skewed", "the spin pole, the paper's assumptions 0, 1, 2; for `sliding` only"),
-    ("accuracy", (*p.ACCURACIES, "a number in (0, 1)"), "standard", "preset, or relative tolerance of the peak stress"),
-    ("hertz", p.HERTZ, "exact", "elliptic integrals, or the table of the published program"),
-    ("stress_bodies", p.STRESS_BODIES, "both", "each body with its own Poisson's ratio, or one with the mean"),
-    ("life_rule", p.LIFE_RULES, "elementary", "what happens below the fatigue limit"),
-    ("normal", p.NORMAL, "hertz", "pressures of Hertz, or patch and pressure solved on a grid (drawn profiles)"),
-    ("slip_terms", tuple(p.SLIP_TERMS), "none", "what the slip of `fastsim` and `kalker` counts beyond the tangent"),
-    ("contact_tolerance", ("a number in (0, 1)",), "0.05", "relative tolerance of the contact forces, for `auto`"),
-    ("stop_if", ("a condition",), "none", "cases for which it holds are not searched for peak stresses"),
-    ("shortcuts", ("true", "false"), "true", "spare what symmetry and repetition make superfluous"),
-)
 
 
 def _row(*cells: object) -> str:
@@ -60,6 +46,22 @@ def _range(parameter: p.Parameter) -> str:
     if parameter.allow_missing:
         parts.append("may be left out")
     return ", ".join(parts)
+
+
+def _option(option: p.Option) -> tuple[str, str, str, str]:
+    """Row of an option: its words with their meanings, its default, and the contact models that it is for."""
+    values = "; ".join(f"`{word}`: {meaning}" for word, meaning in option.values.items())
+    number = "a number in (0, 1)"
+    other = {"accuracy": number, "tolerance": number, "condition": "a condition", "switch": "true, false"}
+    default = ", ".join(option.default) if isinstance(option.default, tuple) else str(option.default)
+    models = f"; for {', '.join(f'`{model}`' for model in option.models)} only" if option.models else ""
+    told = [part for part in (values, other.get(option.kind, "")) if part]
+    return (
+        f"`{option.name}`",
+        "; or ".join(told),
+        default if default not in ("", "None") else "none",
+        option.meaning + models,
+    )
 
 
 def render() -> str:
@@ -85,13 +87,7 @@ def render() -> str:
         *_table(("name", "meaning"), [(f"`{name}`", told) for name, told in p.MAPPING_FIELDS.items()]),
         "## Options\n",
     ]
-    lines += _table(
-        ("name", "values", "default", "meaning"),
-        [
-            (f"`{name}`", ", ".join(f"`{v}`" if " " not in v else v for v in values), default, meaning)
-            for name, values, default, meaning in OPTIONS
-        ],
-    )
+    lines += _table(("name", "values", "default", "meaning"), [_option(option) for option in p.OPTIONS.values()])
     lines.append("## Results\n")
     for group in dict.fromkeys(v.group for v in VARIABLES.values()):
         always = ", always there or with the peak" if group == "status" else ""
@@ -108,7 +104,10 @@ def render() -> str:
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += [
         "### contact_model_used, stopped\n",
-        "`contact_model_used`, as `auto` chose it or as asked for: 0 sliding, 1 fastsim, 2 kalker.",
+        "`contact_model_used` is the model that solved the case; it differs from the one asked for with `auto`, and with",
+        "`kalker` at accuracy `preview`: "
+        + ", ".join(f"{i} {name}" for i, name in enumerate(p.CONTACT_MODELS[:-1]))
+        + ".",
         "`stopped` (with `stop_if`): 1 where the condition holds.\n",
     ]
     lines += ["### validity\n", "`validity` is a sum of bits; 0 means that nothing is to be said.\n"]

@@ -1,16 +1,11 @@
 """The entry point: labels, units, groups, options, bad input."""
 
-import dataclasses
-import inspect
-
 import numpy as np
 import pytest
 
 import trackroller as tr
 from trackroller import parameters
-from trackroller.parameters import SOLVE_OPTIONS
 from trackroller.roller.dataset import VARIABLES
-from trackroller.roller.options import Options
 
 
 def test_single_case_has_no_case_dimension_and_a_batch_has():
@@ -132,8 +127,3 @@ def test_empty_batch():
 def test_a_table_of_hertz_is_refused_where_there_is_no_ellipse():
     with pytest.raises(tr.InputError, match=r"hertz = 'published'.*normal: halfspace"):
         tr.solve(tr.Case(), hertz="published", normal="halfspace")
-
-
-def test_the_list_of_options_is_that_of_solve():
-    taken = [name for name in inspect.signature(tr.solve).parameters if name not in ("cases", "database")]
-    assert sorted(taken) == sorted(SOLVE_OPTIONS) == sorted(field.name for field in dataclasses.fields(Options))

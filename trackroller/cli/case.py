@@ -12,7 +12,7 @@ import numpy as np
 from trackroller.contact.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_yaml, read_mapping
-from trackroller.parameters import REGIMES, SOLVE_OPTIONS
+from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
 from trackroller.study.files import WorkError, write_whole
 
@@ -37,11 +37,11 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
     """Case and options from a case file and --set words."""
     values = (read_mapping(path, "case file") if path is not None else {}) | settings_of(words)
     for key in values:
-        if key not in (*FIELDS, *SOLVE_OPTIONS):
-            raise unknown_name("case field", key, (*FIELDS, *SOLVE_OPTIONS))
-    options = {key: values.pop(key) for key in SOLVE_OPTIONS if key in values}
-    for key in ("outputs", "slip_terms"):
-        if isinstance(options.get(key), str):
+        if key not in (*FIELDS, *OPTIONS):
+            raise unknown_name("case field", key, (*FIELDS, *OPTIONS))
+    options = {key: values.pop(key) for key in OPTIONS if key in values}
+    for key in options:
+        if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]
     with files_beside(path):
         return Case.from_dict(values), options

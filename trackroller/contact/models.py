@@ -201,14 +201,14 @@ def contact_model(
     if name == "sliding":
         return SlidingModel(settings, spin_model, law, travel)
     if name == "kalker":
-        if settings.name == "preview" and law.is_constant and not profile:  # the table knows tangents only
-            from trackroller.contact.table.model import TableModel
-
-            return TableModel(elastic, lambda: KalkerModel(settings, elastic, law, travel))
         return KalkerModel(settings, elastic, law, travel, profile)
+    if name == "kalker_table":
+        from trackroller.contact.table.model import TableModel
+
+        return TableModel(elastic, lambda: KalkerModel(settings, elastic, law, travel))
     if name == "fastsim":
         return FastsimModel(settings, elastic, law, travel, profile)
-    raise InputError("contact_model", name, "sliding, fastsim or kalker")
+    raise InputError("contact_model", name, "sliding, fastsim, kalker or kalker_table")
 
 
 def traction_share(surface: SurfaceTractions, friction: np.ndarray) -> np.ndarray:

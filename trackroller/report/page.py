@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller import parameters
 from trackroller.report.decisions import decisions
 from trackroller.report.figures import style
 from trackroller.report.figures.study_loads import surface_share
@@ -24,17 +25,7 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 SAMPLED = ("lhs", "sobol", "morris", "saltelli", "inner_outer")  # designs that `samples` counts for
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
-OPTIONS = (
-    "contact_model",
-    "spin_model",
-    "slip_terms",
-    "hertz",
-    "stress_bodies",
-    "life_rule",
-    "accuracy",
-    "normal",
-    "stop_if",
-)
+OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 _TOLD = {
     "study",
     "materials",

@@ -24,6 +24,10 @@ _CONTACT = {
         "Friction: half-space rolling contact",
         "Kalker (1990): Three-Dimensional Elastic Bodies in Rolling Contact. Kluwer",
     ),
+    "kalker_table": (
+        "Friction: half-space rolling contact, from a table of solutions",
+        "Kalker (1990): Three-Dimensional Elastic Bodies in Rolling Contact. Kluwer",
+    ),
 }
 _LIFE = {
     "elementary": "Miner elementary: the Woehler line runs on below the fatigue limit. Miner (1945): Cumulative "

@@ -137,7 +137,7 @@ def validity_bit(name: str) -> int:
 FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
     "regime": ("regime of the case", REGIMES),
     "converged": ("equilibrium found to the residual its contact model can reach", ("no", "yes")),
-    "contact_model_used": ("contact model of the case, as `auto` chose it or as asked for", CONTACT_MODELS[:3]),
+    "contact_model_used": ("contact model of the case, as `auto` chose it or as asked for", CONTACT_MODELS[:-1]),
     "stopped": ("the condition of stop_if holds: peak stress not searched for", ("no", "yes")),
 }
 

@@ -1,91 +1,66 @@
-"""What a solution may be asked for, checked."""
+"""Check what a solution is asked for."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field, make_dataclass
+from typing import Any
 
-from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import (
-    CONTACT_MODELS,
-    DEFAULT_OUTPUTS,
-    HERTZ,
-    LIFE_RULES,
-    NORMAL,
-    OUTPUT_GROUPS,
-    SLIP_TERMS,
-    SPIN_MODELS,
-    STRESS_BODIES,
-)
+from trackroller.contact.friction_laws import law_of
+from trackroller.errors import InputError
+from trackroller.parameters import OPTIONS
 from trackroller.roller.accuracy import Accuracy, accuracy_settings
 from trackroller.roller.stop import parse_condition
 
+_Fields = make_dataclass(
+    "_Fields", [(option.name, Any, field(default=option.default)) for option in OPTIONS.values()], frozen=True
+)
+
 
 @dataclass(frozen=True)
-class Options:
-    """Checked options of a solution; see `solve`."""
+class Options(_Fields):  # type: ignore[misc, valid-type]
+    """Checked options of a solution, one field for each entry of `trackroller.parameters.OPTIONS`.
 
-    outputs: tuple[str, ...] = DEFAULT_OUTPUTS
-    contact_model: str = "sliding"
-    spin_model: str = "skewed"
-    accuracy: str | float | Accuracy = "standard"
-    hertz: str = "exact"
-    stress_bodies: str = "both"
-    life_rule: str = "elementary"
-    normal: str = "hertz"
-    contact_tolerance: float = 0.05
-    stop_if: str | None = None
-    shortcuts: bool = True
-    slip_terms: tuple[str, ...] = ()
+    Raises
+    ------
+    InputError
+        If a value is not allowed, or if two options exclude each other.
+    """
 
     def __post_init__(self) -> None:
-        outputs = (self.outputs,) if isinstance(self.outputs, str) else tuple(self.outputs)
-        object.__setattr__(self, "outputs", tuple(dict.fromkeys(outputs)))
-        for name in self.outputs:
-            if name not in OUTPUT_GROUPS:
-                raise unknown_name("outputs", str(name), OUTPUT_GROUPS)
-        if not self.outputs:
-            raise InputError("outputs", outputs, "at least one of " + ", ".join(OUTPUT_GROUPS))
-        for field, options in (
-            ("contact_model", CONTACT_MODELS),
-            ("spin_model", SPIN_MODELS),
-            ("hertz", HERTZ),
-            ("stress_bodies", STRESS_BODIES),
-            ("life_rule", LIFE_RULES),
-            ("normal", NORMAL),
-        ):
-            if getattr(self, field) not in options:
-                raise unknown_name(field, str(getattr(self, field)), options)
-        check_hertz(self.hertz, self.normal)
-        self._check_slip()
+        for option in OPTIONS.values():
+            if option.kind != "accuracy":  # may be an `Accuracy` or a number as text: `accuracy_settings` checks it
+                object.__setattr__(self, option.name, option.check(getattr(self, option.name)))
+            if option.kind == "condition" and getattr(self, option.name) is not None:
+                parse_condition(getattr(self, option.name))
+        check_pairs(self.hertz, self.normal, self.slip_terms, self.contact_model)
         accuracy_settings(self.accuracy, self.contact_model, self.outputs)
-        tolerance = self.contact_tolerance
-        if isinstance(tolerance, bool) or not isinstance(tolerance, (int, float)) or not 0 < tolerance < 1:
-            raise InputError("contact_tolerance", tolerance, "a relative tolerance in (0, 1), for contact_model auto")
-        if not isinstance(self.shortcuts, bool):
-            raise InputError("shortcuts", self.shortcuts, "true or false")
-        if self.stop_if is not None:
-            parse_condition(self.stop_if)
-
-    def _check_slip(self) -> None:
-        given = self.slip_terms
-        if not isinstance(given, (str, list, tuple, set, frozenset)):
-            raise InputError("slip_terms", given, "a list of " + ", ".join(SLIP_TERMS) + ", which may be empty")
-        terms = (given,) if isinstance(given, str) else tuple(given)
-        for name in terms:
-            if name not in SLIP_TERMS:
-                raise unknown_name("slip_terms", str(name), SLIP_TERMS)
-        check_slip_terms(terms, self.contact_model)
-        object.__setattr__(self, "slip_terms", tuple(name for name in SLIP_TERMS if name in terms))
 
     @property
     def settings(self) -> Accuracy:
-        """What the accuracy means for each stage."""
+        """Discretisation of each stage that the accuracy stands for."""
         return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
 
+    def attributes(self) -> dict[str, Any]:
+        """Return the attributes of a result that record the options."""
+        told = {o.name: o.attribute(getattr(self, o.name), self.contact_model) for o in OPTIONS.values()}
+        return {name: value for name, value in told.items() if value is not None}
 
-def check_hertz(hertz: str, normal: str) -> None:
-    """`InputError` for a way to Hertz's ellipse where there is none."""
+
+def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_model: str) -> None:
+    """Refuse options that exclude each other.
+
+    Parameters
+    ----------
+    hertz, normal, slip_terms, contact_model : str or collection of str
+        Values of these options; see `trackroller.parameters.OPTIONS`.
+
+    Raises
+    ------
+    InputError
+        For Hertz's ellipse from a table, the turning of the roller in full sliding, and the table of the exact theory
+        where they do not exist.
+    """
     if normal == "halfspace" and hertz != "exact":
         raise InputError(
             "hertz",
@@ -93,15 +68,42 @@ def check_hertz(hertz: str, normal: str) -> None:
             "exact with normal: halfspace, which solves patch and pressure itself",
             "Leave hertz out, or take normal: hertz (with circles).",
         )
-
-
-def check_slip_terms(terms: Collection[str], contact_model: str) -> None:
-    """`InputError` for terms of the slip that a contact model cannot have."""
-    if "curve" in terms and contact_model == "sliding":
+    if "curve" in slip_terms and contact_model == "sliding":
         raise InputError(
             "slip_terms",
-            list(terms),
+            list(slip_terms),
             "'curve' for fastsim, kalker and auto only",
             "Take contact_model: kalker, or leave 'curve' out: where everything slides it would leave all "
             "forces as they are and only lengthen slip and friction work.",
         )
+    if contact_model == "kalker_table" and (normal != "hertz" or "profile" in slip_terms):
+        name, value = ("normal", normal) if normal != "hertz" else ("slip_terms", list(slip_terms))
+        raise InputError(
+            name,
+            value,
+            "contact_model: kalker_table holds Hertzian patches with the slip of the tangent plane only",
+            "Take contact_model: kalker.",
+        )
+
+
+def model_in_use(options: Options, contact_model: str, friction_law: str) -> str:
+    """Return the contact model that solves a case, which may differ from the one asked for.
+
+    Parameters
+    ----------
+    options : Options
+        What the case is solved with.
+    contact_model : str
+        The model asked for, or the one that `auto` has chosen.
+    friction_law : str
+        The friction law of the case as canonical JSON, "" for constant friction.
+
+    Notes
+    -----
+    `kalker` at accuracy preview takes its table where the table serves: Hertzian patches, constant friction and the
+    slip of the tangent plane. `kalker_table` takes the exact theory where friction depends on the slip speed.
+    """
+    if contact_model != "kalker_table" and (contact_model != "kalker" or options.settings.name != "preview"):
+        return contact_model
+    fits = options.normal == "hertz" and "profile" not in options.slip_terms and law_of(friction_law).is_constant
+    return "kalker_table" if fits else "kalker"

@@ -11,14 +11,14 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from trackroller.errors import InputError
-from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS
+from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
 from trackroller.roller import equilibrium as eq
 from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
 from trackroller.roller.failures import with_reasons
-from trackroller.roller.options import Options
+from trackroller.roller.options import Options, model_in_use
 from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
@@ -87,20 +87,8 @@ def solve(
 
     Raises `InputError` for bad input only: a case that cannot be solved is a row with `regime` failed.
     """
-    options = Options(
-        tuple([outputs] if isinstance(outputs, str) else outputs),
-        contact_model,
-        spin_model,
-        accuracy,
-        hertz,
-        stress_bodies,
-        life_rule,
-        normal,
-        contact_tolerance,
-        stop_if,
-        shortcuts,
-        slip_terms,
-    )  # type: ignore[arg-type]
+    given = locals()
+    options = Options(**{name: given[name] for name in OPTIONS if name in given})
     single = isinstance(cases, Case) or (hasattr(cases, "keys") and not hasattr(cases, "data_vars"))
     if hasattr(cases, "data_vars"):
         single = "case" not in cases.dims
@@ -171,7 +159,7 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarra
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)
     for key, own in rows.items():
-        yield str(key[0]), np.array(own)
+        yield model_in_use(options, str(key[0]), key[2]), np.array(own)
     if not keys:
         yield "kalker" if options.contact_model == "auto" else options.contact_model, np.arange(0)
 
@@ -211,23 +199,13 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     attrs: dict[str, Any] = {
         "Conventions": "CF-1.11",
         "source": f"trackroller {__version__}",
-        "contact_model": options.contact_model,
-        "spin_model": options.spin_model if options.contact_model in ("sliding", "auto") else "",
-        "accuracy": options.settings.name if isinstance(options.accuracy, Accuracy) else str(options.accuracy),
-        "hertz": options.hertz,
-        "stress_bodies": options.stress_bodies,
-        "life_rule": options.life_rule,
-        "normal": options.normal,
-        "slip_terms": ", ".join(options.slip_terms) or "none",
+        **options.attributes(),
         "life_conventions": stages_case.LIFE_CONVENTIONS,
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }
     flags = {"regime": block.regime, "converged": block.converged, "validity": block.bits}
     flags["contact_model_used"] = block.model
-    if options.contact_model == "auto":
-        attrs["contact_tolerance"] = options.contact_tolerance
     if options.stop_if is not None:
-        attrs["stop_if"] = options.stop_if
         flags["stopped"] = block.stopped
     ds = build({name: block.values[name] for name in keep}, flags, attrs, single)
     for name, told in error_attributes(options.settings, options.contact_model).items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,22 +10,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, field_validator
 
 from trackroller.contact.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
-from trackroller.parameters import (
-    ACCURACIES,
-    DEFAULT_OUTPUTS,
-    HERTZ,
-    LIFE_RULES,
-    MATERIAL_FIELDS,
-    OUTPUT_GROUPS,
-    SLIP_TERMS,
-    SOLVE_OPTIONS,
-    STRESS_BODIES,
-)
+from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
+from trackroller.roller.options import check_pairs
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.design.factors import LISTS
@@ -51,8 +43,8 @@ def check_name(name: str, where: str = "name") -> str:
     return name
 
 
-class StudyFile(BaseModel):
-    """What stands in a study file; see the fields' descriptions."""
+class _Design(BaseModel):
+    """Name, cases and design of a study file."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, title="trackroller study", ser_json_inf_nan="constants")
 
@@ -68,23 +60,6 @@ class StudyFile(BaseModel):
     levels: int | None = Field(None, description="morris: number of levels")
     inner: Literal["lhs", "sobol"] | None = Field(None, description="inner_outer: how the inner array is sampled")
     grown_from: tuple[int, ...] | None = Field(None, description="lhs, inner_outer: earlier numbers of samples")
-    outputs: tuple[str, ...] = Field(DEFAULT_OUTPUTS, description="groups of results, computed only if asked")
-    contact_model: str | tuple[str, ...] = Field("sliding", description="one, or a list as a factor")
-    spin_model: str | tuple[str, ...] = Field("skewed", description="one, or a list; for sliding only")
-    accuracy: str | float = Field("standard", description="preview, standard, reference or a tolerance")
-    hertz: str = Field("exact", description="exact elliptic integrals or the published table")
-    stress_bodies: str = Field("both", description="each body with its own nu, or as published")
-    life_rule: str = Field("elementary", description="below the fatigue limit: line goes on, Haibach, or no failure")
-    analysis: Analysis = Field(
-        default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
-    )
-    pareto: dict[str, str] = Field({}, description="outputs or factors with max or min: the designs no other beats")
-    constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
-    normal: str | tuple[str, ...] = Field("hertz", description="Hertz pressures, or solved on a grid (drawn profiles)")
-    slip_terms: tuple[str, ...] = Field((), description="profile, curve: what the rigid slip counts beyond the tangent")
-    contact_tolerance: float = Field(0.05, gt=0, lt=1, description="of the forces, for contact_model: auto")
-    stop_if: str | None = Field(None, description="condition on which no peak stress is searched for")
-    chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases a job; chosen if not given")
 
     @field_validator("name", mode="before")
     @classmethod
@@ -96,58 +71,51 @@ class StudyFile(BaseModel):
     def _design(cls, value: str) -> str:
         return choice(current_name(value, warn=True), "design", METHODS)
 
-    @field_validator("outputs")
-    @classmethod
-    def _outputs(cls, value: tuple[str, ...]) -> tuple[str, ...]:
-        if not value:
-            raise InputError("outputs", [], f"at least one of {', '.join(OUTPUT_GROUPS)}")
-        for name in value:
-            choice(name, "outputs", OUTPUT_GROUPS)
-        if len(set(value)) < len(value):
-            raise InputError("outputs", list(value), "each group may stand once")
-        return value
 
-    @field_validator("slip_terms", mode="before")
-    @classmethod
-    def _slip_terms(cls, value: Any) -> Any:
-        several = (value,) if isinstance(value, str) else value
-        if not isinstance(several, (list, tuple)):
-            raise InputError("slip_terms", value, "a list of " + ", ".join(SLIP_TERMS) + ", which may be empty")
-        for name in several:
-            choice(name, "slip_terms", tuple(SLIP_TERMS))
-        return tuple(name for name in SLIP_TERMS if name in several)
+_TYPES: dict[str, Any] = {
+    "words": tuple[str, ...],
+    "tolerance": float,
+    "accuracy": str | float,
+    "condition": str | None,
+    "switch": bool,
+}
+IN_STUDY = tuple(option for option in OPTIONS.values() if "study" in option.files)
+_WithOptions = create_model(
+    "_WithOptions",
+    __base__=_Design,
+    **{  # type: ignore[call-overload]
+        option.name: (
+            str | tuple[str, ...] if option.factor else _TYPES.get(option.kind, str),
+            Field(option.default, description=option.meaning),
+        )
+        for option in IN_STUDY
+    },
+)
 
-    @field_validator("stop_if")
+
+class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
+    """Content of a study file; see the descriptions of its fields. The options are those of `OPTIONS`."""
+
+    analysis: Analysis = Field(
+        default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
+    )
+    pareto: dict[str, str] = Field({}, description="outputs or factors with max or min: the designs no other beats")
+    constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
+    chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases a job; chosen if not given")
+
+    @field_validator(*(option.name for option in IN_STUDY), mode="before")
     @classmethod
-    def _stop_if(cls, value: str | None) -> str | None:
-        if value is not None:
+    def _option(cls, value: Any, info: Any) -> Any:
+        option = OPTIONS[info.field_name]
+        if isinstance(value, (list, tuple)) and (option.factor or option.required):
+            if not value or any(value.count(word) > 1 for word in value):
+                raise InputError(option.name, list(value), "a list without repetition that is not empty")
+            if option.factor:
+                words = tuple(option.check(word) for word in value)
+                return words[0] if len(words) == 1 else words
+        if option.kind == "condition" and value is not None:
             parse_condition(value)
-        return value
-
-    @field_validator("contact_model", "spin_model", "normal")
-    @classmethod
-    def _models(cls, value: str | tuple[str, ...], info: Any) -> str | tuple[str, ...]:
-        several = (value,) if isinstance(value, str) else value
-        if not several or len(set(several)) < len(several):
-            raise InputError(info.field_name, list(several), "a list without repetition that is not empty")
-        for name in several:
-            choice(name, info.field_name, OPTION_FACTORS[info.field_name])
-        return several[0] if len(several) == 1 else value
-
-    @field_validator("hertz", "stress_bodies", "life_rule")
-    @classmethod
-    def _options(cls, value: str, info: Any) -> str:
-        options = {"hertz": HERTZ, "stress_bodies": STRESS_BODIES, "life_rule": LIFE_RULES}
-        return choice(value, info.field_name, options[info.field_name])
-
-    @field_validator("accuracy", mode="before")
-    @classmethod
-    def _accuracy(cls, value: Any) -> Any:
-        if isinstance(value, str):
-            return choice(value, "accuracy", ACCURACIES)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < 1:
-            raise InputError("accuracy", value, f"{', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
-        return float(value)
+        return option.check(value)
 
     @field_validator("pareto", mode="before")
     @classmethod
@@ -223,8 +191,7 @@ class Study:
     @property
     def options(self) -> dict[str, Any]:
         """Keyword arguments of `solve`; those that are factors are missing."""
-        names = (name for name in SOLVE_OPTIONS if name != "shortcuts" and name not in self.factors)
-        return {name: getattr(self.config, name) for name in names}
+        return {o.name: getattr(self.config, o.name) for o in IN_STUDY if o.name not in self.factors}
 
     def merged(self, whole_paths: bool = False, table: str | None = None) -> str:
         """Return the study as YAML with every default written out.
@@ -280,15 +247,13 @@ def load_study(path: str | Path, database: Any = None) -> Study:
 
 
 def _check_options(study: Study) -> None:
-    from trackroller.roller.options import check_hertz, check_slip_terms
+    """Refuse options that exclude each other, in any combination of the levels that are factors."""
 
     def levels(name: str) -> list[str]:
         return study.factors.get(name, {}).get("values", [getattr(study.config, name)])
 
-    for model in levels("contact_model"):
-        check_slip_terms(study.config.slip_terms, model)
-    for normal in levels("normal"):
-        check_hertz(study.config.hertz, normal)
+    for model, normal in itertools.product(levels("contact_model"), levels("normal")):
+        check_pairs(study.config.hertz, normal, study.config.slip_terms, model)
 
 
 def _cross_check(study: Study) -> None:

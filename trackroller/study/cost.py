@@ -16,12 +16,14 @@ _FORCES = {
     "sliding": (7e-4, 8e-4, 3.4e-3),
     "fastsim": (0.016, 0.04, 0.125),
     "kalker": (0.02, 0.37, 2.0),
+    "kalker_table": (0.02, 0.02, 0.02),
     "auto": (0.025, 0.09, 0.5),
-}  # preview: a table, and what lies outside it
+}  # kalker at preview uses the table
 _PEAKS = {
     "sliding": (1.4e-3, 1.8e-3, 8.5e-3),
     "fastsim": (2.5e-3, 7e-3, 0.013),
     "kalker": (8e-3, 0.02, 0.05),
+    "kalker_table": (8e-3, 0.02, 0.05),
     "auto": (5e-3, 6e-3, 0.03),
 }
 _SOLVED_FORCES, _SOLVED_PEAKS = (0.9, 0.8, 6.0), (0.1, 0.25, 1.0)  # patches solved on a grid, any contact model

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.case import CaseTable, MaterialArrays
 from trackroller.study.sources import solver_digest
 
@@ -30,17 +30,14 @@ _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:
-    """The options as canonical bytes; the order of the output groups does not matter."""
-    told = {k: sorted(v) if isinstance(v, (list, tuple)) else v for k, v in options.items()}
-    if told.get("contact_model") not in ("sliding", "auto"):
-        told.pop("spin_model", None)
-    if told.get("contact_model") != "auto":
-        told.pop("contact_tolerance", None)
-    told.pop("shortcuts", None)
-    if not told.get("slip_terms") or told.get("contact_model") == "sliding":  # which has the profile's slip anyway
-        told.pop("slip_terms", None)
-    told["code"] = solver_digest()
-    return json.dumps(told, sort_keys=True).encode()
+    """Options that matter to the contact model and the digest of the solver, as canonical bytes."""
+    given = {option.name: options.get(option.name, option.default) for option in OPTIONS.values()}
+    told = {
+        option.name: sorted(value) if isinstance(value := given[option.name], (list, tuple)) else value
+        for option in OPTIONS.values()
+        if option.identity and option.applies(given["contact_model"])
+    }
+    return json.dumps(told | {"code": solver_digest()}, sort_keys=True).encode()
 
 
 def fingerprints(table: CaseTable, options: list[dict[str, Any]] | dict[str, Any]) -> np.ndarray:

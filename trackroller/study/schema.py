@@ -6,18 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from trackroller.parameters import (
-    ACCURACIES,
-    HERTZ,
-    LIFE_RULES,
-    MAPPING_FIELDS,
-    MATERIAL_FIELDS,
-    OUTPUT_GROUPS,
-    PARAMETERS,
-    SLIP_TERMS,
-    STRESS_BODIES,
-)
-from trackroller.study.config import NAME, StudyFile
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
+from trackroller.study.config import IN_STUDY, NAME, StudyFile
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import DISTRIBUTIONS
 from trackroller.study.design.sampling import METHODS, OLD_NAMES
@@ -35,6 +25,18 @@ def _factor() -> dict[str, Any]:
         "additionalProperties": False,
         "oneOf": [{"required": [kind]} for kind in kinds],
     }
+
+
+def _option(option: Option) -> dict[str, Any]:
+    """Return what the schema says about an option beyond its type."""
+    words = {"enum": list(option.values)}
+    several = {"type": "array", "items": words, "uniqueItems": True}
+    number = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+    if option.factor:
+        return {"anyOf": [words, several | {"minItems": 1}]}
+    if option.kind == "words":
+        return several | ({"minItems": 1} if option.required else {})
+    return {"word": words, "accuracy": {"anyOf": [words, number]}, "tolerance": number}.get(option.kind, {})
 
 
 def schema() -> dict[str, Any]:
@@ -55,18 +57,8 @@ def schema() -> dict[str, Any]:
     }
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
     properties["design"]["enum"] = [*METHODS, *OLD_NAMES]
-    properties["outputs"]["items"] = {"enum": list(OUTPUT_GROUPS)}
-    properties["slip_terms"] |= {"items": {"enum": list(SLIP_TERMS)}, "uniqueItems": True}
-    options = {"hertz": HERTZ, "stress_bodies": STRESS_BODIES, "life_rule": LIFE_RULES}
-    for name, words in options.items():
-        properties[name]["enum"] = list(words)
-    properties["accuracy"]["anyOf"] = [
-        {"enum": list(ACCURACIES)},
-        {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1},
-    ]
-    for name, words in OPTION_FACTORS.items():
-        several = {"type": "array", "items": {"enum": list(words)}, "minItems": 1, "uniqueItems": True}
-        properties[name]["anyOf"] = [{"enum": list(words)}, several]
+    for option in IN_STUDY:
+        properties[option.name] |= _option(option)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found}
 
 

@@ -23,6 +23,7 @@ LOOKS: dict[str, dict[str, Any]] = {
     "sliding": {"color": "#000000", "linestyle": "-", "marker": "o"},
     "fastsim": {"color": "#d55e00", "linestyle": ":", "marker": "s"},
     "kalker": {"color": "#0072b2", "linestyle": "--", "marker": "^"},
+    "kalker_table": {"color": "#56b4e9", "linestyle": "-.", "marker": "v"},
     "auto": {"color": "#009e73", "linestyle": "-.", "marker": "D"},
 }
 SIZE = 2.8

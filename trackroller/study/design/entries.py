@@ -8,23 +8,11 @@ from typing import Any
 
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.numerics import expressions
-from trackroller.parameters import (
-    CONTACT_MODELS,
-    FRICTION_LEVELS,
-    MAPPING_FIELDS,
-    MATERIAL_FIELDS,
-    NORMAL,
-    PARAMETERS,
-    SPIN_MODELS,
-)
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS
 from trackroller.study.design.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
-OPTION_FACTORS: dict[str, tuple[str, ...]] = {
-    "contact_model": CONTACT_MODELS,
-    "spin_model": SPIN_MODELS,
-    "normal": NORMAL,
-}
+OPTION_FACTORS = {option.name: tuple(option.values) for option in OPTIONS.values() if option.factor}
 MAX_LEVELS = 1_000_000
 FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 

@@ -27,7 +27,7 @@ from trackroller.contact.point_files import files_beside
 from trackroller.damage.fatigue import PROBABILITIES
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text
-from trackroller.parameters import SOLVE_OPTIONS
+from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
 
 LOAD_FIELDS = (
@@ -40,7 +40,7 @@ LOAD_FIELDS = (
     "guide_overrollings_per_hour",
 )
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
-OPTIONS = tuple(name for name in SOLVE_OPTIONS if name not in ("outputs", "stop_if", "shortcuts"))
+OPTIONS = tuple(option.name for option in SOLVE_OPTIONS.values() if "spectrum" in option.files)
 FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", *OPTIONS)
 
 

@@ -1,8 +1,4 @@
-"""The one list of parameters and options.
-
-Validation, study schema, command-line help, dataset attributes and the documentation table are made
-from it. Inside the solver everything is in N, mm, MPa and rad; degrees, m/min and hours only here.
-"""
+"""The numbers that describe a case, in the units that a user writes: degrees, m/min and hours."""
 
 from __future__ import annotations
 
@@ -14,10 +10,20 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number that describes a case.
+    """A number that describes a case.
 
-    `lower` and `upper` bound it; `open_lower` and `open_upper` exclude the bound itself;
-    `allow_infinite` admits +-inf, `allow_missing` admits NaN or None; `nonzero` excludes 0.
+    Parameters
+    ----------
+    name, symbol, unit : str
+        Name in Python and in files, symbol of the publication, unit ("-" for none).
+    default : float
+        Value of a case that does not give it; NaN if there is none.
+    long_name, meaning : str
+        Name for figures and reports; explanation for the documentation.
+    lower, upper : float
+        Bounds, which are allowed values themselves unless `open_lower` or `open_upper` is True.
+    allow_infinite, allow_missing, nonzero : bool
+        Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is refused.
     """
 
     name: str
@@ -36,11 +42,11 @@ class Parameter:
 
     @property
     def units(self) -> str:
-        """Unit as CF writes it."""
+        """Unit as the CF conventions write it."""
         return {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1"}.get(self.unit, self.unit)
 
     def allowed(self) -> str:
-        """What is accepted, in words."""
+        """Return what is allowed, in words."""
         unit = "" if self.unit == "-" else f" {self.unit}"
         parts = []
         if math.isfinite(self.lower):
@@ -53,7 +59,7 @@ class Parameter:
         return f"{self.long_name} [{self.unit}] must be a number, " + ", ".join(parts)
 
     def accepts(self, value: np.ndarray | float) -> np.ndarray:
-        """Elementwise: is the value allowed?"""
+        """Return which values are allowed, elementwise, a bool array of the shape of `value`."""
         v = np.asarray(value, dtype=float)
         good = ~np.isnan(v) if self.allow_infinite else np.isfinite(v)
         with np.errstate(invalid="ignore"):
@@ -165,42 +171,3 @@ _ALL = (
 )
 
 PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL}
-
-CONTACT_MODELS = ("sliding", "fastsim", "kalker", "auto")
-EXACTNESS = ("kalker", "auto", "fastsim", "sliding")  # contact models, the most exact first
-NORMAL = ("hertz", "halfspace")
-SPIN_MODELS = ("concentric", "edge", "skewed")
-ACCURACIES = ("preview", "standard", "reference")
-HERTZ = ("exact", "published")
-STRESS_BODIES = ("both", "published")
-SLIP_TERMS = {  # what the rigid slip of the rolling contact models may count, see docs/theory.md ("Slip field")
-    "profile": "the rolling slip of the guide's profile, eq. (20), instead of its tangent",
-    "curve": "the roller turns with the curve of the guide, which adds to its spin",
-}
-LIFE_RULES = ("elementary", "haibach", "unlimited")
-OUTPUT_GROUPS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
-DEFAULT_OUTPUTS = ("forces", "contact", "peak_stress", "life")
-# what `solve` and `Options` take beside cases and materials; a test holds these to the same names
-SOLVE_OPTIONS = (
-    "outputs",
-    "contact_model",
-    "spin_model",
-    "accuracy",
-    "hertz",
-    "stress_bodies",
-    "life_rule",
-    "normal",
-    "contact_tolerance",
-    "stop_if",
-    "shortcuts",
-    "slip_terms",
-)
-REGIMES = ("rolling", "full_slip", "lift_off", "failed")
-MATERIAL_FIELDS = ("roller_material", "guide_material")
-MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
-    "friction_law": "friction as a function of the slip speed in mm/s: {kind: constant | linear | exponential | table, "
-    "...}; it scales friction_coefficient, which holds at rest; not given: constant",
-    "guide_profile": "drawn or measured cross-section of the guide, for normal: halfspace; not given: the circle",
-    "roller_profile": "drawn or measured cross-section of the roller, for normal: halfspace; not given: the circle",
-}
-FRICTION_LEVELS = ("typical", "upper", "lower")

@@ -1,0 +1,131 @@
+"""Options are declared once: what else names them is derived from that list or held to it."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
+from trackroller.roller.options import Options
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_signature_and_docstring_of_solve_have_all_options_with_their_defaults():
+    taken = {name: p for name, p in inspect.signature(tr.solve).parameters.items() if name not in ("cases", "database")}
+    assert sorted(taken) == sorted(OPTIONS) == sorted(field.name for field in dataclasses.fields(Options))
+    assert {name: p.default for name, p in taken.items()} == {o.name: o.default for o in OPTIONS.values()}
+    told = re.findall(r"^    (\w+) : ", inspect.getdoc(tr.solve).replace("\n", "\n    "), flags=re.MULTILINE)
+    assert told[: len(taken) + 2] == list(inspect.signature(tr.solve).parameters)
+
+
+def test_every_word_of_an_option_is_explained_and_every_option_is_in_the_help():
+    for option in OPTIONS.values():
+        assert option.meaning and all(option.values.values()) and option.name in options_text()
+        assert option.default is None or option.check(option.default) == option.default
+
+
+def test_contact_models_keep_their_numbers():
+    """`contact_model_used` of older files is read with these numbers: new models come at the end."""
+    assert CONTACT_MODELS[:4] == ("sliding", "fastsim", "kalker", "kalker_table") and CONTACT_MODELS[-1] == "auto"
+
+
+DUMMY = """
+import json, sys
+from trackroller import parameters
+from trackroller.parameters import options
+parameters.OPTIONS["dummy"] = options.Option(
+    "dummy", "first", "a choice for this test", {"first": "one", "second": "other"}, models=("sliding", "fastsim"))
+import numpy as np
+import trackroller as tr
+from trackroller.roller.options import Options
+from trackroller.roller.case import to_table
+from trackroller.study.config import parse_study
+from trackroller.study.identity import fingerprints
+from trackroller.study.schema import schema
+from trackroller.cli.case import case_of
+sys.path.insert(0, "docs")
+import generate
+
+table = to_table([tr.Case()])
+def mark(**told):
+    return fingerprints(table, told)[0].decode()
+def refused(call):
+    try:
+        call()
+    except tr.InputError as error:
+        return str(error)
+study = {"name": "a", "factors": {"axial_force": {"values": [1.0, 2.0]}}}
+print(json.dumps({
+    "schema": schema()["properties"]["dummy"],
+    "help": parameters.options_text(),
+    "attribute": tr.solve(tr.Case(), outputs="forces").attrs["dummy"],
+    "given": Options(dummy="second").attributes()["dummy"],
+    "without meaning": Options(dummy="second", contact_model="kalker").attributes()["dummy"],
+    "set": case_of(None, ["dummy=second"])[1],
+    "study": parse_study(study | {"dummy": "second"}).options["dummy"],
+    "docs": "`dummy`" in generate.render(),
+    "refused": [refused(lambda: Options(dummy="secnd")), refused(lambda: parse_study(study | {"dummy": "secnd"}))],
+    "marks": [mark(), mark(dummy="first"), mark(dummy="second"), mark(contact_model="kalker"),
+              mark(contact_model="kalker", dummy="second")],
+}))
+"""
+
+
+def test_a_new_option_appears_everywhere_once_it_is_declared():
+    done = subprocess.run([sys.executable, "-c", DUMMY], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["schema"]["enum"] == ["first", "second"] and told["schema"]["default"] == "first"
+    assert told["schema"]["description"] == "a choice for this test"
+    assert "dummy=first|second (first)" in told["help"] and told["docs"]
+    assert (told["attribute"], told["given"], told["without meaning"]) == ("first", "second", "")
+    assert told["set"] == {"dummy": "second"} and told["study"] == "second"
+    assert all("Did you mean 'second'?" in words for words in told["refused"])
+    plain, first, second, kalker, kalker_second = told["marks"]
+    assert plain == first and len({plain, second, kalker}) == 3 and kalker == kalker_second
+
+
+def used(model, **more):
+    ds = tr.solve(tr.Case(), outputs="forces", contact_model=model, **more)
+    return ds, ds.contact_model_used.attrs["flag_meanings"].split()[int(ds.contact_model_used)]
+
+
+def test_the_table_of_the_exact_theory_is_a_model_with_a_name():
+    """`kalker` at preview uses the table and says so; the table itself takes any accuracy."""
+    quick, name = used("kalker", accuracy="preview")
+    named, same = used("kalker_table", accuracy="preview")
+    assert name == same == "kalker_table"
+    np.testing.assert_array_equal(quick.spin_moment, named.spin_moment)
+    exact, name = used("kalker", accuracy="standard")
+    assert name == "kalker"
+    fine, name = used("kalker_table", accuracy="standard")
+    assert name == "kalker_table"
+    np.testing.assert_array_equal(fine.lateral_force, named.lateral_force)
+    np.testing.assert_allclose(fine.lateral_force, exact.lateral_force, rtol=0.02)
+    assert np.all(fine.lateral_force != exact.lateral_force)
+
+
+def test_where_the_table_does_not_serve_the_exact_theory_is_named():
+    law = {"kind": "linear", "speed": 300.0, "lowest": 0.8}
+    mixed = tr.solve(
+        [tr.Case(), tr.Case(friction_law=law)], outputs="forces", contact_model="kalker_table", accuracy="preview"
+    )
+    assert mixed.contact_model_used.values.tolist() == [3, 2]
+    assert used("kalker", accuracy="preview", slip_terms="profile")[1] == "kalker"
+    assert used("kalker", accuracy="preview", slip_terms="curve")[1] == "kalker_table"
+
+
+@pytest.mark.parametrize("option, value", [("normal", "halfspace"), ("slip_terms", "profile")])
+def test_options_that_the_table_cannot_have_are_refused(option, value):
+    with pytest.raises(tr.InputError, match=rf"^{option} = .*kalker_table .*Take contact_model: kalker"):
+        tr.solve(tr.Case(), contact_model="kalker_table", **{option: value})

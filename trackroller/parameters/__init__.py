@@ -1,0 +1,33 @@
+"""Declare every parameter of a case and every option of the solver, each exactly once.
+
+`PARAMETERS` holds the numbers that describe a case, `OPTIONS` what a solution can be asked for. The checks of input,
+the fields and the JSON schema of a study file, the keys of `--set` and their help, the fingerprint of a case, the
+attributes of a result and the tables of the documentation are derived from these two lists. A new option is declared
+in `parameters/options.py`, added to the signature of `trackroller.solve` (a test compares the two), and used where it
+matters.
+
+Units here are those that a user writes: degrees, m/min and hours. The solver works in N, mm, MPa and rad.
+"""
+
+from __future__ import annotations
+
+from trackroller.parameters.numbers import PARAMETERS, Parameter
+from trackroller.parameters.options import OPTIONS, Option, options_text, words_of
+
+__all__ = ["OPTIONS", "PARAMETERS", "Option", "Parameter", "options_text", "words_of"]
+
+OUTPUT_GROUPS, CONTACT_MODELS = words_of("outputs"), words_of("contact_model")
+NORMAL, SPIN_MODELS, ACCURACIES = words_of("normal"), words_of("spin_model"), words_of("accuracy")
+HERTZ, STRESS_BODIES, LIFE_RULES = words_of("hertz"), words_of("stress_bodies"), words_of("life_rule")
+SLIP_TERMS = OPTIONS["slip_terms"].values
+DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
+EXACTNESS = ("kalker", "kalker_table", "auto", "fastsim", "sliding")  # contact models, the most exact first
+REGIMES = ("rolling", "full_slip", "lift_off", "failed")
+MATERIAL_FIELDS = ("roller_material", "guide_material")
+MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
+    "friction_law": "friction as a function of the slip speed in mm/s: {kind: constant | linear | exponential | table, "
+    "...}; it scales friction_coefficient, which holds at rest; not given: constant",
+    "guide_profile": "drawn or measured cross-section of the guide, for normal: halfspace; not given: the circle",
+    "roller_profile": "drawn or measured cross-section of the roller, for normal: halfspace; not given: the circle",
+}
+FRICTION_LEVELS = ("typical", "upper", "lower")

@@ -1,0 +1,257 @@
+"""The options of the solver: what `trackroller.solve` takes beside the cases."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from trackroller.errors import InputError, unknown_name
+
+
+@dataclass(frozen=True)
+class Option:
+    """A choice that `trackroller.solve` offers beside the cases.
+
+    Parameters
+    ----------
+    name : str
+        Keyword of `solve`, key of a study file and of `--set`.
+    default : object
+        Value if it is not given.
+    meaning : str
+        Explanation for the documentation, the JSON schema and the help.
+    values : dict of str
+        Allowed words with their meanings; empty for numbers, conditions and switches.
+    kind : str
+        "word" (one of `values`), "words" (several of them), "accuracy" (a word or a relative tolerance), "tolerance"
+        (a number in (0, 1)), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
+    models : tuple of str
+        Contact models to which the option applies; empty for all of them.
+    required : bool
+        Whether at least one word has to be given (kind "words").
+    factor : bool
+        Whether a study file may give a list of values, which makes the option a factor of the study.
+    identity : bool
+        Whether the option is part of a case's identity, where it applies. False if it cannot change a number.
+    recorded : bool
+        Whether a result names the option among its attributes.
+    files : tuple of str
+        Files that may give the option beside a case: "study", "spectrum".
+    """
+
+    name: str
+    default: Any
+    meaning: str
+    values: Mapping[str, str] = field(default_factory=dict)
+    kind: str = "word"
+    models: tuple[str, ...] = ()
+    required: bool = False
+    factor: bool = False
+    identity: bool = True
+    recorded: bool = True
+    files: tuple[str, ...] = ("study", "spectrum")
+
+    def applies(self, contact_model: str) -> bool:
+        """Return whether the option has a meaning for a contact model."""
+        return not self.models or contact_model in self.models
+
+    def allowed(self) -> str:
+        """Return what is allowed, in words."""
+        words = ", ".join(self.values)
+        return {
+            "word": f"one of {words}",
+            "words": f"a list of {words}" + (", at least one" if self.required else ", which may be empty"),
+            "accuracy": f"one of {words} or a relative tolerance in (0, 1)",
+            "tolerance": "a relative tolerance in (0, 1)",
+            "condition": "a condition such as peak_stress > R_m",
+            "switch": "true or false",
+        }[self.kind]
+
+    def check(self, value: Any, where: str = "") -> Any:
+        """Return a value in its canonical form.
+
+        Parameters
+        ----------
+        value : object
+            What a user gave. A single word stands for a list of one word.
+        where : str
+            Name of the field for messages; the name of the option if it is not given.
+
+        Raises
+        ------
+        InputError
+            If the value is not allowed. Conditions are checked where they are parsed.
+        """
+        where = where or self.name
+        if self.kind == "words":
+            if not isinstance(value, (str, list, tuple, set, frozenset)) or (self.required and not value):
+                raise InputError(where, value, self.allowed())
+            words = [self._word(word, where) for word in ([value] if isinstance(value, str) else value)]
+            return tuple(dict.fromkeys(words)) if self.required else tuple(w for w in self.values if w in words)
+        if self.kind == "word" or (self.kind == "accuracy" and isinstance(value, str)):
+            return self._word(value, where)
+        if self.kind == "switch" and not isinstance(value, bool):
+            raise InputError(where, value, self.allowed())
+        if self.kind in ("accuracy", "tolerance"):
+            if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < 1:
+                raise InputError(where, value, self.allowed())
+            return float(value)
+        return value
+
+    def _word(self, value: Any, where: str) -> str:
+        if not isinstance(value, str) or value not in self.values:
+            raise unknown_name(where, value, self.values)
+        return value
+
+    def attribute(self, value: Any, contact_model: str) -> Any:
+        """Return the value as an attribute of a result, or None where there is nothing to record."""
+        if not self.recorded:
+            return None
+        if self.kind == "words":
+            return ", ".join(value) or "none"
+        if self.kind == "word":
+            return value if self.applies(contact_model) else ""
+        if self.kind == "accuracy":
+            return value.name if hasattr(value, "name") else str(value)
+        return value if self.applies(contact_model) else None
+
+
+_OPTIONS = (
+    Option(
+        "outputs",
+        ("forces", "contact", "peak_stress", "life"),
+        "groups of results; a group is computed only if it is asked for",
+        {
+            "forces": "forces, moments and longitudinal creepage",
+            "contact": "size of the patches, largest pressure and shear, spin pole, adhesion area",
+            "friction_work": "friction power and energy",
+            "peak_stress": "largest von Mises stress of each body and its place",
+            "life": "overrollings and hours to failure",
+            "tractions": "pressure, shear and creepage over each patch",
+            "subsurface": "stresses on two sections through the peak",
+        },
+        kind="words",
+        required=True,
+        recorded=False,
+        files=("study",),
+    ),
+    Option(
+        "contact_model",
+        "sliding",
+        "how friction is distributed over the patch",
+        {
+            "sliding": "Coulomb friction at every point against the local creepage; no adhesion area",
+            "fastsim": "simplified theory of rolling contact (Kalker's FASTSIM)",
+            "kalker": "exact theory of rolling contact; at accuracy preview by its table",
+            "kalker_table": "table of solutions of the exact theory; outside its range the exact theory",
+            "auto": "the cheapest of sliding, fastsim and kalker that meets contact_tolerance",
+        },
+        factor=True,
+    ),
+    Option(
+        "spin_model",
+        "skewed",
+        "position of the spin pole, assumptions 0, 1 and 2 of the publication",
+        {
+            "concentric": "in the centre of the patch",
+            "edge": "on the edge of the patch",
+            "skewed": "where the longitudinal creepage vanishes",
+        },
+        models=("sliding", "auto"),
+        factor=True,
+    ),
+    Option(
+        "accuracy",
+        "standard",
+        "discretisation: a preset, or a relative tolerance of forces and peak stress",
+        {
+            "preview": "for a first look",
+            "standard": "for studies",
+            "reference": "for single cases, and to check standard",
+        },
+        kind="accuracy",
+    ),
+    Option(
+        "hertz",
+        "exact",
+        "how the Hertzian ellipse is found",
+        {"exact": "by elliptic integrals", "published": "by the table of the published program"},
+    ),
+    Option(
+        "stress_bodies",
+        "both",
+        "bodies whose stresses are computed",
+        {"both": "each body with its own Poisson's ratio", "published": "one body with the mean Poisson's ratio"},
+    ),
+    Option(
+        "life_rule",
+        "elementary",
+        "S-N curve below the fatigue limit",
+        {
+            "elementary": "the curve runs on (Miner elementary)",
+            "haibach": "slope 2k - 1 (Haibach)",
+            "unlimited": "no failure (Miner original)",
+        },
+    ),
+    Option(
+        "normal",
+        "hertz",
+        "how patch and pressure are found",
+        {"hertz": "Hertzian", "halfspace": "non-Hertzian, by boundary elements; needed for drawn profiles"},
+        factor=True,
+    ),
+    Option(
+        "contact_tolerance",
+        0.05,
+        "error that auto allows: of normal forces and peak stress, and of friction forces over the normal force",
+        kind="tolerance",
+        models=("auto",),
+    ),
+    Option(
+        "stop_if",
+        None,
+        "condition; where it holds, no peak stress is searched for and the case is marked stopped",
+        kind="condition",
+        files=("study",),
+    ),
+    Option(
+        "shortcuts",
+        True,
+        "use symmetry and repetition among the cases; numbers stay the same to rounding",
+        kind="switch",
+        identity=False,
+        recorded=False,
+        files=(),
+    ),
+    Option(
+        "slip_terms",
+        (),
+        "what the rigid slip of a patch counts beyond the tangent of a straight guide",
+        {
+            "profile": "the rolling slip of the guide's profile, eq. (20), instead of its tangent",
+            "curve": "the roller turns with the curve of the guide, which adds to its spin",
+        },
+        kind="words",
+        models=("fastsim", "kalker", "kalker_table", "auto"),
+    ),
+)
+
+OPTIONS: dict[str, Option] = {option.name: option for option in _OPTIONS}
+
+
+def words_of(option: str) -> tuple[str, ...]:
+    """Return the words that an option allows."""
+    return tuple(OPTIONS[option].values)
+
+
+def options_text() -> str:
+    """Return the options with their values and defaults, for the help of a command."""
+    told = []
+    for option in OPTIONS.values():
+        values = "|".join(option.values) or {"tolerance": "0..1", "condition": "CONDITION"}.get(
+            option.kind, "true|false"
+        )
+        default = ",".join(option.default) or "none" if isinstance(option.default, tuple) else option.default
+        told.append(f"{option.name}={values} ({default})")
+    return ", ".join(told)
