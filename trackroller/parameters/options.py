@@ -91,6 +91,8 @@ class Option:
             return tuple(dict.fromkeys(words)) if self.required else tuple(w for w in self.values if w in words)
         if self.kind == "word" or (self.kind == "accuracy" and isinstance(value, str)):
             return self._word(value, where)
+        if self.kind == "condition" and not isinstance(value, (str, type(None))):
+            raise InputError(where, value, self.allowed())
         if self.kind == "switch" and not isinstance(value, bool):
             raise InputError(where, value, self.allowed())
         if self.kind in ("accuracy", "tolerance"):
@@ -154,9 +156,9 @@ _OPTIONS = (
         "skewed",
         "position of the spin pole, assumptions 0, 1 and 2 of the publication",
         {
-            "concentric": "in the centre of the patch",
-            "edge": "on the edge of the patch",
-            "skewed": "where the longitudinal creepage vanishes",
+            "concentric": "v_x vanishes on the line y = 0",
+            "edge": "v_x vanishes on a line through the leading edge at the pole",
+            "skewed": "v_x vanishes on two skewed lines, eqs (24)-(25)",
         },
         models=("sliding", "auto"),
         factor=True,

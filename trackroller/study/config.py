@@ -113,9 +113,10 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
             if option.factor:
                 words = tuple(option.check(word) for word in value)
                 return words[0] if len(words) == 1 else words
-        if option.kind == "condition" and value is not None:
-            parse_condition(value)
-        return option.check(value)
+        checked = option.check(value)
+        if option.kind == "condition" and checked is not None:
+            parse_condition(checked)
+        return checked
 
     @field_validator("pareto", mode="before")
     @classmethod

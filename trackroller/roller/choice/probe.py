@@ -79,14 +79,14 @@ def _solve(table: CaseTable, options: Options, model: str) -> tuple[Any, Equilib
     from trackroller.roller.stages import mechanics as stages
 
     scene = stages.prepare(table, replace(options, contact_model=model, accuracy="preview", outputs=("forces",)))
-    if model == "kalker":
+    if model == "kalker_table":
         scene = replace(scene, model=NearestInTable(scene.model.elastic))  # type: ignore[attr-defined]
     return scene, solve_equilibrium(scene.loads, scene.mirror.law(scene.model.law))
 
 
 def probe(table: CaseTable, options: Options) -> Probe:
     """Forces, creepages and stick of n rollers by the table; about 0.3 ms of processor time each."""
-    scene, balance = _solve(table, options, "kalker")
+    scene, balance = _solve(table, options, "kalker_table")
     loads, n, f = scene.loads, len(table), balance.forces
     two = lambda v: np.concatenate([v, v])  # noqa: E731
     sine = np.sin(loads.contact_angle)
