@@ -77,7 +77,7 @@ def test_gridded_tractions_give_the_stress_of_the_formula():
     from trackroller.roller.equilibrium import solve_equilibrium
     from trackroller.roller.options import Options
     from trackroller.roller.stages import mechanics as stages
-    from trackroller.roller.stages import stress as stages_stress
+    from trackroller.roller.stages.ellipse_stresses import EllipseStresses
     from trackroller.roller.stages.scene import Results
 
     options = Options()
@@ -85,11 +85,12 @@ def test_gridded_tractions_give_the_stress_of_the_formula():
     results = Results.start(scene, solve_equilibrium(scene.loads, scene.model.law))
     from trackroller.contact import sliding
 
-    t = sliding.tractions(results.ellipse, results.slip, results.friction, points=201)
+    t = sliding.tractions(results.patch, results.slip, results.friction, points=201)
     # cell centres of a grid of 200: the mean of the corners' directions is good enough far from the pole
     share = traction_share(t, results.friction)
     share = 0.25 * (share[:, :, 1:, 1:] + share[:, :, :-1, 1:] + share[:, :, 1:, :-1] + share[:, :, :-1, :-1])
-    rows, nu = stages_stress._patches(results, options), stages_stress._poisson(results, options)
+    stresses = EllipseStresses(results, options)
+    rows, nu = stresses.rows(), stresses.poisson_ratio
     exact = find_peaks(rows, nu, options.settings.peak).stress
     gridded = find_peaks(rows, nu, options.settings.peak, np.ascontiguousarray(share)).stress
     np.testing.assert_allclose(gridded, exact, rtol=5e-3)

@@ -20,8 +20,8 @@ from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.normal import lift
 from trackroller.contact.normal import models as normal_models
 from trackroller.contact.normal import sliding as normal_sliding
-from trackroller.halfspace.grid_peak import GridLoad, body_stress, find_grid_peaks, stress_parts
-from trackroller.halfspace.stress import stress_from_tractions
+from trackroller.halfspace.grid_peak import GridLoad, find_grid_peaks
+from trackroller.halfspace.stress import body_stress, stress_from_tractions
 from trackroller.roller.options import Options
 
 PARABOLAS = {"guide_profile": {"parabola": 6.0}, "roller_profile": {"parabola": -7.0}}
@@ -119,7 +119,7 @@ def test_stress_parts_of_a_grid_are_those_of_its_tractions():
     for sign, nu in ((1.0, 0.3), (-1.0, 0.45)):
         q = load.tractions
         expected = stress_from_tractions(x, y, q[..., 2], sign * q[..., 0], sign * q[..., 1], points, nu)
-        np.testing.assert_allclose(body_stress(stress_parts(load, points), nu, sign), expected, atol=1e-9)
+        np.testing.assert_allclose(body_stress(load.stress_parts(points), nu, sign), expected, atol=1e-9)
 
 
 @pytest.mark.parametrize("shift", [0.1, -0.03])
@@ -382,3 +382,12 @@ def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
     np.testing.assert_allclose(rough.pressure.max(("y", "x")), rough.max_pressure, rtol=0.05)
     off = np.abs(rough.peak_stress / fine.peak_stress - 1.0)
     assert np.all(off < 0.1) and np.all(off < rough.error_estimate)
+
+
+def test_a_flat_pressure_is_not_stopped_by_the_bound_of_an_ellipse():
+    """`stop_if` bounds the peak below a solved pressure by points of this pressure, not of a Hertzian ellipse."""
+    flat = tr.Case(guide_profile={"parabola": 6.0, "edge": {"inner": 0.15, "outer": 0.15}}, friction_coefficient=0.0)
+    stopped = lambda limit: tr.solve(flat, ("peak_stress",), normal="halfspace", stop_if=f"peak_stress > {limit}")  # noqa: E731
+    peak = float(tr.solve(flat, ("peak_stress",), normal="halfspace").peak_stress.max())
+    assert not bool(stopped(1.02 * peak).stopped)
+    assert bool(stopped(0.3 * peak).stopped)

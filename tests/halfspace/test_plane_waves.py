@@ -6,7 +6,7 @@ import pytest
 
 from trackroller.halfspace import ellipse_kernels
 from trackroller.halfspace.ellipse import NO_FIELD
-from trackroller.halfspace.ellipse_kernels import PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU
+from trackroller.halfspace.ellipse_kernels import PATCH, PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU, Place
 from trackroller.halfspace.kernels import point_kernel
 from trackroller.halfspace.plane_waves import plane_wave_stress
 
@@ -14,13 +14,13 @@ sum_waves, sum_rays = ellipse_kernels.sum_waves, ellipse_kernels.sum_rays
 
 
 @numba.njit()
-def wave(patch, across, z, d_x, d_y, work, out):
-    sum_waves(patch, across, 0.0, z, d_x, d_y, 1, work, out)
+def wave(patch, place, work, out):
+    sum_waves(patch, place, 1, work, out)
 
 
 @numba.njit()
-def ray(patch, z, d_x, d_y, rule, work, out):
-    sum_rays(patch, NO_FIELD, 0.0, 0.0, z, d_x, d_y, 1, rule, work, out)
+def ray(patch, place, rule, work, out):
+    sum_rays(patch, NO_FIELD, place, 1, rule, work, out)
 
 
 def scratch(**values):
@@ -47,9 +47,9 @@ def test_wave_kernel_is_the_derived_one(load, row, nu_row, direction):
     log = np.log((zeta - 1) / (zeta + 1))
     g, g_prime = np.pi * (2 + zeta * log), np.pi * (log + 2 * zeta / (zeta**2 - 1))
     out = np.zeros((4, 6))
-    patch = np.zeros(12)
-    patch[[ellipse_kernels.A, ellipse_kernels.B, ellipse_kernels.FRICTION]] = 1.0
-    wave(patch, across, z, *direction, scratch(ANGLE=0.0, WEIGHT=2 * np.pi**2), out)
+    patch = np.zeros(1, PATCH)[0]
+    patch["a"] = patch["b"] = patch["friction"] = 1.0
+    wave(patch, Place(across, 0.0, z, *direction), scratch(ANGLE=0.0, WEIGHT=2 * np.pi**2), out)
     for name, expression in plane_wave_stress()[load].items():
         symbol = {str(s): s for s in expression.free_symbols}
         poly = expression.subs({symbol["nu"]: nu} if "nu" in symbol else {})
@@ -66,17 +66,17 @@ def test_chord_kernel_is_the_point_kernel():
     for _ in range(20):
         r, z = rng.uniform(0.01, 2, 2)
         # one node at distance r in direction +x, unit weight, unit traction along (x) or across (y)
-        patch = np.zeros(12)
-        patch[3], patch[4], patch[5] = 1.0, 1e-9, 1e6  # slip along x only where the offset K0 says so
+        patch = np.zeros(1, PATCH)[0]
+        patch["sine"], patch["cosine"], patch["radius"] = 1.0, 1e-9, 1e6  # the offset k0 alone gives slip along x
         for direction in (0, 1):
             k = point_kernel(-r, 0.0, z)
             a = np.array(k[6 * direction : 6 * direction + 6])
             b = np.array(k[18 + 6 * direction : 24 + 6 * direction])
             out = np.zeros((4, 6))
             d = np.array([-1.0, 0.0]) if direction == 0 else np.array([0.0, -1.0])
-            patch[9] = 1e9  # slip far along -x: its direction is (+1, 0), subtracted below
+            patch["k0"] = 1e9  # slip far along -x: its direction is (+1, 0), subtracted below
             work = scratch(C=1.0, SPAN=r, NEAR=-1.0, FAR=2 * r, LENGTH=1.0, WEIGHT=r)
-            ray(patch, z, 1.0 + d[0], d[1], np.ones((2, 1)), work, out)
+            ray(patch, Place(0.0, 0.0, z, 1.0 + d[0], d[1]), np.ones((2, 1)), work, out)
             out /= 2 * np.pi * r * r * np.sqrt(r * (r + 1))  # the weight of the node
             kernel_order = [ORDER[name] for name in ("ss", "tt", "zz", "st", "tz", "zs")]
             np.testing.assert_allclose(out[SHEAR][kernel_order], a, rtol=1e-9, atol=1e-10)

@@ -7,6 +7,7 @@ import trackroller as tr
 from trackroller.roller import requirements
 from trackroller.roller.case import to_table
 from trackroller.roller.options import Options
+from trackroller.roller.stages import ellipse_stresses
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.scene import Results
@@ -17,9 +18,9 @@ EVERYTHING = ("forces", "contact", "friction_work", "peak_stress", "life", "trac
 
 def searched_patches(monkeypatch):
     """Grows by the number of patches with every search for peaks."""
-    seen, search = [], stages_stress.find_peaks
+    seen, search = [], ellipse_stresses.find_peaks
     watched = lambda patches, *more: seen.append(len(patches)) or search(patches, *more)  # noqa: E731
-    monkeypatch.setattr(stages_stress, "find_peaks", watched)
+    monkeypatch.setattr(ellipse_stresses, "find_peaks", watched)
     return seen
 
 
@@ -124,7 +125,7 @@ def test_the_bound_that_stops_is_below_the_peak(model):
     scene = stages.prepare(to_table(cases), options)
     results = Results.start(scene, stages.eq.solve_equilibrium(scene.loads, scene.model.law))
     stages.contact(results, options)
-    bound = stages_stress._peak_bound(results, options)
+    bound = stages_stress.peak_bound(results, options)
     stages_stress.peak_stress(results, options)
     share = bound / results.values["peak_stress"]
     assert np.nanmax(share) <= 1.002, "within the accuracy of the search"
@@ -171,5 +172,5 @@ def test_explained_counts_are_those_that_run(monkeypatch):
 
 
 def test_no_stress_without_a_stress_output(monkeypatch):
-    monkeypatch.setattr(stages_stress, "find_peaks", lambda *a: pytest.fail("searched for a peak nobody asked for"))
+    monkeypatch.setattr(ellipse_stresses, "find_peaks", lambda *a: pytest.fail("searched for a peak nobody asked for"))
     assert "peak_stress" not in tr.solve(tr.Case(), outputs=("forces", "contact", "friction_work"))

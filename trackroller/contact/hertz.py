@@ -8,21 +8,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import elliprd
 
-from trackroller.contact.common import Ellipse
+from trackroller.contact.common import Ellipse, _Rows
 from trackroller.errors import InputError
 
-# Table of the published program: cos tau = |k_x - k_y|/(k_x + k_y) against xi and eta.
+# Table of the published program: xi and eta over cos tau = |k_x - k_y|/(k_x + k_y).
 PUBLISHED_COS_TAU = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 0.995, 0.9995])
 PUBLISHED_XI = np.array([1.07, 1.15, 1.24, 1.35, 1.48, 1.66, 1.91, 2.3, 3.09, 4.12, 7.76, 10.15, 23.95])
 PUBLISHED_ETA = np.array([0.938, 0.879, 0.824, 0.771, 0.718, 0.664, 0.607, 0.544, 0.461, 0.396, 0.287, 0.251, 0.163])
 
 
 @dataclass(frozen=True)
-class HertzShape:
-    """What geometry and material fix: a, b and p_max for a unit normal force; they scale with F_N^(1/3).
+class HertzShape(_Rows):
+    """Semi-axes a, b and largest pressure p_max for a unit normal force; all three scale with F_N^(1/3).
 
-    Arrays of shape (n,): `lateral` and `rolling` [mm N^(-1/3)], `pressure` [MPa N^(-1/3)].
+    They follow from geometry and material. Arrays of shape (n,): `lateral` and `rolling` [mm N^(-1/3)], `pressure`
+    [MPa N^(-1/3)].
     """
 
     lateral: np.ndarray
@@ -30,33 +32,27 @@ class HertzShape:
     pressure: np.ndarray
 
     def at(self, normal_force: np.ndarray) -> Ellipse:
-        """The ellipse under `normal_force` [N], shape (n,)."""
+        """Return the ellipses under `normal_force` (n,) [N]."""
         root = np.cbrt(normal_force)
         return Ellipse(self.lateral * root, self.rolling * root, self.pressure * root)
 
 
 def contact_modulus(e_1, nu_1, e_2, nu_2) -> np.ndarray:
-    """E* [MPa] from 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2."""
+    """Return the contact modulus E* [MPa], 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, from moduli [MPa] and ratios [1]."""
     return np.asarray(1.0 / ((1 - nu_1**2) / e_1 + (1 - nu_2**2) / e_2))
 
 
-def _second_over_first(m: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """K, B = (E - (1-m) K)/m and D = (K - E)/m by Carlson's integrals, without cancellation for m -> 0.
+def _elliptic(m_1: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return B = (E - (1-m) K)/m and D = (K - E)/m by Carlson's integrals, without cancellation for m -> 0.
 
-    `m` is given by its complement to keep digits for very slender ellipses.
+    The argument is the complement m_1 = 1 - m = (b/a)^2, which keeps digits for very slender ellipses.
     """
-    from scipy.special import elliprd, elliprf
-
-    m_1 = m  # complementary parameter (b/a)^2
     zero, one = np.zeros_like(m_1), np.ones_like(m_1)
-    k = elliprf(zero, m_1, one)
-    d = elliprd(zero, m_1, one) / 3.0
-    b = elliprd(zero, one, m_1) / 3.0 * m_1  # = (E - m_1 K)/m
-    return k, b, d
+    return elliprd(zero, one, m_1) / 3.0 * m_1, elliprd(zero, m_1, one) / 3.0
 
 
 def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
-    """Ratio minor/major axis of the contact ellipse, shape (n,).
+    """Return the ratio of minor to major axis of the contact ellipse, (n,).
 
     Solves A/B = (b/a)^2 D / B~ with D = (K - E)/m, B~ = (E - (1-m) K)/m, m = 1 - (b/a)^2: Johnson (4.26).
 
@@ -64,15 +60,16 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
     ----------
     curvature_ratio : smaller over larger relative curvature, in (0, 1], shape (n,)
 
-    Safeguarded Newton iteration on the logarithm; relative error below 1e-14 for ratios down to 1e-12.
+    Notes
+    -----
+    Newton's method on the logarithm, kept within bounds; relative error below 1e-14 for ratios down to 1e-12.
     """
     target = np.log(np.asarray(curvature_ratio, dtype=float))
     x = target * (2.0 / 3.0)  # log(b/a); (A/B) ~ (b/a)^1.5 near the circle
     low, high = 2.0 * target - 1.0, np.zeros_like(target)
 
     def mismatch(x: np.ndarray) -> np.ndarray:
-        m_1 = np.exp(2 * x)
-        _, b, d = _second_over_first(m_1)
+        b, d = _elliptic(np.exp(2 * x))
         return 2 * x + np.log(d) - np.log(b) - target
 
     step = 1e-5
@@ -84,7 +81,7 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
         slope = (mismatch(x + step) - mismatch(x - step)) / (2 * step)
         new = x - f / slope
         new = np.where((new > low) & (new < high), new, np.where(f == 0, x, (low + high) / 2))
-        new = np.where(done, x, new)  # a ratio that is found stays: its last digit may not depend on its neighbours
+        new = np.where(done, x, new)  # a ratio that is found stays: its last digit must not depend on other rows
         done |= np.abs(new - x) <= 2e-15 * np.maximum(1.0, np.abs(x))
         x = new
         if done.all():
@@ -93,33 +90,55 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
 
 
 def _unique_axis_ratio(ratio: np.ndarray) -> np.ndarray:
-    # a grid has few curvature pairs: solve each once
+    # a parameter grid has few different curvature ratios: solve each of them once
     unique, inverse = np.unique(ratio, return_inverse=True)
     return axis_ratio(unique)[inverse]
 
 
 def exact_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> HertzShape:
-    """Exact Hertz shape for any curvatures k_x (lateral), k_y (rolling) > 0 [1/mm]; modulus E* [MPa].
+    """Return the exact Hertz shape.
 
     The longer axis lies in the plane of the smaller curvature; k_x = k_y gives a circle.
+
+    Parameters
+    ----------
+    k_x, k_y : relative curvatures in the lateral and the rolling plane, > 0, (n,) [1/mm]
+    modulus : contact modulus E*, (n,) [MPa]
+
+    Examples
+    --------
+    >>> one = np.ones(1)
+    >>> circle = exact_shape(0.1 * one, 0.1 * one, 115e3 * one)
+    >>> bool(np.isclose(circle.lateral[0], (0.75 / (115e3 * 0.1)) ** (1 / 3)))
+    True
     """
     k_x, k_y, modulus = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (k_x, k_y, modulus)))
     small, large = np.minimum(k_x, k_y), np.maximum(k_x, k_y)
     kappa = _unique_axis_ratio(small / large)
-    _, _, d_int = _second_over_first(kappa**2)
+    _, d = _elliptic(kappa**2)
     # Johnson (4.25): small/2 = (p0/E*) (b/a^2) D with p0 = 3F/(2 pi a b)
-    major = np.cbrt(3.0 * d_int / (np.pi * modulus * small))
-    minor = kappa * major
+    major = np.cbrt(3.0 * d / (np.pi * modulus * small))
+    return _laid(major, kappa * major, k_x <= k_y)
+
+
+def _laid(major: np.ndarray, minor: np.ndarray, wide: np.ndarray) -> HertzShape:
+    """Return the shape with the major axis in the lateral direction where `wide`, else in the rolling direction."""
     pressure = 3.0 / (2.0 * np.pi * major * minor)
-    wide = k_x <= k_y
     return HertzShape(np.where(wide, major, minor), np.where(wide, minor, major), pressure)
 
 
 def published_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> HertzShape:
-    """Hertz shape by linear interpolation in the table of the published program, axes laid right.
+    """Return the Hertz shape by linear interpolation in the table of the published program.
 
-    Valid for 0.1 <= cos tau <= 0.9995; rows outside are NaN. The published program also lays the long axis
-    on x_C for k_x > k_y; this does not.
+    The published program puts the long axis on x_C even for k_x > k_y; this function puts it on y_C there.
+
+    Parameters
+    ----------
+    k_x, k_y, modulus : as in `exact_shape`
+
+    Notes
+    -----
+    Valid for 0.1 <= cos tau <= 0.9995; rows outside this range are NaN.
     """
     k_x, k_y, modulus = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (k_x, k_y, modulus)))
     k_sum = k_x + k_y
@@ -127,16 +146,13 @@ def published_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> He
     xi = np.interp(cos_tau, PUBLISHED_COS_TAU, PUBLISHED_XI, left=np.nan, right=np.nan)
     eta = np.interp(cos_tau, PUBLISHED_COS_TAU, PUBLISHED_ETA, left=np.nan, right=np.nan)
     size = np.cbrt(3.0 * (0.5 / modulus) / k_sum)
-    major, minor = xi * size, eta * size
-    pressure = 3.0 / (2.0 * np.pi * major * minor)
-    wide = k_x <= k_y
-    return HertzShape(np.where(wide, major, minor), np.where(wide, minor, major), pressure)
+    return _laid(xi * size, eta * size, k_x <= k_y)
 
 
 def shape(k_x, k_y, modulus, hertz: str = "exact") -> HertzShape:
-    """`exact_shape` or `published_shape` by name."""
+    """Return `exact_shape` or `published_shape` for hertz = 'exact' or 'published'; raise InputError otherwise."""
     if hertz == "exact":
         return exact_shape(k_x, k_y, modulus)
     if hertz == "published":
         return published_shape(k_x, k_y, modulus)
-    raise InputError("hertz", hertz, "'exact' or 'published'")
+    raise InputError("hertz", hertz, "'exact' or 'published'", "Choose one of these two.")

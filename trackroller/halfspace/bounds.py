@@ -5,45 +5,45 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.halfspace.ellipse import NO_FIELD, near_parts, refinement, unit_rule
-from trackroller.halfspace.stress import von_mises
+from trackroller.halfspace.peak_climb import lengths
+from trackroller.halfspace.stress import FRICTION_SIGNS, body_stress, von_mises
 
-# Depths over the smaller semi-axis: the surface, and where the frictionless peak lies for nu 0 to 0.5 from the
-# circle (0.38..0.55) to the line contact (0.70..0.79).
+# Depths over the smaller semi-axis: the surface, and the depths of the frictionless peak for nu from 0 to 0.5, between
+# the circle (0.38 to 0.55) and the line contact (0.70 to 0.79).
 _DEPTHS = np.array([0.0, 0.38, 0.48, 0.58, 0.68, 0.78])
-_VERTICES = 0.9 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])  # near those of the ellipse
-_ORDER = 16  # of the quadrature, for ellipses that are not slender
+_VERTICES = 0.9 * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])  # points near the vertices
+_ORDER = 16  # quadrature points, for ellipses that are not slender
 
 
 def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndarray | None = None) -> np.ndarray:
-    """Largest von Mises stress over p_max at a few points: the peak is not below it.
+    """Return the largest von Mises stress over p_max at a few points, a lower bound of the peak.
+
+    The points lie along z below the centre, and on the surface in the centre and near the vertices of the ellipse.
+    The search may meet each of these points, so that the peak is not lower.
 
     Parameters
     ----------
-    patches : rows of `ellipse.patch_rows`, shape (n, 12)
-    poisson_ratio : of roller and guide, shape (n, 2)
-    fields : traction over its bound at element centres, (n, 2, ny, nx), for models other than full sliding
+    patches : records of `ellipse.patch_rows`, (n,)
+    poisson_ratio : of roller and guide, (n, 2) [1]
+    fields : traction over its bound at element centres, (n, 2, ny, nx); full sliding if not given
 
     Returns
     -------
-    Roller and guide, shape (n, 2). Points: along z in the middle, and the middle and the vertices of the ellipse at
-    the surface. Where tractions change their sign in the mirror y -> -y the middle axis alone bounds the peak from
-    below by that without friction; every point is one the search may meet, so the bound holds anyway.
+    (n, 2) array for roller and guide [1]
     """
-    semi = patches[:, :2]
-    count = len(_DEPTHS)
-    points = np.zeros((len(patches), count + 4, 3))
-    points[:, :count, 2] = _DEPTHS * semi.min(axis=1)[:, None]
-    points[:, count:, :2] = semi[:, None, :] * _VERTICES
+    size, count = lengths(patches), len(_DEPTHS)
+    points = np.zeros((len(patches), count + len(_VERTICES), 3))
+    points[:, :count, 2] = _DEPTHS * size[:, 2:]
+    points[:, count:, :2] = size[:, None, :2] * _VERTICES
     finer = refinement(patches)
     out = np.empty((len(patches), 2))
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
         chosen = np.zeros((group.size, *NO_FIELD.shape)) if fields is None else np.ascontiguousarray(fields[group])
-        rows = np.repeat(np.arange(group.size), count + 4)
+        rows = np.repeat(np.arange(group.size), points.shape[1])
         rule = unit_rule(int(_ORDER * factor))
         parts = near_parts(np.ascontiguousarray(patches[group]), chosen, rows, points[group].reshape(-1, 3), rule, rule)
-        for body, sign in ((0, 1.0), (1, -1.0)):
-            nu = np.repeat(poisson_ratio[group, body], count + 4)[:, None]
-            stress = parts[:, 0] + nu * parts[:, 1] + sign * (parts[:, 2] + nu * parts[:, 3])
-            out[group, body] = von_mises(stress).reshape(group.size, -1).max(axis=1)
+        for body, sign in enumerate(FRICTION_SIGNS):
+            stress = von_mises(body_stress(parts, poisson_ratio[group[rows], body], sign))
+            out[group, body] = stress.reshape(group.size, -1).max(axis=1)
     return out

@@ -1,43 +1,60 @@
-"""Compiled kernels of the stress below a sliding ellipse; `ellipse` says what they add up.
+"""Compiled kernels of the stress below a sliding ellipse; `ellipse` sums them and explains the method.
 
-Loops run over waves and rays in vector registers: their angles and weights go through rows of a scratch array.
+The loops over waves and rays run in vector registers. Their angles and weights therefore stand in rows of a scratch
+array. The formulas are inlined into these loops: a call for each wave or ray would cost more than its arithmetic (see
+`vectors.inner`).
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
+from trackroller.halfspace.influence import PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU
 from trackroller.halfspace.vectors import angle, exp, inner, log, sine_cosine
 
-PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU = range(4)  # rows of the result
+XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
 
-# columns of the array that describes a patch; the slip v_x vanishes at y = K0 + K1 (x + a) left of POLE_X and at
-# y = K0 + K2 (x - a) right of it, which holds all three spin models
-A, B, FRICTION, SINE, COSINE, RADIUS, SHIFT, FIXED, POLE_X, K0, K1, K2 = range(12)
+# One patch: semi-axes a, b [mm], friction coefficient, kinematics as in `contact.common.Slip`, `fixed` direction of the
+# friction along y in full slip (0 in rolling), and where the lateral slip vanishes, which covers all three spin models:
+# at y = k0 + k1 (x + a) left of pole_x and at y = k0 + k2 (x - a) right of pole_x.
+FIELDS = ("a", "b", "friction", "sine", "cosine", "radius", "shift", "fixed", "pole_x", "k0", "k1", "k2")
+PATCH = np.dtype([(name, np.float64) for name in FIELDS])
 
-# rows of the scratch array: angle and weight of waves and chords, then what the loop over the rays needs
-STRIDE = 4104  # numbers a row; not a power of two, for such rows would meet in the same lines of the cache
+
+class Place(NamedTuple):
+    """Point x, y, z [mm] below a patch, and the direction d_x, d_y of the friction there over its bound."""
+
+    x: float
+    y: float
+    z: float
+    d_x: float
+    d_y: float
+
+
+# Rows of the scratch array: angle and weight of waves and chords, then the numbers of each ray.
+STRIDE = 4104  # numbers in a row; rows of a power of two would compete for the same lines of the cache
 ANGLE, WEIGHT, C, S, START, SPAN, NEAR, FAR, LENGTH = (row * STRIDE for row in range(9))
 SCRATCH = 9 * STRIDE
-MOST_POINTS = 1024  # of a rule: rows hold four rays for each
+MOST_POINTS = 1024  # points of a rule; a row holds four rays for each point
 
 
 @inner
 def slip_at(patch, x, y):
-    """Rigid slip v/omega of the roller against the guide at (x, y) [mm], eqs (21), (24), without branches."""
-    left = patch[K1] * (x + patch[A])
-    right = patch[K2] * (x - patch[A])
-    v_x = patch[SINE] * (y - patch[K0] - (left if x < patch[POLE_X] else right))
-    flat = patch[RADIUS] * patch[COSINE]
-    product = min(x * patch[COSINE] * (2.0 * patch[RADIUS] * patch[SINE] + x * patch[COSINE]), flat * flat)
-    return v_x, (patch[SHIFT] - flat) + math.sqrt(flat * flat - product)
+    """Return the rigid slip v/omega of the roller against the guide at (x, y) [mm], eqs (21), (24), branch-free."""
+    left = patch.k1 * (x + patch.a)
+    right = patch.k2 * (x - patch.a)
+    v_x = patch.sine * (y - patch.k0 - (left if x < patch.pole_x else right))
+    flat = patch.radius * patch.cosine
+    product = min(x * patch.cosine * (2.0 * patch.radius * patch.sine + x * patch.cosine), flat * flat)
+    return v_x, (patch.shift - flat) + math.sqrt(flat * flat - product)
 
 
 @inner
 def interpolated(field, u, v):
-    """Shares (x, y) of the traction bound at (u, v) in [-1, 1]^2, bilinear between element centres."""
+    """Return the shares (x, y) of the traction bound at (u, v) in [-1, 1]^2, bilinear between element centres."""
     ny, nx = field.shape[1], field.shape[2]
     s = min(max(0.5 * (u + 1.0) * nx - 0.5, 0.0), nx - 1.000001)
     t = min(max(0.5 * (v + 1.0) * ny - 0.5, 0.0), ny - 1.000001)
@@ -51,11 +68,11 @@ def interpolated(field, u, v):
 
 @inner
 def direction(patch, field, x, y):
-    """Share of the traction bound on the roller at (x, y): of length 1 where it slides; (0, 0) at the pole."""
-    if patch[FIXED] != 0.0:  # full slip along y_C
-        return 0.0, patch[FIXED]
+    """Return the traction on the roller over its bound at (x, y): length 1 where it slides, (0, 0) at the pole."""
+    if patch.fixed != 0.0:  # full slip along y_C
+        return 0.0, patch.fixed
     if field.shape[1] > 1:
-        return interpolated(field, x / patch[A], y / patch[B])
+        return interpolated(field, x / patch.a, y / patch.b)
     v_x, v_y = slip_at(patch, x, y)
     speed = math.sqrt(v_x * v_x + v_y * v_y)
     if speed == 0.0:
@@ -65,7 +82,10 @@ def direction(patch, field, x, y):
 
 @inner
 def spread_angles(work, at, start, end, turn, scale, rule):
-    """Angles and weights of [start, end] from place `at` on, dense on `scale` at `turn` if it is an end of it."""
+    """Write angles and weights of [start, end] from place `at` on; return the next free place.
+
+    The angles are dense near `turn` if it is an end; neighbouring angles there are about `scale` apart.
+    """
     span = end - start
     if span < 1e-15:
         return at
@@ -86,9 +106,45 @@ def spread_angles(work, at, start, end, turn, scale, rule):
 
 
 @inner
-def sum_waves(patch, px, py, z, d_x, d_y, count, work, out):
-    """Adds the stresses of `count` plane waves; symmetric components about the wave vector (c, s) turned to x, y."""
-    inv_a, inv_b = 1.0 / patch[A], 1.0 / patch[B]
+def _add(out, row, xx, yy, zz, xy, yz, zx):
+    """Add six components to one row of the stress parts `out` (4, 6)."""
+    out[row, XX] += xx
+    out[row, YY] += yy
+    out[row, ZZ] += zz
+    out[row, XY] += xy
+    out[row, YZ] += yz
+    out[row, ZX] += zx
+
+
+@inner
+def _hertz_transform(p, q):
+    """Return real and imaginary part of G/pi and G'/pi at zeta = p + i q; see `ellipse`."""
+    p2, q2 = p * p, q * q
+    plus, minus, square = (p + 1.0) * (p + 1.0) + q2, (p - 1.0) * (p - 1.0) + q2, p2 + q2
+    inv = 1.0 / (plus * minus)
+    log_r, log_i = 0.5 * log(minus * minus * inv), angle(2.0 * q, square - 1.0)
+    real, twice = p2 - q2, 2.0 * p * q
+    g_r, g_i = 2.0 + p * log_r - q * log_i, p * log_i + q * log_r
+    d_r = log_r + 2.0 * (p * (real - 1.0) + q * twice) * inv
+    d_i = log_i + 2.0 * (q * (real - 1.0) - p * twice) * inv
+    # far away the closed form cancels: -(2/3 + 2/5 h) h and (4/3 + 8/5 h) h/zeta with h = 1/zeta^2
+    inv = 1.0 / square
+    h_r, h_i = real * inv * inv, -twice * inv * inv
+    t_r, t_i = 4.0 / 3.0 + 1.6 * h_r, 1.6 * h_i
+    u_r, u_i = (p * h_r + q * h_i) * inv, (p * h_i - q * h_r) * inv
+    far = square > 1e4
+    g_r = -((2.0 / 3.0 + 0.4 * h_r) * h_r - 0.4 * h_i * h_i) if far else g_r
+    g_i = -((2.0 / 3.0 + 0.4 * h_r) * h_i + 0.4 * h_i * h_r) if far else g_i
+    d_r = t_r * u_r - t_i * u_i if far else d_r
+    d_i = t_r * u_i + t_i * u_r if far else d_i
+    return g_r, g_i, d_r, d_i
+
+
+@inner
+def sum_waves(patch, place, count, work, out):
+    """Add the stresses of `count` plane waves; their symmetric components are turned from the wave vector to x, y."""
+    inv_a, inv_b, mu, d_x, d_y = 1.0 / patch.a, 1.0 / patch.b, patch.friction, place.d_x, place.d_y
+    px, py = place.x / patch.a, place.y / patch.b
     p_xx = p_yy = p_zz = p_xy = p_yz = p_zx = n_xx = n_yy = n_xy = 0.0
     s_xx = s_yy = s_zz = s_xy = s_yz = s_zx = m_xx = m_yy = m_xy = 0.0
     for k in range(count):
@@ -98,26 +154,8 @@ def sum_waves(patch, px, py, z, d_x, d_y, count, work, out):
         kx, ky = kx * inv_a, ky * inv_b
         lam = math.sqrt(kx * kx + ky * ky)
         c, s = kx / lam, ky / lam
-        q = max(lam * z, 1e-14)
-        p2, q2 = p * p, q * q
-        plus, minus, square = (p + 1.0) * (p + 1.0) + q2, (p - 1.0) * (p - 1.0) + q2, p2 + q2
-        inv = 1.0 / (plus * minus)
-        log_r, log_i = 0.5 * log(minus * minus * inv), angle(2.0 * q, square - 1.0)
-        real, twice = p2 - q2, 2.0 * p * q
-        g_r, g_i = 2.0 + p * log_r - q * log_i, p * log_i + q * log_r
-        d_r = log_r + 2.0 * (p * (real - 1.0) + q * twice) * inv
-        d_i = log_i + 2.0 * (q * (real - 1.0) - p * twice) * inv
-        # far away the closed form cancels: -(2/3 + 2/5 h) h and (4/3 + 8/5 h) h/zeta with h = 1/zeta^2
-        inv = 1.0 / square
-        h_r, h_i = real * inv * inv, -twice * inv * inv
-        t_r, t_i = 4.0 / 3.0 + 1.6 * h_r, 1.6 * h_i
-        u_r, u_i = (p * h_r + q * h_i) * inv, (p * h_i - q * h_r) * inv
-        far = square > 1e4
-        g_r = -((2.0 / 3.0 + 0.4 * h_r) * h_r - 0.4 * h_i * h_i) if far else g_r
-        g_i = -((2.0 / 3.0 + 0.4 * h_r) * h_i + 0.4 * h_i * h_r) if far else g_i
-        d_r = t_r * u_r - t_i * u_i if far else d_r
-        d_i = t_r * u_i + t_i * u_r if far else d_i
-        deep = lam * z * weight
+        g_r, g_i, d_r, d_i = _hertz_transform(p, max(lam * place.z, 1e-14))
+        deep = lam * place.z * weight
         g_r, g_i, d_r, d_i = g_r * weight, g_i * weight, d_i * deep, -d_r * deep
         cc, ss, cs = c * c, s * s, c * s
         e = d_r - g_r
@@ -142,40 +180,25 @@ def sum_waves(patch, px, py, z, d_x, d_y, count, work, out):
         m_xx += ss * f
         m_yy += cc * f
         m_xy -= cs * f
-    mu = patch[FRICTION]
-    out[PRESSURE, 0] += p_xx
-    out[PRESSURE, 1] += p_yy
-    out[PRESSURE, 2] += p_zz
-    out[PRESSURE, 3] += p_xy
-    out[PRESSURE, 4] += p_yz
-    out[PRESSURE, 5] += p_zx
-    out[PRESSURE_NU, 0] += -2.0 * n_xx
-    out[PRESSURE_NU, 1] += -2.0 * n_yy
-    out[PRESSURE_NU, 3] += -2.0 * n_xy
-    out[SHEAR, 0] += mu * s_xx
-    out[SHEAR, 1] += mu * s_yy
-    out[SHEAR, 2] += mu * s_zz
-    out[SHEAR, 3] += mu * s_xy
-    out[SHEAR, 4] += mu * s_yz
-    out[SHEAR, 5] += mu * s_zx
-    out[SHEAR_NU, 0] += -2.0 * mu * m_xx
-    out[SHEAR_NU, 1] += -2.0 * mu * m_yy
-    out[SHEAR_NU, 3] += -2.0 * mu * m_xy
+    _add(out, PRESSURE, p_xx, p_yy, p_zz, p_xy, p_yz, p_zx)
+    _add(out, PRESSURE_NU, -2.0 * n_xx, -2.0 * n_yy, 0.0, -2.0 * n_xy, 0.0, 0.0)
+    _add(out, SHEAR, mu * s_xx, mu * s_yy, mu * s_zz, mu * s_xy, mu * s_yz, mu * s_zx)
+    _add(out, SHEAR_NU, -2.0 * mu * m_xx, -2.0 * mu * m_yy, 0.0, -2.0 * mu * m_xy, 0.0, 0.0)
 
 
 @inner
 def wave_angles(patch, px, py, rule, work):
-    """Angles and weights of the plane waves for the point (px a, py b); returns their number."""
-    a, b = patch[A], patch[B]
+    """Write angles and weights of the plane waves for the point (px a, py b); return their number."""
+    a, b = patch.a, patch.b
     r = math.sqrt(px * px + py * py)
     beta = math.acos(1.0 / r) if r > 1.0 else 0.0
-    center = 0.0 if a >= b else 0.5 * math.pi  # where the wave vector turns fast
+    center = 0.0 if a >= b else 0.5 * math.pi  # angle near which the wave vector turns fast
     first = math.atan2(py, px) - beta
     turn = center + math.pi * math.ceil((first - center) / math.pi)
     low, high = turn, turn
     if beta > 0.0:
         low, high = min(turn, first + 2.0 * beta), max(turn, first + 2.0 * beta)
-    count = np.int64(0)  # a literal would have `spread_angles` compiled twice
+    count = np.int64(0)  # a literal would compile `spread_angles` twice
     for piece in range(3):
         start = first if piece == 0 else (low if piece == 1 else high)
         end = low if piece == 0 else (high if piece == 1 else first + math.pi)
@@ -185,16 +208,19 @@ def wave_angles(patch, px, py, rule, work):
 
 @inner
 def rays_of_chords(patch, px, py, count, work):
-    """Turns `count` chords through the point into rays from it: those of both sides, or the one that sees the patch."""
-    a, b = patch[A], patch[B]
+    """Turn `count` chords through the point into rays from it and return their number.
+
+    A point inside the patch has rays to both sides; from a point outside only one side meets the patch.
+    """
+    a, b = patch.a, patch.b
     outside = px * px + py * py > 1.0
-    scale = patch[FRICTION] * a * b / (2.0 * math.pi)
+    scale = patch.friction * a * b / (2.0 * math.pi)
     second = 0 if outside else count
     for k in range(count):
         sine, cosine = sine_cosine(work[ANGLE + k])
         along = px * cosine + py * sine
         root = math.sqrt(max(along * along + 1.0 - px * px - py * py, 0.0))
-        # a side of no length (point on the edge) would divide by zero
+        # a side without length (point on the edge) would divide by zero
         start = -along - root if outside else 0.0
         far = root - along if outside else max(root - along, 1e-13)
         near = -along - root if outside else min(-along - root, -1e-13)
@@ -214,8 +240,9 @@ def rays_of_chords(patch, px, py, count, work):
 
 
 @inner
-def sum_rays(patch, field, x, y, z, d_x, d_y, count, rule, work, out):
-    """Adds the stresses of the friction along `count` rays less that of direction (d_x, d_y)."""
+def sum_rays(patch, field, place, count, rule, work, out):
+    """Add the stresses of the friction along `count` rays less those of friction in the direction at the point."""
+    x, y, z, d_x, d_y = place.x, place.y, place.z, place.d_x, place.d_y
     gridded = field.shape[1] > 1
     xx = yy = xy = zz = yz = zx = n_xx = n_yy = n_xy = 0.0
     for i in range(rule.shape[1]):
@@ -227,7 +254,7 @@ def sum_rays(patch, field, x, y, z, d_x, d_y, count, rule, work, out):
             rho = math.sqrt(rho_2)
             deep = rho + z
             if gridded:
-                f_x, f_y = interpolated(field, (x + c * r) / patch[A], (y + s * r) / patch[B])
+                f_x, f_y = interpolated(field, (x + c * r) / patch.a, (y + s * r) / patch.b)
                 inv = 1.0 / (rho * deep)
             else:
                 v_x, v_y = slip_at(patch, x + c * r, y + s * r)
@@ -264,29 +291,22 @@ def sum_rays(patch, field, x, y, z, d_x, d_y, count, rule, work, out):
             n_xx += cc * e_nu + ss * t_nu - 2.0 * cs * et
             n_yy += ss * e_nu + cc * t_nu + 2.0 * cs * et
             n_xy += cs * (e_nu - t_nu) + (cc - ss) * et
-    out[SHEAR, 0] += 1.0 * (xx + n_xx)
-    out[SHEAR, 1] += 1.0 * (yy + n_yy)
-    out[SHEAR, 2] += zz
-    out[SHEAR, 3] += 1.0 * (xy + n_xy)
-    out[SHEAR, 4] += yz
-    out[SHEAR, 5] += zx
-    out[SHEAR_NU, 0] += -2.0 * n_xx
-    out[SHEAR_NU, 1] += -2.0 * n_yy
-    out[SHEAR_NU, 3] += -2.0 * n_xy
+    _add(out, SHEAR, xx + n_xx, yy + n_yy, zz, xy + n_xy, yz, zx)
+    _add(out, SHEAR_NU, -2.0 * n_xx, -2.0 * n_yy, 0.0, -2.0 * n_xy, 0.0, 0.0)
 
 
 @inner
 def chord_angles(patch, px, py, rule, work):
-    """Angles and weights of chords through the point (px a, py b); returns their number."""
-    a, b = patch[A], patch[B]
+    """Write angles and weights of chords through the point (px a, py b); return their number."""
+    a, b = patch.a, patch.b
     r2 = px * px + py * py
-    half = math.asin(1.0 / math.sqrt(r2)) if r2 > 1.0 else 0.5 * math.pi  # outside only the cone that sees the patch
+    half = math.asin(1.0 / math.sqrt(r2)) if r2 > 1.0 else 0.5 * math.pi  # outside: the cone that meets the patch
     first = math.atan2(py, px) + math.pi - half
     last = first + 2.0 * half
-    center = 0.5 * math.pi if a >= b else 0.0  # where the ray turns fast
+    center = 0.5 * math.pi if a >= b else 0.0  # angle near which the ray turns fast
     turn = center + math.pi * math.ceil((first - center) / math.pi)
     middle = min(turn, last)
-    count = np.int64(0)  # a literal would have `spread_angles` compiled twice
+    count = np.int64(0)  # a literal would compile `spread_angles` twice
     for piece in range(2):
         start, end = (first if piece == 0 else middle), (middle if piece == 0 else last)
         count = spread_angles(work, count, start, end, turn, min(a, b) / max(a, b), rule)

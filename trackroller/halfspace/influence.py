@@ -1,19 +1,19 @@
 """Compiled sums of the half-space kernels over a loaded grid.
 
-A traction field that is bilinear between the nodes of a grid (or uniform in cells around them) is a sum of corner
-loads: with S the corner function of `kernels.py`, the stress at a point is the sum over the corners of S times the
-second (first) differences of the nodal tractions, exactly. Nothing is integrated numerically and nothing is singular
-at z = 0. Far away, where those differences would cancel digits, the same load is a set of point forces with the
-right second moments.
+A traction field that is bilinear between the nodes of a grid, or uniform in cells around them, is a sum of corner
+loads. With the corner function S of `kernels.py`, the stress at a point is the sum over the corners of S times the
+second (first) differences of the nodal tractions. This sum is exact: it needs no numerical integration, and no term is
+singular at z = 0. Far away the differences would cancel digits; there the load is a set of point forces with the same
+second moments.
 
-The kernels are compiled on first use and cached on disk; the sums release the interpreter lock, so that
+The kernels are compiled at the first call and cached on disk. The sums release the interpreter lock, so that
 `stress.py` runs them in threads.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -23,24 +23,41 @@ from trackroller.halfspace.kernels import bilinear_corner, point_kernel, uniform
 
 Array = NDArray[np.float64]
 FAR = 100.0  # grid spacings from the load where corner sums and point forces agree best (1e-8 of the local stress)
+# Rows of stress parts (4, 6): the stress is PRESSURE + nu PRESSURE_NU + sign (SHEAR + nu SHEAR_NU).
+PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU = range(4)
+# Places in the 36 numbers of a kernel: six components for each load, first without and then with the factor nu.
+LOAD_X, LOAD_Y, LOAD_Z, NU = 0, 6, 12, 18
+POINT_FORCES, UNIFORM, BILINEAR = range(3)
 
 
-@dataclass(frozen=True)
-class CornerLoads:
-    """Loads at the corners (near) and nodes (far) of a grid, in units of `length` [mm].
+class Loads(NamedTuple):
+    """Places (m, 2) in grid spacings and their weights of q_x, q_y, p (m, 3) [MPa]; `kind` names the kernel."""
 
-    corners, nodes : (m, 2) coordinates / length;  near, far : (m, 3) weights of q_x, q_y, q_z [MPa];
-    box : x_min, x_max, y_min, y_max of the loaded rectangle / length;  bilinear : False for uniform cells.
+    places: Array
+    weights: Array
+    kind: int
+
+
+class Box(NamedTuple):
+    """Loaded rectangle in grid spacings."""
+
+    x_min: float
+    x_max: float
+    y_min: float
+    y_max: float
+
+
+class CornerLoads(NamedTuple):
+    """Loads of a grid at its corners (`near`) and at its nodes (`far`), in units of `length` [mm].
+
+    At points further than `reach` grid spacings from `box` the point forces `far` are used.
     """
 
     length: float
-    corners: Array
-    near: Array
-    nodes: Array
-    far: Array
-    box: Array
+    near: Loads
+    far: Loads
+    box: Box
     reach: float
-    bilinear: bool
 
 
 def _difference(q: Array, axis: int, order: int) -> Array:
@@ -50,22 +67,30 @@ def _difference(q: Array, axis: int, order: int) -> Array:
 
 
 def _moment_corrected(q: Array, axis: int, second_moment: float) -> Array:
-    """Nodal forces with the total, centre and second moment of the loads around the nodes (one node more each end)."""
+    """Return nodal forces with the total, centre and second moment of the loads; one node more at each end."""
     pad = [(0, 0)] * q.ndim
     pad[axis] = (1, 1)
     return np.pad(q, pad) + 0.5 * second_moment * _difference(q, axis, 2)
 
 
-def _kept(x: Array, y: Array, weights: Array) -> tuple[Array, Array]:
+def _kept(x: Array, y: Array, weights: Array, kind: int) -> Loads:
+    """Return the loads whose weights are not all zero."""
     used = np.any(weights != 0.0, axis=-1)
     yy, xx = np.meshgrid(y, x, indexing="ij")
-    return np.stack([xx[used], yy[used]], axis=-1), np.ascontiguousarray(weights[used])
+    return Loads(np.stack([xx[used], yy[used]], axis=-1), np.ascontiguousarray(weights[used]), kind)
 
 
 def corner_loads(x: Array, y: Array, tractions: Array, bilinear: bool = True) -> CornerLoads:
-    """Corner and far-field loads of tractions (ny, nx, 3) [MPa] on the regular grid x (nx,), y (ny,) [mm]."""
+    """Return the corner loads and point forces of tractions on a regular grid.
+
+    Parameters
+    ----------
+    x, y : node coordinates, (nx,) and (ny,) [mm]
+    tractions : q_x, q_y, p at the nodes, (ny, nx, 3) [MPa]
+    bilinear : True for bilinear interpolation between the nodes, False for uniform cells around them
+    """
     hx, hy = (x[-1] - x[0]) / (x.size - 1), (y[-1] - y[0]) / (y.size - 1)
-    length = max(hx, hy)
+    length = float(max(hx, hy))
     gx, gy = hx / length, hy / length
     order = 2 if bilinear else 1
     near = _difference(_difference(tractions, 0, order), 1, order)
@@ -78,73 +103,97 @@ def corner_loads(x: Array, y: Array, tractions: Array, bilinear: bool = True) ->
     at = [g * (np.arange(n + order) - half) for g, n in ((gx, x.size), (gy, y.size))]
     outer = [g * (np.arange(n + 2) - 1.0) for g, n in ((gx, x.size), (gy, y.size))]
     x0, y0 = x[0] / length, y[0] / length
-    corners, near = _kept(x0 + at[0], y0 + at[1], near)
-    nodes, far = _kept(x0 + outer[0], y0 + outer[1], far)
-    low, high = (corners.min(0), corners.max(0)) if corners.size else (np.zeros(2), np.zeros(2))
-    box = np.array([low[0], high[0], low[1], high[1]])
-    return CornerLoads(length, corners, near, nodes, far, box, FAR, bilinear)
+    corners = _kept(x0 + at[0], y0 + at[1], near, BILINEAR if bilinear else UNIFORM)
+    low, high = (corners.places.min(0), corners.places.max(0)) if corners.places.size else (np.zeros(2), np.zeros(2))
+    box = Box(*(float(v) for v in (low[0], high[0], low[1], high[1])))
+    return CornerLoads(length, corners, _kept(x0 + outer[0], y0 + outer[1], far, POINT_FORCES), box, FAR)
+
+
+@numba.njit(inline="always")
+def add_load(k, q_x, q_y, p, out):  # pragma: no cover (compiled)
+    """Add the stresses of tractions q_x, q_y, p with the kernel values `k` (36,) to the stress parts `out` (4, 6)."""
+    for c in range(6):
+        out[PRESSURE, c] += p * k[LOAD_Z + c]
+        out[PRESSURE_NU, c] += p * k[NU + LOAD_Z + c]
+        out[SHEAR, c] += q_x * k[LOAD_X + c] + q_y * k[LOAD_Y + c]
+        out[SHEAR_NU, c] += q_x * k[NU + LOAD_X + c] + q_y * k[NU + LOAD_Y + c]
 
 
 @numba.njit(cache=True, error_model="numpy", nogil=True)
-def _sum(kind, x, y, z, places, weights, out):  # pragma: no cover (compiled)
-    """Adds A (6) and B (6) of the loads at one point; kind 0 point forces, 1 uniform, 2 bilinear corners."""
-    for j in range(places.shape[0]):
-        dx, dy = x - places[j, 0], y - places[j, 1]
-        if kind == 2:
+def _sum(loads, x, y, z, out):  # pragma: no cover (compiled)
+    """Add the stress parts of loads at one point (in grid spacings) to `out` (4, 6)."""
+    for j in range(loads.places.shape[0]):
+        dx, dy = x - loads.places[j, 0], y - loads.places[j, 1]
+        if loads.kind == BILINEAR:
             k = bilinear_corner(dx, dy, z)
-        elif kind == 1:
+        elif loads.kind == UNIFORM:
             k = uniform_corner(dx, dy, z)
         else:
             k = point_kernel(dx, dy, z)
-        qx, qy, qz = weights[j, 0], weights[j, 1], weights[j, 2]
-        for c in range(12):
-            o = c if c < 6 else c + 12
-            out[c] += qx * k[o] + qy * k[o + 6] + qz * k[o + 12]
+        add_load(k, loads.weights[j, 0], loads.weights[j, 1], loads.weights[j, 2], out)
 
 
 @numba.njit(cache=True, error_model="numpy", nogil=True)
-def sum_points(points, corners, near, nodes, far, box, reach, kind, out):  # pragma: no cover (compiled)
-    """Stress parts at points (n, 3) (in the loads' unit of length) into out (n, 12): A then B of six components."""
+def _sum_points(loads, points, out):  # pragma: no cover (compiled)
+    """Add the stress parts of corner loads at points (n, 3) [mm] to `out` (n, 4, 6)."""
+    box = loads.box
     for i in range(points.shape[0]):
-        x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        dx = max(box[0] - x, 0.0, x - box[1])
-        dy = max(box[2] - y, 0.0, y - box[3])
-        if dx * dx + dy * dy + z * z > reach * reach:
-            _sum(0, x, y, z, nodes, far, out[i])
+        x, y, z = points[i, 0] / loads.length, points[i, 1] / loads.length, points[i, 2] / loads.length
+        dx = max(box.x_min - x, 0.0, x - box.x_max)
+        dy = max(box.y_min - y, 0.0, y - box.y_max)
+        if dx * dx + dy * dy + z * z > loads.reach * loads.reach:
+            _sum(loads.far, x, y, z, out[i])
         else:
-            _sum(kind, x, y, z, corners, near, out[i])
+            _sum(loads.near, x, y, z, out[i])
+
+
+def stress_parts(loads: CornerLoads, points: Array) -> Array:
+    """Return the stress parts at points below a grid, as `stress.body_stress` takes them.
+
+    Parameters
+    ----------
+    loads : see `corner_loads`
+    points : (n, 3) coordinates, z >= 0 [mm]
+
+    Returns
+    -------
+    (n, 4, 6) array [MPa]
+    """
+    out = np.zeros((len(points), 4, 6))
+    _sum_points(loads, np.ascontiguousarray(points), out)
+    return out
 
 
 @numba.njit(cache=True, error_model="numpy", nogil=True)
 def corner_table(x, y, z, poisson_ratio):  # pragma: no cover (compiled)
-    """`bilinear_corner` as A + nu B at every pair of y (ny,) and x (nx,), depth z: (18, ny, nx), in grid units."""
-    table = np.empty((18, y.size, x.size))
+    """Return `bilinear_corner` as A + nu B at every pair of y (ny,) and x (nx,), depth z: (18, ny, nx), in spacings."""
+    table = np.empty((NU, y.size, x.size))
     for j in range(y.size):
         for i in range(x.size):
             k = bilinear_corner(x[i], y[j], z)
-            for c in range(18):
-                table[c, j, i] = k[c] + poisson_ratio * k[c + 18]
+            for c in range(NU):
+                table[c, j, i] = k[c] + poisson_ratio * k[c + NU]
     return table
 
 
-def stress_parts(loads: CornerLoads, points: Array) -> Array:
-    """Stress of `loads` at points (n, 3) [mm] as (n, 2, 6): sigma = [:, 0] + nu [:, 1] [MPa]."""
-    out = np.zeros((points.shape[0], 12))
-    kind = 2 if loads.bilinear else 1
-    sum_points(
-        points / loads.length, loads.corners, loads.near, loads.nodes, loads.far, loads.box, loads.reach, kind, out
-    )
-    return out.reshape(-1, 2, 6)
-
-
 def hat_influence(hx: float, hy: float, nx: int, ny: int, depth: float, poisson_ratio: float) -> Iterator[Array]:
-    """Stress of unit hat loads (bilinear, one node) at node offsets -(n-1)..n-1 and `depth` [mm].
+    """Yield the stresses of unit hat loads (bilinear, one node) for the loads q_x, q_y, p in turn.
 
-    Yields (6, 2 ny - 1, 2 nx - 1) for the loads q_x, q_y, q_z in turn [MPa per MPa]; one at a time saves memory.
+    One load at a time saves memory.
+
+    Parameters
+    ----------
+    hx, hy : grid spacings [mm]
+    nx, ny : numbers of nodes
+    depth : z >= 0 [mm]
+    poisson_ratio : of the body [1]
+
+    Yields
+    ------
+    (6, 2 ny - 1, 2 nx - 1) array at node offsets -(n - 1) to n - 1 [1]
     """
     length = max(hx, hy)
     gx, gy = hx / length, hy / length
     table = corner_table(gx * np.arange(-nx, nx + 1), gy * np.arange(-ny, ny + 1), depth / length, poisson_ratio)
-    for load in range(3):
-        corners = table[6 * load : 6 * load + 6]
-        yield np.diff(np.diff(corners, n=2, axis=1), n=2, axis=2) / (gx * gy)
+    for load in (LOAD_X, LOAD_Y, LOAD_Z):
+        yield np.diff(np.diff(table[load : load + 6], n=2, axis=1), n=2, axis=2) / (gx * gy)

@@ -9,8 +9,6 @@ import math
 
 import numpy as np
 
-from trackroller.halfspace.ellipse_kernels import COSINE, FIXED, FRICTION, K0, K1, K2, POLE_X, RADIUS, SHIFT, SINE, A, B
-
 
 def _scan_points() -> np.ndarray:
     """Points (rho cos, rho sin, depth) in normalised coordinates."""
@@ -44,13 +42,13 @@ def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
     The sharp fold of the slip carries ridges of stress. In `slender` patches the slip turns within a fraction of the
     long axis, so lines on both sides of the fold and across the pole are looked at as well.
     """
-    pole = np.clip(patches[:, POLE_X] / patches[:, A], -1.0, 1.0)[:, None]
+    pole = np.clip(patches["pole_x"] / patches["a"], -1.0, 1.0)[:, None]
     share = np.array([0.15, 0.4, 0.6, 0.85])
     x = np.concatenate([pole - share * (1.0 + pole), pole + share * (1.0 - pole)], axis=1)
     u = np.stack([x, _fold(patches, x)], axis=2)
     if slender:
         u = np.concatenate(
-            [u, *_beside_turn(u[:, : 2 * share.size], pole, patches[:, A, None], patches[:, B, None])], axis=1
+            [u, *_beside_turn(u[:, : 2 * share.size], pole, patches["a"][:, None], patches["b"][:, None])], axis=1
         )
     u /= np.maximum(np.hypot(u[..., 0], u[..., 1]), 1.0)[..., None]
     turning = np.concatenate([u, np.zeros((*u.shape[:2], 1))], axis=2)
@@ -59,9 +57,9 @@ def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
 
 def _fold(patches: np.ndarray, x: np.ndarray) -> np.ndarray:
     """y where the lateral slip vanishes at x (n, m)."""
-    left, right = patches[:, K1, None] * (x + 1.0), patches[:, K2, None] * (x - 1.0)
-    bend = np.where(x * patches[:, A, None] < patches[:, POLE_X, None], left, right)
-    return (patches[:, K0, None] + bend * patches[:, A, None]) / patches[:, B, None]
+    left, right = patches["k1"][:, None] * (x + 1.0), patches["k2"][:, None] * (x - 1.0)
+    bend = np.where(x * patches["a"][:, None] < patches["pole_x"][:, None], left, right)
+    return (patches["k0"][:, None] + bend * patches["a"][:, None]) / patches["b"][:, None]
 
 
 def spike(patches: np.ndarray) -> np.ndarray:
@@ -71,14 +69,14 @@ def spike(patches: np.ndarray) -> np.ndarray:
     order. Where both slips vanish under pressure the stress of the model grows about that point as a logarithm of
     the distance, times this friction.
     """
-    sine, cosine, radius, shift = (patches[:, k] for k in (SINE, COSINE, RADIUS, SHIFT))
+    sine, cosine, radius, shift = (patches[name] for name in ("sine", "cosine", "radius", "shift"))
     rise = radius * sine
     root = np.sqrt(np.maximum(rise * rise + shift * (2.0 * radius * cosine - shift), 0.0))
-    x = np.stack([root - rise, -root - rise], axis=1) / (cosine * patches[:, A])[:, None]
-    apart = np.abs(x - (patches[:, POLE_X] / patches[:, A])[:, None])
+    x = np.stack([root - rise, -root - rise], axis=1) / (cosine * patches["a"])[:, None]
+    apart = np.abs(x - (patches["pole_x"] / patches["a"])[:, None])
     inside = np.maximum(1.0 - x * x - _fold(patches, x) ** 2, 0.0)
     share = np.clip((apart - SPLIT[0]) / (SPLIT[1] - SPLIT[0]), 0.0, 1.0)
-    return np.where(patches[:, FIXED] == 0.0, patches[:, FRICTION] * (share * np.sqrt(inside)).max(axis=1), 0.0)
+    return np.where(patches["fixed"] == 0.0, patches["friction"] * (share * np.sqrt(inside)).max(axis=1), 0.0)
 
 
 def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarray) -> list[np.ndarray]:
@@ -99,8 +97,8 @@ def along_turn(patch: np.ndarray, u: np.ndarray) -> np.ndarray:
 
     In a patch long in x that is the direction of y, in one long in y that of the fold.
     """
-    slope = np.where(u[:, 0] * patch[:, A] < patch[:, POLE_X], patch[:, K1], patch[:, K2]) * patch[:, A] / patch[:, B]
-    wide = patch[:, A] > patch[:, B]
+    slope = np.where(u[:, 0] * patch["a"] < patch["pole_x"], patch["k1"], patch["k2"]) * patch["a"] / patch["b"]
+    wide = patch["a"] > patch["b"]
     length = np.sqrt(1.0 + slope * slope)
     return np.stack([np.where(wide, 0.0, 1.0 / length), np.where(wide, 1.0, slope / length)], axis=1)
 

@@ -1,14 +1,16 @@
-"""Stresses in an elastic half-space under any tractions: the public entry of the half-space part.
+"""Stresses in an elastic half-space under any tractions, and the stress measures of the whole package.
 
-Convention: z points into the body; tractions act ON the body, `pressure` > 0 presses (sigma_z = -p at the surface),
-`shear_lateral` along +x and `shear_rolling` along +y (tau_xz = -q_x, tau_yz = -q_y at the surface).
-Stresses come as a last axis of six in the order of COMPONENTS. Young's modulus does not matter.
+Frame: x lateral, y in the rolling direction, z into the body. Kalker and CONTACT use x for the rolling direction.
+Tractions act on the body: `pressure` > 0 presses (sigma_z = -p at the surface), `shear_lateral` acts along +x and
+`shear_rolling` along +y (tau_xz = -q_x, tau_yz = -q_y at the surface).
+Stresses have a last axis of six in the order of COMPONENTS. They do not depend on Young's modulus.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import fft
 
 from trackroller.errors import InputError
 from trackroller.halfspace import influence
@@ -17,7 +19,8 @@ from trackroller.numerics.threads import share_rows
 Array = NDArray[np.float64]
 COMPONENTS = ("sigma_x", "sigma_y", "sigma_z", "tau_xy", "tau_yz", "tau_xz")
 INTERPOLATIONS = ("bilinear", "constant")
-_CHUNK = 16384  # points per piece of work: a few MB each, whatever the number of points
+FRICTION_SIGNS = (1.0, -1.0)  # of the shear on roller and guide, which is opposite on the two bodies
+_CHUNK = 16384  # points in a piece of work; this bounds the memory to a few MB for each thread
 
 
 def _axis(field: str, values: ArrayLike) -> Array:
@@ -62,11 +65,11 @@ def stress_from_tractions(
     poisson_ratio: float = 0.3,
     interpolation: str = "bilinear",
 ) -> Array:
-    """Stresses at any points under tractions sampled on a regular grid.
+    """Compute stresses at any points under tractions sampled on a regular grid.
 
     Exact half-space solution (Boussinesq-Cerruti potentials, eqs. (1)-(5); Love 1929, Kalker 1990) for tractions
-    interpolated between the nodes, right up to z = 0 and the edge of the patch. Cost: about 0.2 microseconds per
-    point and loaded node and thread; `stress_on_grid` is far cheaper for whole planes.
+    interpolated between the nodes, including z = 0 and the edge of the patch. The cost grows with the number of points
+    times the number of loaded nodes; `stress_on_grid` is far cheaper for whole planes.
 
     Parameters
     ----------
@@ -76,7 +79,7 @@ def stress_from_tractions(
     poisson_ratio : of the body [-], 0 to 0.5
     interpolation : "bilinear" between nodes, falling to zero within one spacing outside the grid (all stresses
         are continuous and finite); "constant" in cells centred on the nodes (on the very edge of a cell the
-        in-plane stresses grow without bound; there the logarithm stops at 1e-10 spacings)
+        in-plane stresses grow without bound; there the logarithm is cut off at 1e-10 spacings)
 
     Returns
     -------
@@ -86,7 +89,9 @@ def stress_from_tractions(
     ------
     InputError : uneven axes, wrong shapes, NaN, z < 0, unknown interpolation
 
-    Valid for any tractions; the error against a smooth field is that of the interpolation, O(h^1.5) for a Hertzian
+    Notes
+    -----
+    Valid for any tractions. The error against a smooth field is that of the interpolation, O(h^1.5) for a Hertzian
     edge.
     """
     xa, ya = _axis("x", x), _axis("y", y)
@@ -103,8 +108,7 @@ def stress_from_tractions(
     out = np.empty((flat.shape[0], 6))
 
     def work(start: int, stop: int) -> None:
-        parts = influence.stress_parts(loads, flat[start:stop])
-        out[start:stop] = parts[:, 0] + poisson_ratio * parts[:, 1]
+        out[start:stop] = body_stress(influence.stress_parts(loads, flat[start:stop]), poisson_ratio, 1.0)
 
     share_rows(work, flat.shape[0], 64, _CHUNK)
     return out.reshape((*at.shape[:-1], 6))
@@ -119,17 +123,33 @@ def stress_on_grid(
     depths: ArrayLike,
     poisson_ratio: float = 0.3,
 ) -> Array:
-    """Stresses below every node of the tractions' own grid, by fast convolution.
+    """Compute stresses below every node of the grid of the tractions, by fast convolution.
 
-    The same field as `stress_from_tractions` (bilinear) at z = `depths` under the nodes, as a discrete convolution
-    with the influence of one node's hat load (zero-padded FFT, so not periodic; cf. Liu & Wang 2002).
+    The field is that of `stress_from_tractions` with bilinear interpolation. It is a discrete convolution of the
+    tractions with the influence of one node's hat load; zero padding prevents periodic images.
 
-    Parameters as there; depths : (nz,) [mm]. Returns (nz, ny, nx, 6) [MPa].
-    Memory: about 3 kB per node of one plane besides the result (500 x 500 nodes stay under 1 GB); time about 10
-    microseconds per node and plane. Rounding grows with (patch / spacing)^2: 1e-11 of the tractions at 200 nodes.
+    Parameters
+    ----------
+    x, y, pressure, shear_lateral, shear_rolling, poisson_ratio : as in `stress_from_tractions`
+    depths : (nz,) depths z >= 0 [mm]
+
+    Returns
+    -------
+    (nz, ny, nx, 6) stresses in the order of COMPONENTS [MPa]
+
+    Raises
+    ------
+    InputError : uneven axes, wrong shapes, NaN, z < 0
+
+    Notes
+    -----
+    Needs about 3 kB of memory per node of one plane besides the result. Rounding errors grow with (patch / spacing)^2:
+    1e-11 of the tractions at 200 nodes.
+
+    References
+    ----------
+    Liu & Wang 2002, J. Tribology 124, 36
     """
-    from scipy import fft
-
     xa, ya = _axis("x", x), _axis("y", y)
     q = _tractions(xa, ya, pressure, shear_lateral, shear_rolling)
     z = np.atleast_1d(np.asarray(depths, dtype=float))
@@ -152,21 +172,53 @@ def stress_on_grid(
     return out
 
 
+def body_stress(parts: Array, poisson_ratio: ArrayLike, sign: ArrayLike) -> Array:
+    """Return the stress of one body from the stress parts that serve both bodies.
+
+    Parameters
+    ----------
+    parts : (..., 4, 6) stresses of the pressure A_p, B_p and of the shear A_q, B_q
+    poisson_ratio : nu of the body, (...) or scalar [1]
+    sign : +1 if the shear acts on the body as given (roller), -1 if it acts the other way (guide), (...) or scalar
+
+    Returns
+    -------
+    (..., 6) stresses A_p + nu B_p + sign (A_q + nu B_q)
+    """
+    nu, s = (np.asarray(v, dtype=float)[..., None] for v in (poisson_ratio, sign))
+    pressed, pressed_nu, sheared, sheared_nu = np.moveaxis(parts, -2, 0)
+    return pressed + nu * pressed_nu + s * (sheared + nu * sheared_nu)
+
+
 def von_mises(stress: ArrayLike) -> Array:
-    """Equivalent stress of eq. (6), sqrt(3 J2). stress (..., 6) [MPa]; returns (...) [MPa]."""
+    """Return the equivalent stress of eq. (6), sqrt(3 J2).
+
+    Parameters
+    ----------
+    stress : (..., 6) components in the order of COMPONENTS [MPa]
+
+    Returns
+    -------
+    (...) array [MPa]
+
+    Examples
+    --------
+    >>> float(von_mises([-300.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    300.0
+    """
     sx, sy, sz, txy, tyz, txz = np.moveaxis(np.asarray(stress, dtype=float), -1, 0)
     normal = (sx - sy) ** 2 + (sz - sx) ** 2 + (sy - sz) ** 2
-    return np.sqrt(0.5 * normal + 3.0 * (txy**2 + txz**2 + tyz**2))
+    return np.sqrt(0.5 * normal + 3.0 * (txy**2 + tyz**2 + txz**2))
 
 
 def principal_stresses(stress: ArrayLike) -> Array:
-    """Principal stresses, largest first. stress (..., 6) [MPa]; returns (..., 3) [MPa]."""
+    """Return the principal stresses (..., 3), largest first, of stresses (..., 6) [MPa]."""
     s = np.asarray(stress, dtype=float)
     tensor = s[..., [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
     return np.linalg.eigvalsh(tensor)[..., ::-1]
 
 
 def max_shear(stress: ArrayLike) -> Array:
-    """Largest shear stress, half the largest minus the smallest principal stress. (..., 6) -> (...) [MPa]."""
+    """Return the largest shear stress (...), half the largest less the smallest principal stress, of (..., 6) [MPa]."""
     principal = principal_stresses(stress)
     return 0.5 * (principal[..., 0] - principal[..., 2])

@@ -10,7 +10,7 @@ import numpy as np
 
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import FAILED, ROLLING
-from trackroller.roller.geometry import curvatures, rolling_radius
+from trackroller.roller.geometry import contact_geometry
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,10 +65,8 @@ def _is_slender(table: CaseTable, i: int) -> bool:
     from trackroller.contact.linear import LARGEST_RATIO
 
     one = table.take(np.array([i]))
-    alpha = np.deg2rad(one.contact_angle)
-    radius = rolling_radius(one.axis_distance, one.guide_profile_radius, alpha)
-    bent = curvatures(one.roller_profile_radius, one.guide_profile_radius, one.guide_curve_radius, radius, alpha)
-    ellipse = shape(*bent, np.ones(1))
+    geometry = contact_geometry(vars(one))
+    ellipse = shape(geometry.curvature_lateral, geometry.curvature_rolling, np.ones(1))
     ratio = float(ellipse.lateral[0] / ellipse.rolling[0])
     return max(ratio, 1.0 / ratio) > 0.99 * LARGEST_RATIO
 

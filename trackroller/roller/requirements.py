@@ -61,22 +61,30 @@ def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Patches whose tractions have one direction or are none, by their ellipticity alone, and their length [mm].
+    """Return patches with one traction direction, or without friction, by their ellipticity alone, and their length.
 
-    Their stresses over p_max depend on b/a, on mu and on the direction only. Rows of `ellipse.patch_rows` (n, 12); the
-    others are left as they are, with length 1. The ratio is taken to 13 digits, so that patches of different
-    loads have the same.
+    Their stresses over p_max depend on b/a, mu and the direction only. The other patches stay as they are, with
+    length 1. The ratio is rounded to 13 digits, so that patches of different loads have the same one.
+
+    Parameters
+    ----------
+    patches : records of `ellipse.patch_rows`, (n,)
+
+    Returns
+    -------
+    Records (n,) and lengths (n,) [mm]
     """
-    plain = (patches[:, 2] == 0.0) | (patches[:, 7] != 0.0)
-    length = np.where(plain, patches[:, 0], 1.0)
-    if not plain.any():
-        return patches, length
+    plain = (patches["friction"] == 0.0) | (patches["fixed"] != 0.0)
+    length = np.where(plain, patches["a"], 1.0)
     out = patches.copy()
-    ratio = patches[plain, 1] / patches[plain, 0]
+    ratio = patches["b"] / patches["a"]
     step = 10.0 ** (np.floor(np.log10(ratio)) - 12.0)
-    out[plain] = [1.0, 1.0, 0.0, 0.5, np.sqrt(0.75), 1e3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]  # what they do not depend on
-    out[plain, 1] = np.rint(ratio / step) * step
-    out[plain, 2], out[plain, 7] = patches[plain, 2], patches[plain, 7]
+    unit = np.zeros(1, patches.dtype)  # the slip, on which the stresses do not depend
+    unit["a"], unit["sine"], unit["cosine"], unit["radius"] = 1.0, 0.5, np.sqrt(0.75), 1e3
+    out[plain] = unit
+    out["b"][plain] = (np.rint(ratio / step) * step)[plain]
+    for name in ("friction", "fixed"):
+        out[name][plain] = patches[name][plain]
     return out, length
 
 

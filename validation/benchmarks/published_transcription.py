@@ -183,13 +183,13 @@ def peak_by_differential_evolution(contact: Contact, seed: int = 1, style: str =
 def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
     """How many evaluations the search takes, counted on the same field evaluated with our own kernels (quick)."""
     from trackroller.halfspace.influence import corner_loads, stress_parts
-    from trackroller.halfspace.stress import von_mises
+    from trackroller.halfspace.stress import body_stress, von_mises
 
     loads = corner_loads(contact.x, contact.y, np.stack([contact.q_x, contact.q_y, contact.q_z], -1))
 
     def evaluate(point):
         parts = stress_parts(loads, np.asarray(point, dtype=float)[None])[0]
-        return float(von_mises(parts[0] + contact.poisson_ratio * parts[1]))
+        return float(von_mises(body_stress(parts, contact.poisson_ratio, 1.0)))
 
     return int(peak_by_differential_evolution(contact, seed, evaluate=evaluate)["evaluations"])
 

@@ -32,8 +32,9 @@ from trackroller.contact.table import LARGEST_COUPLING
 from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.choice.probe import Probe, force_error, probe
 from trackroller.roller.equilibrium import ROLLING
-from trackroller.roller.geometry import curvatures, rolling_radius
+from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.stages.case import split_pole
+from trackroller.roller.stages.models import bodies
 
 if TYPE_CHECKING:
     from trackroller.roller.blocks import Block
@@ -59,20 +60,12 @@ PEAK_FEATURES = ("spin", "friction", "ellipticity", "angle", "arc", "coupling") 
 
 def features(table: CaseTable) -> np.ndarray:
     """The numbers that the error depends on, shape (n, len(FEATURES)); NaN or inf without friction or patch."""
-    alpha = np.deg2rad(table.contact_angle)
+    alpha, r_a, k_x, k_y = contact_geometry(vars(table))
     sine, cosine, mu = np.sin(alpha), np.cos(alpha), table.friction_coefficient
-    r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, alpha)
-    k_x, k_y = curvatures(table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, r_a, alpha)
-    bodies = (
-        table.roller.youngs_modulus,
-        table.roller.poisson_ratio,
-        table.guide.youngs_modulus,
-        table.guide.poisson_ratio,
-    )
-    elastic = Elastic.of_pair(*bodies)
+    elastic = Elastic.of_pair(*bodies(table))
     with np.errstate(divide="ignore", invalid="ignore"):
         normal = np.abs(table.radial_force) / (2.0 * cosine)
-        patch: Ellipse = exact_shape(k_x, k_y, contact_modulus(*bodies)).at(normal)
+        patch: Ellipse = exact_shape(k_x, k_y, contact_modulus(*bodies(table))).at(normal)
         a, b = patch.semi_axis_lateral, patch.semi_axis_rolling
         g, square = b / a, a * b
         c11 = creepage_coefficients(np.clip(np.nan_to_num(g, nan=1.0), 0.02, 50.0), elastic.poisson_ratio).c11

@@ -1,6 +1,6 @@
-"""The stages of a solution up to the tractions: each takes the `Results` so far and adds its own quantities.
+"""The stages of a solution up to the tractions; each stage takes the `Results` so far and adds its quantities.
 
-Those that look for stresses stand in `stages.stress`, what each case makes of them in `stages.case`.
+The stages that compute stresses stand in `stages.stress`; friction power, life and warnings stand in `stages.case`.
 """
 
 from __future__ import annotations
@@ -9,59 +9,42 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import ContactModel, Elastic
+from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import law_of
-from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import contact_modulus, shape
-from trackroller.contact.models import contact_model
 from trackroller.contact.slip import turning_of
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
-from trackroller.roller.dataset import validity_bit
-from trackroller.roller.geometry import curvatures, lever_arms, rolling_radius
+from trackroller.roller.geometry import contact_geometry, lever_arms
 from trackroller.roller.options import Options
 from trackroller.roller.requirements import Mirror, is_frictionless, is_mirror_symmetric
-from trackroller.roller.stages import grid as stages_grid
+from trackroller.roller.stages.models import bodies, model_of
 from trackroller.roller.stages.scene import Results, Scene, surface_tractions
 
 SIGN_CONVENTIONS = (
     "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
     "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"
 )
+MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
 
 
 def prepare(table: CaseTable, options: Options) -> Scene:
-    """Curvatures, Hertz shape and loads of a block."""
-    alpha = np.deg2rad(table.contact_angle)
-    r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, alpha)
-    k_x, k_y = curvatures(table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, r_a, alpha)
-    bodies = (
-        table.roller.youngs_modulus,
-        table.roller.poisson_ratio,
-        table.guide.youngs_modulus,
-        table.guide.poisson_ratio,
-    )
-    hertz = shape(k_x, k_y, contact_modulus(*bodies), options.hertz)
+    """Compute curvatures, Hertz shape, contact model and loads of a block.
+
+    Parameters
+    ----------
+    table : n cases that share their friction law
+    options : contact model, normal problem, slip terms, accuracy and shortcuts
+    """
+    alpha, r_a, k_x, k_y = contact_geometry(vars(table))
+    hertz = shape(k_x, k_y, contact_modulus(*bodies(table)), options.hertz)
     turning = None
     if "curve" in options.slip_terms:
         turning = turning_of(table.guide_curve_radius, table.guide_profile_radius, np.cos(alpha))
-        # without a turning no solution is sought
+        # a contact beyond the axis of a concave guide has no turning: a shape of NaN leaves the row unsolved
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
-    # the cases of a group share their law
-    law, travel = law_of(table.friction_law[0] if len(table) else None), table.velocity * (1000.0 / 60.0)
-    model: ContactModel
-    if options.normal == "halfspace":
-        model = stages_grid.halfspace_model(table, options, r_a, law, travel)
-    else:
-        model = contact_model(
-            options.contact_model,
-            options.settings,
-            Elastic.of_pair(*bodies),
-            options.spin_model,
-            law,
-            travel,
-            options.slip_terms,
-        )
+    law = law_of(table.friction_law[0] if len(table) else None)
+    model = model_of(table, options, r_a, law, table.velocity * MM_PER_S)
     loads = eq.Loads(
         table.radial_force,
         table.axial_force,
@@ -82,111 +65,115 @@ def prepare(table: CaseTable, options: Options) -> Scene:
 
 
 def forces(results: Results) -> None:
-    """Forces of both contacts and the resulting moments, eqs (8)-(14)."""
+    """Add the forces of both contacts and the resulting moments, eqs (8)-(14).
+
+    Where the resultant of the pressure lies beside the nominal point of contact, its offset adds F_N x_p to the tilting
+    moment, and in full slip F_A x_p is the spin moment.
+    """
     f, b, loads, v = results.balance.forces, results.balance, results.scene.loads, results.values
-    table = results.scene.table
+    offset = results.by_contact(results.patch.pressure_centre)
+    slides = (results.regime == eq.FULL_SLIP)[:, None]
     v["normal_force"], v["lateral_force"] = b.normal_force, f.lateral_force
-    v["driving_force"], v["spin_moment"] = f.driving_force, f.spin_moment
+    v["driving_force"] = f.driving_force
+    v["spin_moment"] = np.where(slides, offset * f.driving_force, f.spin_moment)
     v["rolling_radius_shift"], v["slip"] = b.shift, b.shift / loads.rolling_radius
-    sine, cosine = np.sin(loads.contact_angle), np.cos(loads.contact_angle)
-    h_n, h_t = lever_arms(table.axis_distance, table.guide_profile_radius, loads.contact_angle)
+    h_n, h_t = lever_arms(results.scene.table.axis_distance, loads.guide_profile_radius, loads.contact_angle)
     m, a, t, n = f.spin_moment, f.driving_force, f.lateral_force, b.normal_force
-    v["drilling_torque"] = (m[:, 0] - m[:, 1]) * sine
-    v["tilting_moment"] = h_n * (n[:, 0] - n[:, 1]) + h_t * (t[:, 0] + t[:, 1])
-    v["yaw_moment"] = -((m[:, 0] + m[:, 1]) * cosine + (a[:, 0] - a[:, 1]) * loads.rolling_radius * sine)
+    v["drilling_torque"] = (m[:, 0] - m[:, 1]) * loads.sine
+    tilting = h_n * (n[:, 0] - n[:, 1]) + h_t * (t[:, 0] + t[:, 1])
+    v["tilting_moment"] = tilting + (n * offset).sum(axis=1)
+    v["yaw_moment"] = -((m[:, 0] + m[:, 1]) * loads.cosine + (a[:, 0] - a[:, 1]) * loads.rolling_radius * loads.sine)
     v["transmitted_force"] = a[:, 0] + a[:, 1]
-    if isinstance(results.ellipse, GridPatch):
-        stages_grid.shift_of_pressure(results, results.ellipse)
 
 
 def contact(results: Results, options: Options) -> None:
-    """Ellipse, pressure, shear and spin pole of both contacts."""
-    v, e = results.values, results.ellipse
-    v["semi_axis_lateral"] = results.by_contact(e.semi_axis_lateral)
-    v["semi_axis_rolling"] = results.by_contact(e.semi_axis_rolling)
-    v["max_pressure"] = results.by_contact(e.max_pressure)
-    v["max_shear"] = results.by_contact(results.friction * e.max_pressure)  # where all slides under a constant law
-    if isinstance(e, GridPatch):
-        stages_grid.contact(results, e, validity_bit("conformal"))
-    else:
-        v["patch_area"] = np.pi * v["semi_axis_lateral"] * v["semi_axis_rolling"]
-        v["pressure_centre"] = 0.0 * v["semi_axis_lateral"]
-    pole_x = results.slip.pole_lateral
-    with np.errstate(invalid="ignore"):
-        ratio = (pole_x - (e.centre if isinstance(e, GridPatch) else 0.0)) / e.semi_axis_lateral
-        pole_y = np.where(np.abs(ratio) < 1, -e.semi_axis_rolling * np.sqrt(np.maximum(1 - ratio**2, 0)), 0.0)
-    if options.spin_model == "concentric":
-        pole_y = np.zeros_like(pole_y)
-    pole_y = np.where(np.isfinite(pole_x), pole_y, np.nan)
+    """Add extent, pressure, shear, adhesion area and spin pole of both contacts."""
+    v, patch, model = results.values, results.patch, results.scene.model
+    wide, long = patch.half_extents
+    v["semi_axis_lateral"], v["semi_axis_rolling"] = results.by_contact(wide), results.by_contact(long)
+    v["max_pressure"] = results.by_contact(patch.max_pressure)
+    v["patch_area"] = results.by_contact(patch.area)
+    v["pressure_centre"] = results.by_contact(patch.pressure_centre)
+    results.flag("conformal", results.by_contact(patch.reaches_edge).any(axis=1))
+    pole_x, pole_y = _spin_pole(results, options)
     v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
-    if results.scene.model.full_sliding or results.scene.frictionless:
+    # mu p_max is exact where the whole patch slides under a constant friction law, and a bound elsewhere
+    v["max_shear"] = results.by_contact(results.friction * patch.max_pressure)
+    if model.full_sliding or results.scene.frictionless:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
     elif "contact" in options.outputs or "max_shear" in (options.stop_if or ""):
         v["stick_area_fraction"] = results.full(_stick_share(results))
-        if results.scene.model.knows_tractions:  # a table knows the bound of the shear only
+        if model.knows_tractions:
             v["max_shear"] = results.full(_largest_shear(results))
 
 
-def steep_friction(results: Results, options: Options) -> None:
-    """Marks cases with mu p_max v max(-df/dv)/G above 1: friction falls on the slip that elasticity gives way by.
+def _spin_pole(results: Results, options: Options) -> tuple[np.ndarray, np.ndarray]:
+    """Return the spin pole x, y [mm] of the model's slip field, (2 n,), eqs (22), (23)."""
+    patch, pole_x = results.patch, results.slip.pole_lateral
+    with np.errstate(invalid="ignore"):
+        ratio = (pole_x - patch.centre) / patch.semi_axis_lateral
+        pole_y = np.where(np.abs(ratio) < 1, -patch.semi_axis_rolling * np.sqrt(np.maximum(1 - ratio**2, 0)), 0.0)
+    if options.spin_model == "concentric":
+        pole_y = np.zeros_like(pole_y)
+    return pole_x, np.where(np.isfinite(pole_x), pole_y, np.nan)
 
-    An element under traction tau moves by about tau/G of the travel; where friction falls with that by more than the
-    traction itself, its state is not unique. That is why most rollers without a balance have none: the pressure of
-    those is judged by their forces without friction.
+
+def steep_friction(results: Results, options: Options) -> None:
+    """Flag cases with mu p_max v max(-df/dv)/G > 1: their friction law falls too steeply for a unique solution.
+
+    An element under the traction tau moves elastically by about tau/G of the distance travelled. If this motion lowers
+    the friction by more than the traction itself, the state of the element is not unique, and most rollers without a
+    balance fail for this reason. A failed roller has no pressure; its forces without friction give an estimate.
     """
     scene = results.scene
     table, loads = scene.table, scene.loads
     if not loads.falling or options.contact_model == "sliding":
         return
-    r, g = table.roller, table.guide
-    shear = Elastic.of_pair(r.youngs_modulus, r.poisson_ratio, g.youngs_modulus, g.poisson_ratio).shear_modulus
-    fall = law_of(table.friction_law[0]).steepest_fall * table.velocity * (1000.0 / 60.0)
-    plain = 0.5 * (
-        np.abs(loads.radial_force) / np.cos(loads.contact_angle)
-        + np.abs(loads.axial_force) / np.sin(loads.contact_angle)
-    )
+    shear_modulus = Elastic.of_pair(*bodies(table)).shear_modulus
+    fall = law_of(table.friction_law[0]).steepest_fall * table.velocity * MM_PER_S
+    plain = 0.5 * (np.abs(loads.radial_force) / loads.cosine + np.abs(loads.axial_force) / loads.sine)
     pressure = np.where(
         results.regime == eq.FAILED,
         loads.shape.pressure * np.cbrt(plain),
         np.max(results.values["max_pressure"], axis=1),
     )
     with np.errstate(invalid="ignore"):
-        steep = loads.friction * pressure * fall / shear > 1.0
-    results.bits |= np.where(steep, validity_bit("steep_friction"), 0).astype(np.int32)
+        results.flag("steep_friction", loads.friction * pressure * fall / shear_modulus > 1.0)
 
 
 def _stick_share(results: Results) -> np.ndarray:
-    """Share of each existing patch that sticks; a table of the contact model knows it without tractions."""
+    """Return the share of each existing patch that sticks [1]; a tabulated model knows it without tractions."""
     model, good = results.scene.model, results.good
     if model.knows_tractions:
         return surface_tractions(results).stick_share
-    rolls = results.slides_along[good] == 0
-    slip = replace(results.slip, shift=np.where(np.isfinite(results.slip.shift), results.slip.shift, 0.0)).take(good)
-    share = model.stick(results.ellipse.take(good), slip, results.friction[good], results.rows[good])
-    return np.where(rolls, share, 0.0)
+    patch, slip, friction, rows = results.of(good)
+    slip = replace(slip, shift=np.where(np.isfinite(slip.shift), slip.shift, 0.0))
+    share = model.stick(patch, slip, friction, rows)
+    return np.where(results.slides_along[good] == 0, share, 0.0)
 
 
 def _largest_shear(results: Results) -> np.ndarray:
-    """Largest |tau| of each existing patch [MPa]; under an ellipse the grid misses it as it misses the pressure's."""
+    """Return the largest |tau| of each existing patch [MPa].
+
+    Under an ellipse the grid misses the largest shear as it misses the largest pressure, which is known: the ratio of
+    the two pressures corrects the shear.
+    """
     t = surface_tractions(results)
     largest = np.max(np.hypot(t.shear_lateral, t.shear_rolling), axis=(1, 2))
-    if isinstance(results.ellipse, GridPatch):
+    if not results.patch.is_hertzian:
         return largest
-    return largest * results.ellipse.max_pressure[results.good] / np.max(t.pressure, axis=(1, 2))
+    return largest * results.patch.max_pressure[results.good] / np.max(t.pressure, axis=(1, 2))
 
 
 def friction_work(results: Results, options: Options) -> None:
-    """Friction energy int |tau| |v| per distance travelled, and the balance of energy."""
+    """Add the friction energy int |tau| |v| per distance travelled, and the energy balance."""
     per_distance, pressed = np.full(2 * results.scene.n, np.nan), np.zeros(2 * results.scene.n)
     rolls = results.good & (results.slides_along == 0)
     if results.scene.frictionless:
         per_distance[rolls] = 0.0
     elif rolls.any():
         mirror = results.scene.mirror
-        asked = mirror.asked(rolls)
-        works = results.scene.model.power(
-            results.ellipse.take(asked), results.slip.take(asked), results.friction[asked], results.rows[asked]
-        )
+        works = results.scene.model.power(*results.of(mirror.asked(rolls)))
         per_distance[rolls] = mirror.spread(rolls, works.dissipated)
         pressed[rolls] = mirror.spread(rolls, works.by_pressure)
     w = results.by_contact(per_distance)
@@ -195,13 +182,15 @@ def friction_work(results: Results, options: Options) -> None:
 
 
 def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) -> None:
-    """Dissipation that the resultants imply, -(xi F_A + phi M_R), and how far the local one is from the work put in.
+    """Add the dissipation that the resultants imply, and the difference between the local dissipation and the work.
 
-    Work of the motor less that of the transmitted force per distance: -F_Motor - (1 + xi) (F_A1 + F_A2), which the
-    balance of the drive torque makes equal to the sum over both contacts. Where the roller turns with the guide's
-    curve, the drilling torque (M_R1 - M_R2) sin(alpha) works on that turning too; whatever leads the roller round the
-    curve puts that in. On unlike materials the pressures put in `pressed` [N].
-    ASSUME: the drive has no part in that; the torque of pressures which shear shifts is not in its balance.
+    The resultants dissipate -(xi F_A + phi M_R). The motor puts in, less the work of the transmitted force per
+    distance, -F_Motor - (1 + xi) (F_A1 + F_A2); the balance of the drive torque makes this equal to the sum over both
+    contacts. Where the roller turns with the guide's curve, the drilling torque (M_R1 - M_R2) sin(alpha) works on that
+    turning too; the support that leads the roller round the curve supplies this work. On unlike materials the
+    pressures supply `pressed` [N].
+    ASSUME: the drive supplies no part of the work of the pressures; the torque of pressures that shear shifts is not in
+    the balance of the drive torque.
     """
     v, loads = results.values, results.scene.loads
     xi = v["slip"]
@@ -216,7 +205,7 @@ def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) ->
 
 
 def tractions(results: Results, options: Options) -> None:
-    """Pressure, shear, slip and friction energy over the patches."""
+    """Add pressure, shear, slip and friction energy over the patches."""
     t = surface_tractions(results)
     fields = {
         "patch_x": t.x,

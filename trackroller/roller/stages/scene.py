@@ -1,6 +1,7 @@
 """A block of cases on its way through the stages: what is given (`Scene`) and what has been found (`Results`).
 
-Arrays have the case as first axis (n,), then contact (2) and body (2: roller, guide).
+Arrays have the case as first axis (n,), then contact (2) and body (2: roller, guide). Flat arrays (2 n,) hold contact 1
+of all cases, then contact 2.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trackroller.contact.common import ContactModel, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import ContactModel, Patch, Resultants, Slip, SurfaceTractions
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import validity_bit
@@ -20,74 +21,85 @@ JAMMING = validity_bit("jamming")
 
 @dataclass(frozen=True)
 class Scene:
-    """A block of cases with what follows from geometry and material alone."""
+    """A block of n cases with the quantities that follow from geometry and material alone.
+
+    Attributes
+    ----------
+    table, loads, model : the cases, the input of the equilibrium, and the contact model
+    mirror : marks rollers whose two contacts are mirror images
+    frictionless : True if all cases have zero friction, so that no tractions are computed
+    n : number of cases
+    turning : turning of the rollers with the guide's curve, (n,) [1/mm]; None if it does not count
+    """
 
     table: CaseTable
     loads: eq.Loads
     model: ContactModel
     mirror: Mirror
-    frictionless: bool  # none of the cases has friction: no tractions to look for
+    frictionless: bool
     n: int
-    turning: np.ndarray | None = None  # of the rollers with the guide's curve [1/mm], (n,), if it counts
+    turning: np.ndarray | None = None
 
     def kinematics(self, slip: Slip, rows: np.ndarray) -> Slip:
-        """The slip with the turning of the rollers `rows` in the curve, where that counts."""
-        if self.turning is None:
-            return slip
-        return slip.detailed(turning=self.turning[rows])
+        """Return the slip with the turning of the rollers `rows`, if the turning counts."""
+        return slip if self.turning is None else slip.detailed(turning=self.turning[rows])
 
-    def law(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
-        """The contact law of the equilibrium."""
-        return self.model.law(ellipse, self.kinematics(slip, rows), friction, rows, fine)
+    def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+        """Return the resultants on the roller; this is the contact law of the equilibrium."""
+        return self.model.law(patch, self.kinematics(slip, rows), friction, rows, fine)
 
 
 @dataclass
 class Results:
-    """Quantities found so far for one block."""
+    """Quantities found so far for one block.
+
+    Attributes
+    ----------
+    scene, balance : input and result of the equilibrium
+    regime, converged : of each case, (n,)
+    patch, slip, friction : of both contacts, arrays (2 n,)
+    good : True for patches that exist, (2 n,)
+    bits : validity flags, (n,)
+    stopped : True where the condition of `stop_if` holds, (n,)
+    values : results by name, arrays with the case as first axis
+    surface : tractions of the existing patches, once computed
+    share : traction of the existing patches over its bound, once computed
+    """
 
     scene: Scene
     balance: eq.Equilibrium
     regime: np.ndarray
     converged: np.ndarray
-    ellipse: Ellipse  # arrays (2 n,): contact 1 of all cases, then contact 2
+    patch: Patch
     slip: Slip
     friction: np.ndarray
-    good: np.ndarray  # (2 n,) patches that exist
+    good: np.ndarray
     bits: np.ndarray
-    stopped: np.ndarray  # (n,) the condition of stop_if holds
+    stopped: np.ndarray
     values: dict[str, np.ndarray] = field(default_factory=dict)
-    surface: SurfaceTractions | None = None  # of the existing patches, once asked for
-    share: np.ndarray | None = None  # their traction over its bound, once asked for
+    surface: SurfaceTractions | None = None
+    share: np.ndarray | None = None
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
+        """Make patches and slips from the normal forces and rolling radius shifts of the equilibrium."""
+        both = np.tile(np.arange(scene.n), 2)
         normal = balance.normal_force.T.reshape(-1)
-        s = scene.loads.shape
-        two = lambda v: np.concatenate([v, v])  # noqa: E731
-        sine = np.sin(scene.loads.contact_angle)
-        ellipse = type(s)(two(s.lateral), two(s.rolling), two(s.pressure)).at(normal)
-        slip = Slip(
-            np.concatenate([sine, -sine]),
-            two(np.cos(scene.loads.contact_angle)),
-            two(scene.loads.guide_profile_radius),
-            two(scene.loads.rolling_radius),
-            two(balance.shift),
-        )
-        slip = scene.kinematics(slip, np.tile(np.arange(scene.n), 2))
+        ellipse, slip = scene.loads.contacts(normal, np.tile(balance.shift, 2), both)
+        slip = scene.kinematics(slip, both)
         friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
-        ellipse = scene.model.settled(ellipse, slip, two(friction), np.tile(np.arange(scene.n), 2))
+        patch = scene.model.settled(ellipse, slip, friction[both], both)
         # the friction law of each patch has to hold beside the balance of the roller
         unmet, met = scene.model.state(scene.n)
         rolls = balance.regime == eq.ROLLING
-        converged = balance.converged & (met | ~rolls)
         out = cls(
             scene,
             balance,
             balance.regime,
-            converged,
-            ellipse,
+            balance.converged & (met | ~rolls),
+            patch,
             slip,
-            two(friction),
+            friction[both],
             np.isfinite(normal),
             np.where(balance.jamming, JAMMING, 0).astype(np.int32),
             np.zeros(scene.n, bool),
@@ -96,40 +108,43 @@ class Results:
         return out
 
     def by_contact(self, flat: np.ndarray) -> np.ndarray:
-        """(2 n, ...) -> (n, 2, ...)."""
+        """Return flat values (2 n, ...) as (n, 2, ...)."""
         return np.moveaxis(flat.reshape(2, self.scene.n, *flat.shape[1:]), 0, 1)
 
     @property
     def rows(self) -> np.ndarray:
-        """The roller that each of the 2 n patches belongs to."""
+        """Return the number of the roller to which each patch belongs, (2 n,)."""
         return np.tile(np.arange(self.scene.n), 2)
 
     @property
     def slides_along(self) -> np.ndarray:
-        """Direction of the traction along y_C in full slip, 0 in rolling; shape (2 n,)."""
+        """Return the direction of the traction along y_C in full slip, and 0 in rolling, (2 n,)."""
         along = np.where(self.regime == eq.FULL_SLIP, -np.sign(self.scene.loads.motor_force), 0.0)
         return np.concatenate([along, along])
 
     def full(self, flat_good: np.ndarray) -> np.ndarray:
-        """Values of the existing patches spread to all, NaN elsewhere, shape (n, 2, ...)."""
+        """Return values of the existing patches for all patches, NaN for the others, shape (n, 2, ...)."""
         out = np.full((2 * self.scene.n, *flat_good.shape[1:]), np.nan)
         out[self.good] = flat_good
         return self.by_contact(out)
 
+    def of(self, asked: np.ndarray) -> tuple[Patch, Slip, np.ndarray, np.ndarray]:
+        """Return patch, slip, friction and roller numbers of the patches `asked`, as contact models take them."""
+        return self.patch.take(asked), self.slip.take(asked), self.friction[asked], self.rows[asked]
+
+    def flag(self, name: str, condition: np.ndarray) -> None:
+        """Set the validity flag `name` where the condition (n,) holds."""
+        self.bits |= np.where(condition, validity_bit(name), 0).astype(np.int32)
+
 
 def surface_tractions(results: Results) -> SurfaceTractions:
-    """Tractions of the existing patches on a grid, found once."""
+    """Return the tractions of the existing patches on a grid; they are computed at the first call."""
     if results.surface is None:
         good, mirror = results.good, results.scene.mirror
         asked = mirror.asked(good)
-        slip = results.slip.take(asked)
+        patch, slip, friction, rows = results.of(asked)
         rolling = replace(slip, shift=np.where(results.slides_along[asked] == 0, slip.shift, 0.0))
-        t = mirror.spread_surface(
-            good,
-            results.scene.model.surface(
-                results.ellipse.take(asked), rolling, results.friction[asked], results.rows[asked]
-            ),
-        )
+        t = mirror.spread_surface(good, results.scene.model.surface(patch, rolling, friction, rows))
         mu, along = results.friction[good], results.slides_along[good]
         full = (along != 0)[:, None, None]
         results.surface = replace(

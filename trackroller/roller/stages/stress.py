@@ -1,57 +1,27 @@
-"""The stages of a solution that look for stresses: stop conditions, peaks and fields below the surface."""
+"""The stages of a solution that compute stresses: stop conditions, peaks and fields below the surface."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from trackroller.contact import sliding
-from trackroller.contact.common import Slip
-from trackroller.contact.grid_patch import GridPatch
-from trackroller.contact.models import traction_share
-from trackroller.halfspace.bounds import lower_bounds
-from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
-from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.stress import von_mises
 from trackroller.roller.options import Options
-from trackroller.roller.requirements import distinct_rows, normalised_patches
-from trackroller.roller.stages import grid as stages_grid
-from trackroller.roller.stages.scene import Results, surface_tractions
+from trackroller.roller.stages.ellipse_stresses import EllipseStresses
+from trackroller.roller.stages.grid_stresses import GridStresses
+from trackroller.roller.stages.patch_stresses import PatchStresses
+from trackroller.roller.stages.scene import Results
 from trackroller.roller.stop import PEAK, holds, parse_condition
 
-
-def _patches(results: Results, options: Options, slip: Slip | None = None) -> np.ndarray:
-    good = results.good
-    slip = results.slip if slip is None else slip
-    return patch_rows(
-        results.ellipse.take(good),
-        slip.take(good),
-        results.friction[good],
-        sliding.spin_model_index(options.spin_model),
-        results.slides_along[good],
-    )
+SECTION_SIDES, SECTION_DEPTH = 1.5, 2.0  # extent of the sections over the semi-axis and over the smaller semi-axis
 
 
-def _poisson(results: Results, options: Options) -> np.ndarray:
-    table = results.scene.table
-    nu = np.stack([table.roller.poisson_ratio, table.guide.poisson_ratio], axis=1)
-    if options.stress_bodies == "published":
-        nu = np.repeat(nu.mean(axis=1, keepdims=True), 2, axis=1)
-    return np.concatenate([nu, nu])
-
-
-def _traction_fields(results: Results) -> np.ndarray | None:
-    """Traction over its bound on the grid of each existing patch; None where full sliding needs no grid."""
-    if results.scene.model.full_sliding or results.scene.frictionless:
-        return None
-    if results.share is None:
-        results.share = traction_share(surface_tractions(results), results.friction[results.good])
-    return results.share
+def stresses_of(results: Results, options: Options) -> PatchStresses:
+    """Return the stresses below the patches of a block, for ellipses or for solved patches."""
+    return (EllipseStresses if results.patch.is_hertzian else GridStresses)(results, options)
 
 
 def stop(results: Results, options: Options) -> None:
-    """Marks the cases for which the condition of `stop_if` holds already: what follows leaves them out."""
+    """Mark the cases for which the condition of `stop_if` already holds; the following stages leave them out."""
     if options.stop_if is None:
         return
     table, v = results.scene.table, results.values
@@ -63,41 +33,34 @@ def stop(results: Results, options: Options) -> None:
         value = results.regime.astype(float) if comparison.name == "regime" else v[comparison.name]
         results.stopped |= holds(comparison, value, table)
     if bounded:
-        lower = _peak_bound(results, options)
+        lower = peak_bound(results, options)
         for comparison in bounded:
             results.stopped |= holds(comparison, lower, table)
 
 
-def _peak_bound(results: Results, options: Options) -> np.ndarray:
-    """Lower bound of the peak stress, shape (n, 2, 2): the largest of a few points of each patch."""
+def peak_bound(results: Results, options: Options) -> np.ndarray:
+    """Return a lower bound of the peak stress of each contact and body, (n, 2, 2) [MPa]."""
     wanted = results.good & ~np.tile(results.stopped, 2)
     out = np.full((2 * results.scene.n, 2), np.nan)
     if wanted.any():
-        among, fields = wanted[results.good], _traction_fields(results)
-        patches, ratios = _patches(results, options)[among], _poisson(results, options)[wanted]
-        bound = lower_bounds(patches, ratios, None if fields is None else fields[among])
-        out[wanted] = bound * results.ellipse.max_pressure[wanted][:, None]
+        out[wanted] = stresses_of(results, options).bounds(wanted)
     if options.stress_bodies == "published":
         out[:, 1] = out[:, 0]
     return results.by_contact(out)
 
 
 def peak_stress(results: Results, options: Options) -> None:
-    """Peak von Mises stress of each contact and body, its place and error estimate."""
+    """Add the peak von Mises stress of each contact and body, its place and its error estimate."""
     good = results.good & ~np.tile(results.stopped, 2)
     mirror = results.scene.mirror
     asked = mirror.asked(good)
-    if isinstance(results.ellipse, GridPatch):
-        peak, scale, side = stages_grid.peaks(results, asked, _poisson(results, options), options), 1.0, 1.0
-    else:
-        peak, scale, side = _ellipse_peaks(results, options, asked)
-    error = peak.error + results.scene.model.peak_error * results.friction[asked][:, None]
+    peak = stresses_of(results, options).peaks(asked)
     found = {
-        "peak_stress": (peak.stress * scale, 1.0),
-        "peak_x": (side * peak.x, -1.0),
+        "peak_stress": (peak.stress, 1.0),
+        "peak_x": (peak.x, -1.0),
         "peak_y": (peak.y, 1.0),
         "peak_z": (peak.z, 1.0),
-        "error_estimate": (error, 1.0),
+        "error_estimate": (peak.error + results.scene.model.peak_error * results.friction[asked][:, None], 1.0),
     }
     for name, (value, sign) in found.items():
         full = np.full((2 * results.scene.n, 2), np.nan)
@@ -108,75 +71,39 @@ def peak_stress(results: Results, options: Options) -> None:
         results.values[name] = full
 
 
-def _ellipse_peaks(results: Results, options: Options, asked: np.ndarray):
-    """Peaks under the ellipses `asked` (2 n,) over p_max; p_max, and the sign that their x needs."""
-    among = asked[results.good]  # of the existing patches
-    # contact 2 is searched as its mirror image, so that mirrored scenes have the same numbers
-    second = np.repeat([False, True], results.scene.n)
-    seen = replace(results.slip, sine=np.abs(results.slip.sine))
-    fields = _traction_fields(results)
-    if fields is not None:
-        fields = fields[among]
-        fields[second[asked]] = fields[second[asked]][..., ::-1] * np.array([-1.0, 1.0])[:, None, None]
-    peak = _peaks(_patches(results, options, seen)[among], _poisson(results, options)[asked], fields, options)
-    scale = results.ellipse.max_pressure[asked][:, None]
-    side = np.where(second[asked], -1.0, 1.0)[:, None]
-    return peak, scale, side
-
-
-def _peaks(patches: np.ndarray, ratios: np.ndarray, fields: np.ndarray | None, options: Options) -> Peak:
-    """Peaks of patches; patches without a slip field of their own are searched once for each ellipticity."""
-    if fields is not None:
-        return find_peaks(patches, ratios, options.settings.peak, fields)
-    patches, length = normalised_patches(patches)
-    first = number = np.arange(len(patches))
-    if options.shortcuts:
-        first, number = distinct_rows(np.hstack([patches, ratios]))
-    peak = find_peaks(patches[first], ratios[first], options.settings.peak)
-    scale = length[:, None]
-    return Peak(
-        peak.stress[number], peak.x[number] * scale, peak.y[number] * scale, peak.z[number] * scale, peak.error[number]
-    )
-
-
 def subsurface(results: Results, options: Options) -> None:
-    """All stress components on the two section planes through each peak."""
-    m, n = options.settings.section_points, results.scene.n
-    depth_points = (m + 1) // 2
-    shape_xz = (n, 2, 2, depth_points, m)
-    v = results.values
-    for name in ("von_mises_xz", "von_mises_yz"):
-        v[name] = np.full(shape_xz, np.nan)
+    """Add all stress components on the two section planes through each peak."""
+    m, n, v = options.settings.section_points, results.scene.n, results.values
+    depths = (m + 1) // 2
+    sizes = {"xz_x": (m,), "xz_z": (depths,), "yz_y": (m,), "yz_z": (depths,)}
+    sizes |= {"von_mises_xz": (depths, m), "von_mises_yz": (depths, m)}
+    for name, size in sizes.items():
+        v[name] = np.full((n, 2, 2, *size), np.nan)
     for name in ("stress_xz", "stress_yz"):
-        v[name] = np.full((n, 6, *shape_xz[1:]), np.nan)
-    for name, count in (("xz_x", m), ("xz_z", depth_points), ("yz_y", m), ("yz_z", depth_points)):
-        v[name] = np.full((n, 2, 2, count), np.nan)
-    grid = isinstance(results.ellipse, GridPatch)
-    rows, fields = (None, None) if grid else (_patches(results, options), _traction_fields(results))
-    centre = results.ellipse.centre if isinstance(results.ellipse, GridPatch) else np.zeros(2 * n)
-    nu = _poisson(results, options)
-    order = max(options.settings.peak.polish, 24)  # the rim is met exactly, where quadrature is hardest
-    for row, flat in enumerate(np.flatnonzero(results.good)):
-        j, i = divmod(flat, n)
-        e = results.ellipse
-        a, b, p = e.semi_axis_lateral[flat], e.semi_axis_rolling[flat], e.max_pressure[flat]
-        across, along = centre[flat] + np.linspace(-1.5 * a, 1.5 * a, m), np.linspace(-1.5 * b, 1.5 * b, m)
-        depth = np.linspace(0.0, 1.0, depth_points) ** 1.5 * 2.0 * min(a, b)
+        v[name] = np.full((n, 6, 2, 2, depths, m), np.nan)
+    stresses = stresses_of(results, options)
+    for flat in np.flatnonzero(results.good).tolist():
+        contact, case = divmod(flat, n)
         for body in (0, 1):
-            x0, y0 = v["peak_x"][i, j, body], v["peak_y"][i, j, body]
-            sign = -1.0 if body == 1 and options.stress_bodies == "both" else 1.0
-            planes = (("xz", across, np.full(m, y0)), ("yz", np.full(m, x0), along))
-            for plane, xs, ys in planes:
-                points = np.stack([np.tile(xs, depth_points), np.tile(ys, depth_points), np.repeat(depth, m)], axis=1)
-                if rows is None:
-                    s = stages_grid.section(results, row, points, nu[flat, body], sign)
-                else:
-                    one = NO_FIELD if fields is None else fields[row]
-                    parts = stress_parts(rows[row], points, order, order, one)
-                    s = p * (
-                        parts[:, 0] + nu[flat, body] * parts[:, 1] + sign * (parts[:, 2] + nu[flat, body] * parts[:, 3])
-                    )
-                v[f"stress_{plane}"][i, :, j, body] = s.T.reshape(6, depth_points, m)
-                v[f"von_mises_{plane}"][i, j, body] = von_mises(s).reshape(depth_points, m)
-            v["xz_x"][i, j, body], v["yz_y"][i, j, body] = across, along
-            v["xz_z"][i, j, body] = v["yz_z"][i, j, body] = depth
+            _sections(results, options, stresses, flat, (case, contact, body))
+
+
+def _sections(
+    results: Results, options: Options, stresses: PatchStresses, flat: int, place: tuple[int, int, int]
+) -> None:
+    """Fill the two sections through the peak at `place`: number of the case, contact and body."""
+    v, patch, (case, contact, body) = results.values, results.patch, place
+    m = options.settings.section_points
+    a, b = patch.semi_axis_lateral[flat], patch.semi_axis_rolling[flat]
+    across = patch.centre[flat] + np.linspace(-SECTION_SIDES * a, SECTION_SIDES * a, m)
+    along = np.linspace(-SECTION_SIDES * b, SECTION_SIDES * b, m)
+    depth = np.linspace(0.0, 1.0, (m + 1) // 2) ** 1.5 * SECTION_DEPTH * min(a, b)
+    sign = -1.0 if body == 1 and options.stress_bodies == "both" else 1.0
+    planes = {"xz": (across, np.full(m, v["peak_y"][place])), "yz": (np.full(m, v["peak_x"][place]), along)}
+    for plane, (xs, ys) in planes.items():
+        points = [np.tile(xs, depth.size), np.tile(ys, depth.size), np.repeat(depth, m)]
+        stress = stresses.at(flat, np.stack(points, axis=1), body, sign)
+        v[f"stress_{plane}"][case, :, contact, body] = stress.T.reshape(6, depth.size, m)
+        v[f"von_mises_{plane}"][place] = von_mises(stress).reshape(depth.size, m)
+        v[f"{plane}_z"][place] = depth
+    v["xz_x"][place], v["yz_y"][place] = across, along
