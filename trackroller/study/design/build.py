@@ -1,13 +1,15 @@
-"""From a study to its cases."""
+"""From a study to its cases: the dataset that is solved."""
 
 from __future__ import annotations
 
 import itertools
 import json
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.numerics import expressions
@@ -19,8 +21,6 @@ from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
 from trackroller.study.goals import check_scatter
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from trackroller.study.config import Study
 
 MAX_CASES = 20_000_000
@@ -29,18 +29,41 @@ _DEFAULT_MATERIAL = "1.7225-normalised"
 
 
 def case_columns(known: Any) -> tuple[str, ...]:
-    """Names of the case fields among the columns of a design; mappings are there only where a study has them."""
+    """Return the names of the case fields among the columns of a design.
+
+    Parameters
+    ----------
+    known : names of the columns
+
+    Returns
+    -------
+    All parameters and materials; mappings only if the study has them.
+    """
     return (*PARAMETERS, *MATERIAL_FIELDS, *(name for name in MAPPING_FIELDS if name in known))
 
 
 def draw(study: Study) -> SampledDesign:
-    """The factors' columns of a study (see `trackroller.study.design.sampling.sample`)."""
+    """Draw the design of a study.
+
+    Parameters
+    ----------
+    study : the study
+
+    Returns
+    -------
+    SampledDesign, see `trackroller.study.design.sampling.sample`
+
+    Raises
+    ------
+    InputError : as `sample`; an option that the design does not have; too many cases
+    """
     config = study.config
     options = {name: getattr(config, name) for name in ("second_order", "levels", "inner", "grown_from")}
     options = {k: v for k, v in options.items() if v is not None}
     for name in options:
         if name not in OPTIONS.get(config.design, {}):
-            raise InputError(name, options[name], f"design: {config.design} has no such option")
+            having = [design for design, known in OPTIONS.items() if name in known]
+            raise InputError(name, options[name], f"an option of design {' and '.join(having)}", "Remove the key.")
     if config.design == "table":
         options["table"] = table_path(study)
     base = {k: v for k, v in config.base.items() if isinstance(v, float)}
@@ -53,7 +76,7 @@ def draw(study: Study) -> SampledDesign:
 
 
 def _check_columns(study: Study, design: SampledDesign) -> None:
-    """A table may have columns of its own, but none that looks like a misspelt name, nor only such."""
+    """Refuse further columns of a table that look like a misspelt name, and a table with further columns only."""
     known = [*PARAMETERS, *MATERIAL_FIELDS, "material_pair", *OPTION_FACTORS]
     used = {name for spec in study.factors.values() for name in expressions.names(spec.get("expression", "0"))}
     own = [name for name in design.columns if name not in known and name not in used]
@@ -63,9 +86,7 @@ def _check_columns(study: Study, design: SampledDesign) -> None:
 
 
 def table_path(study: Study) -> str:
-    """Path of the CSV of cases, taken from the folder of the study file."""
-    from pathlib import Path
-
+    """Return the path of the CSV of cases; a relative path starts from the folder of the study file."""
     path = Path(str(study.config.table))
     if not path.is_absolute() and study.path is not None:
         path = study.path.parent / path
@@ -73,14 +94,19 @@ def table_path(study: Study) -> str:
 
 
 def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
-    """The design as a dataset.
+    """Build the dataset of cases of a study.
 
-    Dimension `case`; one variable a parameter (friction coefficients resolved to numbers, materials by
-    name). Coordinates along `case`: models that vary, and auxiliary factors of expressions. Attributes:
-    study, method, the factors and the shape of a grid.
+    Parameters
+    ----------
+    study : the study
+    design : its design, if it has been drawn already
+
+    Returns
+    -------
+    Dataset with dimension `case`: one variable a parameter (friction coefficients as numbers, materials by name).
+    Coordinates along `case`: models that vary, and auxiliary factors of expressions. Attributes: study, design,
+    seed, the factors and the shape of a grid.
     """
-    import xarray as xr
-
     design = draw(study) if design is None else design
     n = design.size or 1
     columns = _columns(study, design, n)
@@ -109,7 +135,7 @@ def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
 
 
 def _columns(study: Study, design: SampledDesign, n: int) -> dict[str, np.ndarray]:
-    """Every case field and every further factor as a column of n values."""
+    """Return every case field and every further factor as a column of n values."""
     base = {name: parameter.default for name, parameter in PARAMETERS.items()}
     base |= {name: _DEFAULT_MATERIAL for name in MATERIAL_FIELDS} | study.config.base
     base.pop("material_pair", None)
@@ -142,7 +168,7 @@ def _split_pair(text: str) -> tuple[str, str]:
 
 
 def _friction(study: Study, columns: dict[str, np.ndarray]) -> np.ndarray:
-    """Friction coefficients as numbers: a level's word or nothing is looked up by the pair of materials."""
+    """Return friction coefficients as numbers; the pair of materials decides where there is a level or nothing."""
     values = columns["friction_coefficient"]
     if values.dtype != object:
         return values
@@ -161,7 +187,16 @@ def _friction(study: Study, columns: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def check_materials(study: Study) -> None:
-    """Every material a study names is in the database, and has the scatter that its analysis counts on."""
+    """Check that the database has every material of a study, with the scatter that its analysis needs.
+
+    Parameters
+    ----------
+    study : the study
+
+    Raises
+    ------
+    InputError : an unknown material, or a material without scatter
+    """
     names: dict[str, str] = {}
     for name in MATERIAL_FIELDS:
         if name in study.config.base:
@@ -183,10 +218,20 @@ def check_materials(study: Study) -> None:
 
 
 def check_geometry(study: Study) -> None:
-    """No combination of the geometry's levels, or of the ends of its ranges, conforms or interlocks.
+    """Check that no combination of the geometry's levels or ends of ranges conforms or interlocks.
 
-    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide; expressions
-    and tables are checked on the whole design, before anything is solved.
+    Parameters
+    ----------
+    study : the study
+
+    Raises
+    ------
+    InputError : a combination for which roller and guide cannot touch in two points
+
+    Notes
+    -----
+    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide. Expressions and
+    tables are checked on the whole design before anything is solved.
     """
     config = study.config
     if config.design == "table" or any("expression" in spec for spec in study.factors.values()):

@@ -1,4 +1,4 @@
-"""Entries of a study file: values of the base case and of factors, each checked in its own words."""
+"""Check the entries of a study file: values of the base case and of factors."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.numerics import expressions
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS
+from trackroller.roller.case import mapping_text
 from trackroller.study.design.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
@@ -18,14 +20,43 @@ FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 
 
 def choice(value: Any, where: str, options: tuple[str, ...]) -> str:
-    """A word among `options`; raises `InputError` with the nearest one."""
+    """Check that a value is one of the options.
+
+    Parameters
+    ----------
+    value : the value
+    where : name of the study key
+    options : allowed words
+
+    Returns
+    -------
+    The value.
+
+    Raises
+    ------
+    InputError : with the nearest option
+    """
     if not isinstance(value, str) or value not in options:
         raise unknown_name(where, value, options)
     return value
 
 
 def base_value(key: Any, value: Any) -> Any:
-    """A value of the base case in its own type."""
+    """Check a value of the base case.
+
+    Parameters
+    ----------
+    key : name of the case field
+    value : its value
+
+    Returns
+    -------
+    The value in the type of its field.
+
+    Raises
+    ------
+    InputError : unknown field, or a value outside its bounds
+    """
     if key == "material_pair":
         return list(_pair(value, "base.material_pair"))
     if key not in CASE_FIELDS:
@@ -43,16 +74,13 @@ def _material_name(value: Any, where: str) -> str:
             where,
             value,
             "the name of a material in the database",
-            "Put your own into config/materials.yaml (`trackroller materials add`).",
+            "Add your own material with `trackroller materials add`.",
         )
     return value
 
 
 def _mapping(name: str, value: Any, where: str) -> str:
-    """A friction law or profile as its canonical text."""
-    from trackroller.contact.friction_laws import at_rest
-    from trackroller.roller.case import mapping_text
-
+    """Return a friction law or profile as its canonical text."""
     try:
         text = mapping_text(name, value)
         if name == "friction_law" and not text and (own := at_rest(value)) is not None:
@@ -60,7 +88,7 @@ def _mapping(name: str, value: Any, where: str) -> str:
                 name,
                 "a table of one value",
                 "a table whose friction changes with the slip speed",
-                f"Leave it out and give friction_coefficient: {own:g}.",
+                f"Remove the law and give friction_coefficient: {own:g}.",
             )
         return text
     except InputError as exc:
@@ -75,7 +103,7 @@ def _pair(value: Any, where: str) -> tuple[str, str]:
 
 
 def _number(name: str, value: Any, where: str) -> Any:
-    """A value of parameter `name` as a float (or a word of the friction levels, or None)."""
+    """Return a value of a parameter as a float, a friction level or None."""
     parameter = PARAMETERS[name]
     if value is None and parameter.allow_missing:
         return None
@@ -96,7 +124,22 @@ def _number(name: str, value: Any, where: str) -> Any:
 
 
 def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
-    """A factor's dictionary, its entries in their own type; `factors` are all of the study."""
+    """Check the dictionary of a factor.
+
+    Parameters
+    ----------
+    key : name of the factor
+    spec : its dictionary
+    factors : all factors of the study, whose expressions may use this factor
+
+    Returns
+    -------
+    The dictionary with its entries in the type of the factor.
+
+    Raises
+    ------
+    InputError : unknown name, or an entry that is not allowed
+    """
     where = f"factors.{key}"
     if key not in FACTOR_NAMES:
         if not isinstance(key, str) or not key.isidentifier() or not _used(key, factors):
@@ -117,13 +160,13 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def _used(name: str, factors: Mapping[Any, Any]) -> bool:
-    """Is the name an auxiliary factor, there for an expression of another one?"""
+    """Return whether the expression of another factor uses the name."""
     texts = [s["expression"] for s in factors.values() if isinstance(s, Mapping) and "expression" in s]
     return any(isinstance(t, str) and name in expressions.names(t, "factors") for t in texts)
 
 
 def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
-    """Entries of a factor's list in their own type: numbers as floats, pairs checked, names as texts."""
+    """Return the entries of a factor's list: numbers as floats, checked pairs, names as texts."""
     if not isinstance(value, list):
         return value
     if kind != "values":
@@ -145,7 +188,7 @@ def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
 
 
 def _check_count(count: Any, where: str) -> None:
-    """A slip of the finger may not fill the memory before it is found."""
+    """Refuse a mistyped number of levels before it fills the memory."""
     if isinstance(count, (int, float)) and not count <= MAX_LEVELS:
         raise InputError(where, count, f"at most {MAX_LEVELS} levels of a factor")
 

@@ -1,6 +1,7 @@
-"""Values of a factor in a few words: a friction law or a drawn profile is a whole mapping in a result's columns.
+"""Short texts for the values of a factor, such as a friction law or a drawn profile.
 
-Words tell all that a value holds, or carry a mark made from it: two levels of a factor never read the same.
+In the columns of a result such a value is a whole mapping. Its short text states everything the mapping holds, or
+carries a mark computed from it, so that two levels of a factor never have the same text.
 """
 
 from __future__ import annotations
@@ -17,12 +18,16 @@ EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
 
 
 def short(name: str, value: Any) -> str:
-    """A text level of a factor: that of a mapping in words, 'linear to 0.3 at 50 mm/s'; other texts as they are.
+    """Return a short text for a text level of a factor.
 
     Parameters
     ----------
-    name : of the factor
-    value : its value, a text (of a mapping: its canonical JSON, '' for none) or a mapping
+    name : name of the factor
+    value : its value: a text (for a mapping its canonical JSON, or '') or a mapping
+
+    Returns
+    -------
+    A description of a mapping, such as 'linear to 0.3 at 50 mm/s'; any other text as it is.
     """
     if name not in MAPPING_FIELDS:
         return str(value)
@@ -35,18 +40,18 @@ def short(name: str, value: Any) -> str:
 
 
 def in_words(name: str, value: Any) -> str:
-    """A level of a factor, number or not, as text for tables and messages."""
+    """Return a level of a factor, number or not, as text for tables and messages."""
     return short(name, value) if name in MAPPING_FIELDS else label(value)
 
 
 def _mark(told: Any) -> str:
-    """Four signs that tell apart what words would be too long for."""
+    """Return four characters computed from a value that is too long for a description."""
     text = told if isinstance(told, str) else json.dumps(told, sort_keys=True, default=float)
     return f"{zlib.crc32(text.encode()) & 0xFFFF:04x}"
 
 
 def _number(value: Any) -> str:
-    """As few digits as tell the number from its neighbours."""
+    """Return a number with six digits, or with twelve if six would change it."""
     text = f"{float(value):g}"
     return (text if float(text) == float(value) else f"{float(value):.12g}").replace("-", "−")
 
@@ -73,7 +78,7 @@ def _profile(told: Mapping[str, Any]) -> str:
         words = _arcs(told["arcs"])
     elif form == "file":
         words = f"drawn {told['file']}"
-    else:  # the mark tells drawn shapes apart, and what is smoothed from what is not
+    else:  # the mark distinguishes drawn shapes, and smoothed from unsmoothed ones
         words = f"drawn {_mark(told)}, {len(told['points'])} points"
     if "width" in told:
         words += f", {_number(told['width'])} mm wide"
