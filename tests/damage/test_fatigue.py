@@ -1,4 +1,4 @@
-"""The Woehler line, its rules and scatter, hours, and Miner's damage sum."""
+"""The S-N curve, its rules and scatter, hours, and Miner's damage sum."""
 
 import math
 
@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from trackroller.damage import fatigue
 from trackroller.damage.fatigue import (
+    SNCurve,
     allowable_stress,
     block_damage,
     damage_sum,
@@ -42,6 +43,19 @@ def test_published_life_is_met():
 def test_line_runs_through_both_points(rule):
     assert life_cycles([720.0, 360.0], *STEEL, rule) == pytest.approx([1e4, 5e6], rel=1e-12)
     assert woehler_exponent(*STEEL) == pytest.approx(K, rel=1e-14)
+
+
+def test_a_curve_its_four_values_and_their_names_are_the_same():
+    """The order of the values in every form: a swapped pair would give another life or no falling curve."""
+    curve = SNCurve(*STEEL)
+    named = dict(zip(("tensile_strength", "fatigue_limit", "n_rm", "n_k"), STEEL, strict=True))
+    expected = 5e6 * (500.0 / 360.0) ** -K
+    for told in (life_cycles(500.0, curve), life_cycles(500.0, *STEEL), life_cycles(500.0, **named)):
+        assert told == pytest.approx(expected, rel=1e-12)
+    assert life_cycles(500.0, *STEEL[:2], n_rm=1e4, n_k=5e6, rule="haibach") == pytest.approx(expected, rel=1e-12)
+    assert allowable_stress(expected, curve=curve) == pytest.approx(500.0, rel=1e-12)
+    assert damage_sum([500.0, 500.0], [expected, expected], curve, "unlimited") == pytest.approx(2.0, rel=1e-12)
+    assert woehler_exponent(curve) == woehler_exponent(**named) == pytest.approx(K, rel=1e-14)
 
 
 def test_rules_differ_below_the_fatigue_limit_alone():
@@ -201,7 +215,7 @@ def test_unknown_stress_of_a_block_that_runs_is_not_hidden():
     ("call", "names"),
     [
         (lambda: life_cycles(1, *STEEL, "haibuch"), ("life_rule", "haibuch", "haibach")),
-        (lambda: life_cycles(1, 300.0, 360.0, 1e4, 5e6), ("Woehler line", "R_m > sigma_D")),
+        (lambda: life_cycles(1, 300.0, 360.0, 1e4, 5e6), ("S-N curve", "R_m > sigma_D")),
         (lambda: scatter_ranges(K, scatter_cycles=0.25), ("scatter_in_cycles", "0.25", "inverse")),
         (lambda: line_at_probability(360, 5e6, K, 10.0), ("failure_probability", "10.0")),
         (lambda: repetitions_to_failure(1.0, 0.0), ("critical_damage",)),

@@ -1,1 +1,1 @@
-"""Turn stress into life: S-N curves, scatter of materials and damage sums."""
+"""Turn stress into life: S-N curves, their scatter and damage sums."""
