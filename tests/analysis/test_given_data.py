@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from trackroller.analysis.delta import delta
 from trackroller.analysis.pairs import pairs
-from trackroller.report.figures import style
+from trackroller.report.numbers import level_text, near
 from trackroller.study.design.levels import short
 
 
@@ -89,10 +89,10 @@ def test_friction_laws_and_profiles_are_told_in_a_few_words():
     assert short("roller_profile", '{"arc":-7.0,"width":9}') == "arc −7 mm, 9 mm wide"
     drawn = [json.dumps({"points": [[0, 0], [1, z]], "frame": "section"}) for z in (1, 2)]
     assert len({short("guide_profile", text) for text in drawn}) == 2
-    assert style.level_text("friction_law", law) == "linear to 0.3 at 50 mm/s"
+    assert level_text("friction_law", law) == "linear to 0.3 at 50 mm/s"
     assert len(short("friction_law", "{" + "x" * 200)) <= 40
 
 
 def test_ends_of_a_range_are_rounded_to_the_range():
-    assert style.near(0.24983, 0.25) == "0.25" and style.near(1.6e-5, 0.25) == "0"
-    assert style.near(39.994, 12.0) == "40" and style.near(-250.3, 100.0) == "−250"
+    assert near(0.24983, 0.25) == "0.25" and near(1.6e-5, 0.25) == "0"
+    assert near(39.994, 12.0) == "40" and near(-250.3, 100.0) == "−250"

@@ -63,8 +63,10 @@ def test_percentiles_b10_and_probabilities_match_the_closed_forms(tmp_path):
 def test_sentence_names_the_best_design_point():
     """The point with ten times the life is named with its B10 and its slip."""
     ds = solved(lognormal)
-    text = words.robustness(robustness(ds, design_of(ds)), "roller_life_hours")
-    assert text.startswith("At velocity 60 m/min nine of ten of the rolling cases reach")
+    text = words.robustness(robustness(ds, design_of(ds)), "roller_life_hours").text
+    assert text.startswith(
+        "Best B10 of the life of the roller: at mean travel speed 60 m/min nine of ten rolling cases reach"
+    )
     assert "full slip there in 10 %" in text
 
 

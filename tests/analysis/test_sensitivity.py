@@ -430,7 +430,7 @@ def test_outputs_of_a_solved_case_join_contacts_and_bodies():
 
 def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
     """Saltelli study with life and friction power: files are there, the sentences name the right factor."""
-    from trackroller.report.figures.sensitivity import draw_all
+    from trackroller.report.figures.study import draw_all
 
     def fake(design):
         y = 2 * design["axial_force"].values + 0.3 * design["velocity"].values
@@ -438,21 +438,20 @@ def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
 
     solved({"name": "i", "design": "saltelli", "samples": 128, "factors": CARRIERS}, fake, tmp_path / "study.nc")
     analyse(tmp_path / "study.nc", tmp_path / "sensitivity.nc")
-    infos = draw_all(tmp_path / "study.nc", tmp_path / "sensitivity.nc", tmp_path / "figures")
+    infos = draw_all(tmp_path / "study.nc", tmp_path / "figures", tmp_path / "sensitivity.nc")
     said = {i.name: i.sentence for i in infos}
     assert {
         "tornado-roller_life_hours",
         "convergence-roller_life_hours",
-        "interactions-roller_life_hours",
         "bands-roller_life_hours",
         "pareto-front",
-        "pareto-parallel",
         "influence-overview",
     } <= set(said)
-    assert said["tornado-roller_life_hours"].startswith("Axial force explains 9")
+    assert said["tornado-roller_life_hours"].startswith("Axial force accounts for 9")
     assert "± " in said["tornado-roller_life_hours"] and "converged" in said["tornado-roller_life_hours"]
-    assert "falls from" in said["bands-roller_life_hours"]
-    listed = json.loads((tmp_path / "figures" / "index-sensitivity.json").read_text(encoding="utf-8"))
+    assert "shortens the life of the roller" in said["bands-roller_life_hours"]
+    assert "interactions-roller_life_hours" not in said  # the made-up life has none
+    listed = json.loads((tmp_path / "figures" / "index.json").read_text(encoding="utf-8"))
     assert [entry["name"] for entry in listed] == list(said)
     for name in said:
         assert (tmp_path / "figures" / f"{name}.svg").stat().st_size > 1000

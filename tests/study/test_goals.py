@@ -17,9 +17,10 @@ from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
 from trackroller.numerics import expressions
 from trackroller.report import sentences as words
-from trackroller.report.decisions import decisions
-from trackroller.report.figures.study_view import StudyView
 from trackroller.report.figures.woehler import curve, woehler
+from trackroller.report.numbers import share
+from trackroller.report.page import contents
+from trackroller.report.view import StudyView
 from trackroller.study.config import parse_study
 
 LHS = {
@@ -126,9 +127,9 @@ def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_pat
     kept = ds.isel(case=front["row"].values)
     assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
     assert set(kept["roller_material"].values) == {"PA6"}
-    told = decisions(ds, None)["pareto"]
-    assert told["columns"][0] == "Life of the roller [h] ↑" and told["rows"]
-    lives = [float(ds["roller_life_hours"][case]) for case, _ in told["rows"]]
+    told = next(t for t in contents(ds)["decide"] if t.name == "pareto")
+    assert told.heads[1] == "Life of the roller [h] ↑" and told.rows
+    lives = [float(ds["roller_life_hours"][row[0]]) for row in told.rows]
     assert lives == sorted(lives, reverse=True)
 
 
@@ -142,11 +143,11 @@ def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
     sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
     assert "delta" in sens and "pawn" not in sens and "first" in sens
-    told = decisions(ds, tmp_path / "out.nc")["sensitivity"]
-    assert told["measures"][0]["rows"][0][0] == "Axial force" and "lhs" == told["method"]
+    told = contents(ds, sens)["why"][1]
+    assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
-    column = told["measures"][0]["columns"].index("delta")
-    assert any(cells[column].startswith("(") for _, cells in told["measures"][0]["rows"][1:])
+    column = told.heads.index("delta")
+    assert any(row[column].startswith("(") for row in told.rows[1:])
 
 
 def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
@@ -164,7 +165,7 @@ def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
     assert float(sens["first"].sel(output="full_slip", factor="axial_force")) > 0.9
     assert "constant" in sens["note"].sel(output="friction_power").item()
     assert np.isnan(sens["delta"].sel(output="friction_power")).all()
-    assert "No index can be given" in words.tornado(sens, "friction_power")
+    assert "No index can be given" in words.tornado(sens, "friction_power").text
 
 
 def test_zero_and_infinite_lives_are_left_out_and_counted():
@@ -250,8 +251,13 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
     }
     ds.attrs = {"study": json.dumps(study), "materials": json.dumps({"steel": STEEL | {"scatter_in_cycles": 4.0}})}
     _, info = woehler(StudyView.of(ds))
-    assert "Half of the cases load the roller" in info.sentence and "0.5 times the life" in info.sentence
-    assert "10 cases in full slip" in info.caption
+    below, above = (
+        int(((np.arange(40) % 4 > 0) & hit).sum()) for hit in (stress[:, 0, 0] < 360, stress[:, 0, 0] > 720)
+    )
+    assert f"{share(below, 30)} of the 30 rolling designs stay below the fatigue limit" in info.sentence
+    assert f"{share(above, 30)} exceed its tensile strength" in info.sentence
+    assert "10 % have failed at 0.5 times its median life" in info.sentence
+    assert "10 cases that do not roll" in info.caption
     assert "beyond the axis" in info.caption
 
 
@@ -298,11 +304,12 @@ def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
         ds.to_netcdf(tmp_path / "study.nc")
         sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
         lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
-        told = decisions(ds, tmp_path / "out.nc")["robust"]
-        assert len(told["tables"][0]["rows"]) == 2 and "5" in told["tables"][0]["rows"][0][1][5]
+        told = [t for t in contents(ds, sens)["decide"] if t.name.startswith(("b10", "percentiles"))]
+        assert len(told[0].rows) == 2 and told[0].heads[4].startswith("Full slip") and "5" in told[0].rows[0][4]
+        assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # percentiles hold no scatter of the material
     spread = np.hypot(0.1, np.log10(9) / 2.5631)
     assert np.log10(lives[9]) == pytest.approx(3 - 1.2816 * spread, abs=0.03)
-    assert lives[9] < lives[False] and "T_N = 9" in told["scatter"]
+    assert lives[9] < lives[False] and "T_N = 9" in told[0].note
 
 
 def test_correlated_columns_of_a_table_are_told(tmp_path):

@@ -12,6 +12,7 @@ import xarray as xr
 
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
+from trackroller.report.page import write_report
 from trackroller.study.files import StudyFolder, write_whole
 
 log = logging.getLogger("trackroller")
@@ -64,24 +65,19 @@ def analyse_study(study_nc: str, out: str) -> None:
 
 def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:
     """Draw all figures of a study; the folder appears whole or not at all."""
-    from trackroller.report.figures.sensitivity import draw_all as draw_sensitivity  # heavy: matplotlib and seaborn
-    from trackroller.report.figures.study import draw_all as draw_results
+    from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
     out = Path(out_dir)
     beside = out.with_name(f".{out.name}.tmp")
     shutil.rmtree(beside, ignore_errors=True)
     beside.mkdir(parents=True)
-    draw_results(Path(study_nc), beside)
-    if has_analysis(sensitivity_nc):
-        draw_sensitivity(Path(study_nc), Path(sensitivity_nc), beside)
+    draw_all(Path(study_nc), beside, Path(sensitivity_nc) if has_analysis(sensitivity_nc) else None)
     shutil.rmtree(out, ignore_errors=True)
     beside.rename(out)
 
 
 def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:
     """Write the report, with the sensitivity analysis where there is one."""
-    from trackroller.report.page import write_report  # heavy: matplotlib
-
     analysis = Path(sensitivity_nc) if has_analysis(sensitivity_nc) else None
     write_report(Path(study_nc), Path(figures), Path(out), analysis)
 

@@ -1,28 +1,29 @@
-"""What the report says for a decision: sensitivities, best designs, design points where conditions scatter."""
+"""What the report offers for a decision: Pareto set, design points where conditions scatter, all indices."""
 
 from __future__ import annotations
 
-import logging
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.damage.fatigue import DECADES
-from trackroller.report.comparison import report_section
-from trackroller.report.figures import style
+from trackroller.parameters import PARAMETERS
+from trackroller.report import sentences as words
+from trackroller.report.claims import Sentence
+from trackroller.report.findings import FRICTION_OUTPUTS
+from trackroller.report.numbers import capital, listing, long_name, plus_minus, rounded, unit_text, with_unit
+from trackroller.report.tables import Table, factor_cell
+from trackroller.report.view import StudyView
+from trackroller.study.outputs import read_study, settings
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-log = logging.getLogger(__name__)
 MAX_DESIGNS = 12  # rows of the table of the Pareto set
 MAX_POINTS = 24  # rows of the table of design points
 OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 MEASURES = (
-    ("S1", "Sobol index, alone"),
+    ("S1", "Sobol index, first order"),
     ("ST", "Sobol index, total"),
-    ("main_share", "share of variance, alone"),
+    ("main_share", "share of variance, first order"),
     ("mu_star", "mean absolute effect μ*"),
     ("sigma", "spread of effects σ"),
     ("effect", "change over the range"),
@@ -33,197 +34,152 @@ MEASURES = (
     ("pawn", "PAWN"),
     ("prcc", "partial rank correlation"),
 )
+HALF = "± is half the 95 % interval"
 
 
-def decisions(ds: xr.Dataset, analysis: Path | None) -> dict[str, Any]:
-    """Contents of the report's sections `models`, `sensitivity`, `robust`, `pareto`; {} for what a study does not have.
-
-    Parameters
-    ----------
-    ds : gathered study
-    analysis : file of `trackroller.analysis.sensitivity.analyse`, if there is one
-    """
-    import xarray as xr
-
-    found: dict[str, Any] = {"sensitivity": {}, "robust": {}, "pareto": {}}
-    if analysis is not None and Path(analysis).is_file():
-        with xr.open_dataset(analysis) as opened:
-            sens = opened.load()
-        name = "robust" if sens.attrs.get("method") == "inner_outer" else "sensitivity"
-        found[name] = _guarded(robust_points if name == "robust" else sensitivity, sens)
-    found["pareto"] = _guarded(pareto_designs, ds)
-    found["models"] = _guarded(report_section, ds)
-    return found
-
-
-def _guarded(make: Any, ds: xr.Dataset) -> dict[str, Any]:
-    try:
-        return dict(make(ds))
-    except Exception as problem:  # a table never fails a report
-        log.warning("%s is left out of the report: %s", make.__name__, problem, exc_info=True)
-        return {}
-
-
-def sensitivity(sens: xr.Dataset) -> dict[str, Any]:
-    """Ranking of the factors for each analysed output, with intervals, in words and as tables."""
-    from trackroller.report import sentences as words
-    from trackroller.report.figures.sensitivity import effect_unit, main_outputs
-
-    rows = []
+def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
+    """List the index that ranks the factors for every output, and what it was computed from."""
+    index, rows = words.headline(sens), []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
-        ranks = [
-            f"{r.name} {_value(r.value, r.low, r.high)}"
-            for r in words.order(sens, output)[:4]
-            if r.value > 0 or (r.value and words.headline(sens) in words.SIGNED)
-        ]
-        advice = words.advice_of(sens, output)
-        unit = f" [{effect_unit(sens, output)}]" if words.headline(sens) in ("mu_star", "effect") else ""
-        rows.append((words.upper(words.of_output(sens, output)) + unit, ranks, str(part["note"].item()), advice))
-    index = words.headline(sens)
-    return {
-        "method": str(sens.attrs.get("method", "")),
-        "index": str(sens[index].attrs.get("long_name", index)),
-        "rows": rows,
-        "sentence": words.overview(sens),
-        "needs": str(sens.attrs.get("needs", "")),
-        "treatment": str(sens.attrs.get("treatment", "")),
-        "measures": [measures(sens, name) for name in main_outputs(sens, 2)],
-    }
+        ranks = [f"{r.name} {_value(sens, index, r.value, r.low, r.high)}" for r in words.order(sens, output)[:4]]
+        mark = " *" if error and output in FRICTION_OUTPUTS else ""
+        rows.append([capital(words.of_output(sens, output)) + mark, "; ".join(ranks) or "–", str(part["note"].item())])
+    heads = ["Output", f"Factors that matter most ({words.INDEX_WORDS[index]})", "Computed from"]
+    told = str(sens.attrs.get("treatment", ""))
+    note = f"{HALF}. The method needs {sens.attrs.get('needs', 'nothing')}. {capital(told)}."
+    if any(row[0].endswith("*") for row in rows) and error:
+        note += f" * {error.text}"
+    return Table("indices", "What decides each output", heads, rows, note)
 
 
-def measures(sens: xr.Dataset, output: str) -> dict[str, Any]:
-    """Every index of every factor on one output, with 95 % intervals; those within chance are put in brackets."""
-    from trackroller.report import sentences as words
+def _value(sens: xr.Dataset, key: str, value: float, low: float, high: float) -> str:
+    """One index with half its interval; a share of variance is not shown below 0."""
+    return plus_minus(max(0.0, value) if key in ("first", "S1", "ST", "main_share") else value, low, high)
 
+
+def measure_table(sens: xr.Dataset, output: str) -> Table:
+    """List every index of every factor on one output; those within chance stand in brackets."""
     part = sens.sel(output=output)
     shown = [(key, text) for key, text in MEASURES if key in part and np.isfinite(part[key]).any()]
-    ranks = words.order(sens, output)
     rows = []
-    for rank in ranks:
-        one = part.sel(factor=rank.factor)
-        cells = []
+    for rank in words.order(sens, output):
+        one, cells = part.sel(factor=rank.factor), []
         for key, _ in shown:
             low, high = (float(one[f"{key}_{end}"]) if f"{key}_{end}" in one else np.nan for end in ("low", "high"))
-            value = max(0.0, float(one[key])) if key == "first" else float(one[key])  # no share is below nothing
-            text = _value(value, low, high)
+            text = _value(sens, key, float(one[key]), low, high)
             noise = float(one[f"{key}_noise"]) if f"{key}_noise" in one else np.nan
             cells.append(f"({text})" if float(one[key]) <= noise else text)
-        rows.append((words.upper(rank.name), cells))
-    return {"title": words.upper(words.of_output(sens, output)), "columns": [text for _, text in shown], "rows": rows}
+        rows.append([capital(rank.name), *cells])
+    title = f"All measures: {words.of_output(sens, output)}"
+    note = f"{HALF}; in brackets: no more than a factor without influence reaches by chance."
+    return Table(f"measures_{output}", title, ["Factor", *(text for _, text in shown)], rows, note)
 
 
-def _value(value: float, low: float = np.nan, high: float = np.nan) -> str:
-    """0.61 ± 0.03."""
-    if not np.isfinite(value):
-        return "–"
-    half = max(high - value, value - low)  # an interval may end at 0
-    if not np.isfinite(half):
-        return style.rounded(value, 3)
-    digits = max(0, 1 - int(np.floor(np.log10(half)))) if half > 0 else 3
-    return f"{value:.{min(digits, 6)}f} ± {half:.{min(digits, 6)}f}".replace("-", "−")
+def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
+    """List every analysed output of an inner/outer design by design point: lives first, the best point on top."""
+    names = [str(n) for n in table["output"].values]
+    asked = settings(read_study(table)).get("outputs")
+    lives = [n for n in names if "life" in n and np.isfinite(table["percentile_value"].sel(output=n)).any()]
+    others = [n for n in names if "life" not in n] if asked or not lives else []
+    found = [part for n in lives for part in _life_tables(table, n)]
+    return found + [_point_table(table, n, error) for n in others]
 
 
-def robust_points(table: xr.Dataset) -> dict[str, Any]:
-    """Design points with their life and how often they slip or lift off, the best first."""
-    from trackroller.report import sentences as words
-
-    lives = [str(n) for n in table["output"].values if "life" in str(n)]
-    lives = [n for n in lives if np.isfinite(table["percentile_value"].sel(output=n)).any()] or lives
-    tables = [_points(table, name) for name in lives[:2]]
-    scatter = float(table.attrs.get("log_life_scatter", 0.0))
-    text = "B10 holds the scatter of the study's factors alone, not that of the material."
-    if scatter > 0:
-        text = f"B10 holds the material's own scatter of life, T_N = {style.rounded(10 ** (DECADES * scatter), 3)}."
-    return {
-        "tables": tables,
-        "sentence": " ".join(words.robustness(table, name) for name in lives[:2]),
-        "scatter": text,
-        "samples": int(table.attrs.get("inner_samples", 0)),
-        "treatment": words.upper(str(table.attrs.get("treatment", ""))),
-        "inner": str(table.attrs.get("inner_factors", "")).replace("_", " "),
-    }
-
-
-def _points(table: xr.Dataset, output: str) -> dict[str, Any]:
-    from trackroller.report import sentences as words
-
-    part = table.sel(output=output)
-    key = np.lexsort((-np.nan_to_num(part["b10"].values), -np.nan_to_num(part["b10_safe"].values)))
-    share = part["percentile_value"].sel
+def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
+    """B10 and regimes; percentiles stand apart where B10 holds the scatter of the material and they do not."""
+    part, scatter = table.sel(output=output), float(table.attrs.get("log_life_scatter", 0.0))
+    safe = np.nan_to_num(part["b10_safe"].values)
+    points = np.lexsort((-np.nan_to_num(part["b10"].values), -safe))[:MAX_POINTS]
     seen = [r for r in OTHERS if float(table["probability"].sel(regime=r).max()) > 0]
+    heads = ["Design point", "B10", "B10, 95 % interval", "B10, other regimes as life 0"]
+    heads += [f"{capital(OTHERS[r])} (95 % interval)" for r in seen]
     rows = []
-    for p in key[:MAX_POINTS]:
+    for p in map(int, points):
         b10, low, high = (float(part[n][p]) for n in ("b10", "b10_low", "b10_high"))
-        spread = [style.rounded(float(share(percentile=q)[p]), 3) for q in (5.0, 50.0, 95.0)]
-        chances = [_chance(table, regime, int(p)) for regime in seen]
-        interval = f" ({style.rounded(low, 3)} … {style.rounded(high, 3)})" if np.isfinite(high) else ""
-        rows.append(
-            (
-                words.upper(words.point_words(table, int(p))),
-                [f"{style.rounded(b10, 3)}{interval}", style.rounded(float(part["b10_safe"][p]), 3), *spread, *chances],
-            )
-        )
-    unit = style.unit_text(str(part["output_units"].item()))
-    never = [OTHERS[r] for r in OTHERS if r not in seen]
-    high = 100 * float(table["probability_high"].sel(regime=[r for r in OTHERS if r not in seen]).max()) if never else 0
-    said = f"No case of any point shows {words.listing(never)}: below {high:.2g} % at each (95 %)." if never else ""
-    return {
-        "title": words.upper(str(part["output_name"].item())),
-        "unit": unit,
-        "rows": rows,
-        "never": said,
-        "columns": [words.upper(OTHERS[r]) for r in seen],
-        "left": max(0, table.sizes["point"] - MAX_POINTS),
-    }
+        span = f"{rounded(low)} to {rounded(high)}" if np.isfinite(high) else "–"
+        chances = [_chance(table, regime, p) for regime in seen]
+        rows.append([capital(words.point_words(table, p)), b10, span, float(part["b10_safe"][p]), *chances])
+    unit = unit_text(str(part["output_units"].item()))
+    name = capital(str(part["output_name"].item()))
+    own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DECADES * scatter))}."
+    note = own if scatter > 0 else "B10 holds the scatter of the study's factors alone, not that of the material."
+    note = " ".join(t for t in (note, _never(table, seen), _left(table)) if t)
+    first = Table(f"b10_{output}", f"{name}: B10 [{unit}], best design points first", heads, rows, note)
+    return [first, _point_table(table, output, None, points)]
+
+
+def _never(table: xr.Dataset, seen: list[str]) -> str:
+    never = [r for r in OTHERS if r not in seen]
+    if not never:
+        return ""
+    high = 100 * float(table["probability_high"].sel(regime=never).max())
+    return f"No case of any point shows {listing([OTHERS[r] for r in never], 'or')}: below {high:.2g} % at each (95 %)."
+
+
+def _left(table: xr.Dataset) -> str:
+    left = table.sizes["point"] - MAX_POINTS
+    return f"{left} more design points are in sensitivity.nc." if left > 0 else ""
+
+
+def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points: np.ndarray | None = None) -> Table:
+    """Mean and percentiles of an output at each design point, from the scatter of the study's factors alone."""
+    part = table.sel(output=output)
+    points = np.arange(min(table.sizes["point"], MAX_POINTS)) if points is None else points
+    shares = (5.0, 50.0, 95.0)
+    rows = []
+    for p in map(int, points):
+        spread = [float(part["percentile_value"].sel(percentile=q)[p]) for q in shares]
+        rows.append([capital(words.point_words(table, p)), float(part["mean"][p]), *spread])
+    heads = ["Design point", "Mean", *(f"{q:.0f} %" for q in shares)]
+    name, unit = capital(str(part["output_name"].item())), unit_text(str(part["output_units"].item()))
+    note = "Rolling cases; scatter of the study's factors alone, without that of the material."
+    note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
+    return Table(f"percentiles_{output}", f"{name} [{unit}]: mean and percentiles", heads, rows, note)
 
 
 def _chance(table: xr.Dataset, regime: str, point: int) -> str:
     value, low, high = (
         100 * float(table[n].sel(regime=regime)[point]) for n in ("probability", "probability_low", "probability_high")
     )
-    return f"{value:.3g} % ({low:.2g} … {high:.2g})" if value else f"0 (below {high:.2g} %)"
+    return f"{value:.3g} % ({low:.2g} to {high:.2g})" if value else f"0 (below {high:.2g} %)"
 
 
-def pareto_designs(ds: xr.Dataset) -> dict[str, Any]:
-    """The designs that no other beats, along the first goal."""
-    from trackroller.analysis.pareto import study_pareto
-    from trackroller.report import sentences as words
-
-    front = study_pareto(ds)
-    if front is None:
-        return {}
-    goals = [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]
+def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> Table | None:
+    """List Pareto-optimal designs along the first goal, with a column that says which lie outside the model."""
+    goals = words.goals_of(front)
     best = np.flatnonzero(front["optimal"].values == 1)
+    if not len(best):
+        return None
     first, way = goals[0]
     best = best[np.argsort(front[first].values[best] * (-1 if way == "max" else 1), kind="stable")]
-    along = np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best)))
-    shown = best[np.unique(along.astype(int))]
-    names = [n for n, _ in goals]
-    others = [str(n) for n in front.data_vars if n not in names and n != "optimal"]
-    columns = [*names, *others]
+    shown = best[np.unique(np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int))]
+    names = [n for n, _ in goals] + [str(n) for n in front.data_vars if n not in (*dict(goals), "optimal")]
     arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
-    return {
-        "columns": [_heading(front, n) + arrows.get(n, "") for n in columns],
-        "rows": [(int(front["row"][i]), [_cell(n, front[n].values[i]) for n in columns]) for i in shown],
-        "sentence": words.pareto(front),
-        "count": len(best),
-        "constraints": str(front.attrs.get("constraints", "")),
-        "goals": words.upper(
-            "; ".join(f"{_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals)
-        ),
-    }
+    rows = []
+    for i in shown:
+        case = int(front["row"][i])
+        inside = "inside" if view.valid[case] else "outside"
+        rows.append([case, *(_front_cell(n, front[n].values[i]) for n in names), inside])
+    heads = ["Case", *(_heading(front, n) + arrows.get(n, "") for n in names), "Model"]
+    told = [f"{_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
+    note = f"{capital('; '.join(told))}."
+    note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
+    if len(best) > len(rows):
+        note += f" {len(rows)} of the {len(best)} designs, evenly along the first goal."
+    note += f" {error.text}" if error and any(n in FRICTION_OUTPUTS for n, _ in goals) else ""
+    return Table("pareto", "Pareto-optimal designs", heads, rows, note)
 
 
 def _words(front: xr.Dataset, name: str) -> str:
-    return str(front[name].attrs.get("long_name") or style.long_name(name))
+    return str(front[name].attrs.get("long_name") or long_name(name))
 
 
 def _heading(front: xr.Dataset, name: str) -> str:
-    units = str(front[name].attrs.get("units", "")) or (style.PARAMETERS[name].unit if name in style.PARAMETERS else "")
-    text = style.capital(_words(front, name))
-    return style.with_unit(text, units) if units and units != "1" else text
+    units = str(front[name].attrs.get("units", "")) or (PARAMETERS[name].unit if name in PARAMETERS else "")
+    text = capital(_words(front, name))
+    return with_unit(text, units) if units and units not in ("1", "-") else text
 
 
-def _cell(name: str, value: Any) -> str:
-    return style.level_text(name, value if isinstance(value, str) else float(value) + 0.0, unit=False)  # -0 is 0
+def _front_cell(name: str, value: Any) -> Any:
+    return factor_cell(name, value if isinstance(value, str) else float(value) + 0.0)  # -0 is 0

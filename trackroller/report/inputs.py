@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
-from trackroller.report.figures import style
-from trackroller.report.figures.study_view import StudyView, study_settings
+from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, unit_text
+from trackroller.report.view import StudyView
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,21 +20,21 @@ Table = list[dict[str, Any]]
 
 def factor_table(view: StudyView) -> Table:
     """One row a factor: name, symbol, unit, values as set in the study file (or as found), number of them."""
-    given = study_settings(view.attrs).get("factors", {})
+    given = view.study.get("factors", {})
     rows = []
     for name in view.factors:
         levels, p = view.levels(name), PARAMETERS.get(name)
         few = view.grid or len(levels) <= 12 or not view.numeric(name)
         if few:
             words = name in ("motor_force", "guide_curve_radius")
-            values = ", ".join(style.level_text(name, v, unit=words) for v in levels)
+            values = ", ".join(level_text(name, v, unit=words) for v in levels)
         else:
             values = _range(levels)
         rows.append(
             {
-                "name": style.capital(style.long_name(name)),
+                "name": capital(long_name(name)),
                 "symbol": _symbol(p.symbol) if p else ("", ""),
-                "unit": style.unit_text(p.unit) if p else "",
+                "unit": unit_text(p.unit) if p else "",
                 "values": values,
                 "count": len(levels),
                 "spec": _spec(given.get(name)) if isinstance(given, Mapping) else "",
@@ -54,9 +54,9 @@ def _derived(view: StudyView, given: Mapping[str, Any]) -> Table:
             continue
         rows.append(
             {
-                "name": style.capital(style.long_name(name)),
+                "name": capital(long_name(name)),
                 "symbol": _symbol(p.symbol) if p else ("", ""),
-                "unit": style.unit_text(p.unit) if p else "",
+                "unit": unit_text(p.unit) if p else "",
                 "values": _range(levels) if view.numeric(name) else ", ".join(map(str, levels[:6])),
                 "count": len(levels),
                 "spec": _spec(spec),
@@ -66,7 +66,7 @@ def _derived(view: StudyView, given: Mapping[str, Any]) -> Table:
 
 
 def _range(levels: list[float]) -> str:
-    return " … ".join(style.near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
+    return " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
 
 
 def _symbol(symbol: str) -> tuple[str, str]:
@@ -97,10 +97,10 @@ def base_table(view: StudyView, ds: xr.Dataset) -> Table:
         if isinstance(value, (int, float)) and not np.isnan(value):
             rows.append(
                 {
-                    "name": style.capital(p.long_name),
+                    "name": capital(p.long_name),
                     "symbol": _symbol(p.symbol),
-                    "value": style.number(float(value)),
-                    "unit": style.unit_text(p.unit),
+                    "value": number(float(value)),
+                    "unit": unit_text(p.unit),
                 }
             )
     if "material_pair" not in view.factors:
@@ -108,13 +108,11 @@ def base_table(view: StudyView, ds: xr.Dataset) -> Table:
             value = view.base.get(name)
             if name not in view.factors and value is not None:
                 value = value.get("name", "inline") if isinstance(value, Mapping) else value
-                rows.append(
-                    {"name": style.capital(style.plain(name)), "symbol": ("", ""), "value": str(value), "unit": ""}
-                )
+                rows.append({"name": capital(plain(name)), "symbol": ("", ""), "value": str(value), "unit": ""})
     for name in MAPPING_FIELDS:
         if name not in view.table and view.base.get(name):
-            text = style.level_text(name, str(view.base[name]))
-            rows.append({"name": style.capital(style.plain(name)), "symbol": ("", ""), "value": text, "unit": ""})
+            text = level_text(name, str(view.base[name]))
+            rows.append({"name": capital(plain(name)), "symbol": ("", ""), "value": text, "unit": ""})
     return rows
 
 
@@ -135,8 +133,8 @@ def materials_table(attrs: Mapping[str, Any]) -> Table:
     rows = []
     for name, values in stored.items() if isinstance(stored, Mapping) else ():
         if isinstance(values, Mapping):
-            row = {key: style.number(float(values[key])) for key, _ in columns if _is_number(values.get(key))}
-            rows.append({"name": name, **row})
+            row = {key: number(float(values[key])) for key, _ in columns if _is_number(values.get(key))}
+            rows.append({"name": name, "source": str(values.get("source", "")), **row})
     return rows
 
 
@@ -156,5 +154,5 @@ def record_table(attrs: Mapping[str, Any], skip: set[str]) -> list[tuple[str, st
                 text = ", ".join(f"{k} {v}" for k, v in json.loads(text).items())
             except (ValueError, AttributeError):
                 pass
-        rows.append((style.capital(style.plain(str(key))), text))
+        rows.append((capital(plain(str(key))), text))
     return rows

@@ -5,27 +5,39 @@ from __future__ import annotations
 import base64
 import json
 import logging
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import jinja2
+import markupsafe
 import numpy as np
+import xarray as xr
 
 from trackroller import parameters
-from trackroller.report.decisions import decisions
-from trackroller.report.figures import style
-from trackroller.report.figures.study_loads import surface_share
-from trackroller.report.figures.study_view import StudyView, study_settings
+from trackroller.analysis.pareto import study_pareto
+from trackroller.report import sentences as words
+from trackroller.report.comparison import report_section
+from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
+from trackroller.report.findings import friction_error
 from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
+from trackroller.report.numbers import capital, count, long_name, percent, plain, rounded
+from trackroller.report.pages import inline
 from trackroller.report.papers import conventions, papers
-from trackroller.report.tables import causes, design_rows, only_model, ranked, reasons, regime_table, validity_table
-
-if TYPE_CHECKING:
-    import xarray as xr
+from trackroller.report.summary import in_short
+from trackroller.report.tables import Table, best_table, cell, reason_table, regime_table, validity_table
+from trackroller.report.view import StudyView
+from trackroller.report.workbook import export
 
 log = logging.getLogger(__name__)
 SAMPLED = ("lhs", "sobol", "morris", "saltelli", "inner_outer")  # designs that `samples` counts for
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
+SECTIONS = {  # where a figure stands, by the beginning of its name
+    "decide": ("pareto-front", "robustness-"),
+    "ends": ("regime_map", "forces_against"),
+    "models": ("models-",),
+}
 _TOLD = {
     "study",
     "materials",
@@ -41,25 +53,19 @@ _TOLD = {
 
 
 def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_nc: Path | None = None) -> Path:
-    """Write the report of a gathered study as one self-contained HTML file.
+    """Write the report of a gathered study as one self-contained HTML file, and its tables beside it.
 
     Parameters
     ----------
     study_nc : gathered study
     figures_dir : folder with the figures and their `index*.json`; may be empty or missing
-    out_html : the file to write; written whole or not at all
-    sensitivity_nc : analysis of the study, when there is one
+    out_html : the file to write, whole or not at all; the tables go into the folder `tables` beside it
+    sensitivity_nc : analysis of the study, if there is one
 
     Returns
     -------
     The path written.
     """
-    import jinja2
-    import markupsafe
-    import xarray as xr
-
-    from trackroller.report.pages import inline
-
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trackroller.report", "templates"),
         autoescape=True,
@@ -68,47 +74,50 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["marked"] = lambda text: markupsafe.Markup(inline(str(text)))
-    with xr.open_dataset(study_nc) as ds:
-        content = contents(ds) | decisions(ds, sensitivity_nc)
-    content["figures"] = figures(Path(figures_dir))
-    content["summary"] += content["models"].get("short", [])
+    environment.filters["cell"] = cell
+    environment.tests["text"] = lambda value: isinstance(value, str)
+    sens = None
+    if sensitivity_nc is not None and Path(sensitivity_nc).is_file():
+        with xr.open_dataset(sensitivity_nc) as opened:
+            sens = opened.load()
+    with xr.open_dataset(study_nc) as opened:
+        content = contents(opened.load(), sens)
+    content["figures"] = _placed(figures(Path(figures_dir)))
     text = environment.get_template("report.html.j2").render(content)
     out_html = Path(out_html)
     out_html.parent.mkdir(parents=True, exist_ok=True)
     part = out_html.with_name(f".{out_html.name}.part")
     part.write_text(text, encoding="utf-8")
     part.replace(out_html)
+    export([t for key in ("decide", "why", "ends", "models") for t in content[key]], out_html.parent / "tables")
     return out_html
 
 
-def contents(ds: xr.Dataset) -> dict[str, Any]:
-    """Everything the template needs from the gathered study."""
+def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
+    """Return everything the template needs from the gathered study and its analysis.
+
+    Parameters
+    ----------
+    ds : gathered study
+    sens : analysis of the study, if there is one
+    """
     view = StudyView.of(ds)
-    attrs, results = dict(ds.attrs), set(map(str, ds.data_vars))
-    settings = study_settings(attrs)
+    attrs, results, settings = dict(ds.attrs), set(map(str, ds.data_vars)), view.study
     merged = {**{k: settings[k] for k in (*OPTIONS, "design") if k in settings}, **attrs}
-    order = ranked(view)
+    models = _guarded(dict, report_section, ds)
     return {
         "name": str(settings.get("name") or attrs.get("study_name") or "Parameter study"),
         "description": str(settings.get("description") or attrs.get("comment") or ""),
-        "cases": len(view.table),
-        "design": str(merged.get("design", "grid" if view.grid else "sample")),
-        "samples": settings.get("samples") if str(merged.get("design")) in SAMPLED else None,
-        "date": str(attrs.get("date_created") or attrs.get("date") or attrs.get("created") or ""),
+        "facts": _facts(view, merged),
+        "summary": in_short(view, sens, models.get("short", [])),
+        **sections(ds, view, sens, models),
+        "models_said": [*models.get("overview", []), *models.get("details", [])],
         "factors": factor_table(view),
         "base": base_table(view, ds),
-        "options": [(style.capital(style.long_name(k)), told) for k in OPTIONS if (told := _told(merged.get(k, "")))]
+        "options": [(capital(long_name(k)), told) for k in OPTIONS if (told := _told(merged.get(k, "")))]
         + models_used(ds),
         "materials": materials_table(attrs),
-        "regimes": regime_table(view),
-        "validity": validity_table(view, ds),
-        "reasons": reasons(ds),
         "solution": solution_facts(ds, view),
-        "ranked_by": order[0] if order else "",
-        "ranked_model": only_model(view) or "",
-        "best": design_rows(view, order[1]) if order and len(order[1]) else [],
-        "worst": design_rows(view, order[2]) if order else [],
-        "summary": summary(view),
         "conventions": conventions(merged, results),
         "papers": papers(merged, results),
         "record": record_table(attrs, _TOLD),
@@ -116,45 +125,74 @@ def contents(ds: xr.Dataset) -> dict[str, Any]:
     }
 
 
+def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: dict[str, Any]) -> dict[str, Any]:
+    """Return the tables of the sections: decide, why, where the study ends, contact models."""
+    error = friction_error(view)
+    decide: list[Table | None] = [best_table(view)]
+    front = _guarded(lambda: None, study_pareto, ds)
+    said = []
+    if front is not None:
+        said.append(words.pareto(front, view).text)
+        decide.append(pareto_table(front, view, error))
+    why: list[Table] = []
+    if sens is not None and words.robust_design(sens):
+        decide += _guarded(list, robust_tables, sens, error)
+        said += [words.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
+    elif sens is not None:
+        why = [index_table(sens, error), *(measure_table(sens, name) for name in _leading_outputs(sens))]
+    compared = []
+    if models.get("rows"):
+        rows = [[name, *cells] for name, cells in models["rows"]]
+        compared = [
+            Table("contact_models", "Errors of the cheaper models", ["Model, quantity", *models["columns"]], rows)
+        ]
+    return {
+        "decide": [t for t in decide if t],
+        "decide_said": said,
+        "why": why,
+        "ends": [t for t in (regime_table(view), validity_table(view), reason_table(ds)) if t],
+        "models": compared,
+    }
+
+
+def _leading_outputs(sens: xr.Dataset, most: int = 2) -> list[str]:
+    """Lives first, then the other outputs that have an index."""
+    index = words.headline(sens)
+    names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
+    return sorted(names, key=lambda n: "life" not in n)[:most]
+
+
+def _guarded(empty: Callable[[], Any], make: Callable[..., Any], *arguments: Any) -> Any:
+    """Return what `make` gives; a part that fails is logged and left empty, so that the report is written."""
+    try:
+        return make(*arguments)
+    except Exception as problem:
+        log.warning("%s is left out of the report: %s", make.__name__, problem, exc_info=True)
+        return empty()
+
+
+def _facts(view: StudyView, merged: dict[str, Any]) -> str:
+    """The line under the title: date, design, size, model, accuracy."""
+    design = str(merged.get("design", "grid" if view.grid else "sample")).replace("_", " ")
+    samples = view.study.get("samples") if design.replace(" ", "_") in SAMPLED else None
+    date = str(merged.get("date_created") or merged.get("date") or merged.get("created") or "")
+    parts = [
+        date[:10],
+        f"design {design}{f' with {count(samples)} samples' if samples else ''}",
+        f"{count(len(view.table))} cases",
+        f"contact model {_told(merged['contact_model'])}" if merged.get("contact_model") else "",
+        f"accuracy {_told(merged['accuracy'])}" if merged.get("accuracy") else "",
+    ]
+    return " · ".join(p for p in parts if p)
+
+
 def _told(value: Any) -> str:
-    """An option as a reader wants it: a list, as of a factor or of terms, as its entries."""
+    """Write an option: a list, as of a factor or of terms, as its entries."""
     return ", ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
 
 
-def summary(view: StudyView) -> list[str]:
-    """The plain sentences at the head of the report."""
-    table, said = view.table, []
-    if "regime" in table:
-        regime = table["regime"].to_numpy()
-        counts = [f"{int((regime == c).sum())} {n}" for c, n in enumerate(style.REGIME_LABELS) if (regime == c).any()]
-        said.append(f"{len(table)} cases: {', '.join(counts)}.")
-        for code in (1, 2, 3):
-            if why := causes(view, regime == code):
-                said.append(f"{style.capital(style.REGIME_LABELS[code])} goes with {'; '.join(why)}.")
-    if view.has("stopped") and (stopped := int((table["stopped"] == 1).sum())):
-        said.append(f"{stopped} of {len(table)} cases met the condition of stop_if: no stress and no life was sought.")
-    if view.life is not None:
-        column, words, unit = view.life
-        life = table[column].to_numpy()
-        good = life[np.isfinite(life)]
-        if good.size:
-            endless = int(np.isposinf(life).sum())
-            half = style.number(float(np.median(life[~np.isnan(life)])))
-            text = f"{words}: from {style.number(good.min())} to {style.number(good.max())} {unit}"
-            said.append(f"{text}, half of the cases below {half} {unit}{f', {endless} unlimited' if endless else ''}.")
-    for body in ("roller", "guide"):
-        if view.has(f"peak_stress_{body}"):
-            peak = table[f"peak_stress_{body}"].to_numpy()
-            low, high = style.number(np.nanmin(peak)), style.number(np.nanmax(peak))
-            text = f"Peak von Mises stress of the {body}: from {low} to {high} MPa"
-            if view.has(f"at_surface_{body}"):
-                text += f", {surface_share(view.table[f'at_surface_{body}'].to_numpy())}"
-            said.append(text + ".")
-    return said
-
-
 def models_used(ds: xr.Dataset) -> list[tuple[str, str]]:
-    """How many cases each contact model solved, where it was chosen case by case."""
+    """Say how many cases each contact model solved, where it was chosen case by case."""
     if "contact_model_used" not in ds:
         return []
     names = str(ds["contact_model_used"].attrs.get("flag_meanings", "")).split()
@@ -170,27 +208,26 @@ def models_used(ds: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:
-    """How well the cases are solved."""
+    """Say how well the cases are solved."""
     rows = []
     if "converged" in view.table:
-        rows.append(("Converged cases", f"{int((view.table['converged'] == 1).sum())} of {len(view.table)}"))
-    for name, words in (
+        done = int((view.table["converged"] == 1).sum())
+        rows.append(("Converged cases", f"{count(done)} of {count(len(view.table))}"))
+    for name, told in (
         ("residual", "Largest relative residual of the equilibrium"),
         ("error_estimate", "Largest estimated relative error of the peak stress"),
     ):
-        if name in ds and ds[name].dtype.kind == "f":
-            values = ds[name].values
-            if np.isfinite(values).any():
-                good = values[np.isfinite(values)]
-                text = style.rounded(float(good.max()), 2)
-                if name == "error_estimate" and good.max() > 0.01:
-                    text += f" (half of the peaks below {style.rounded(float(np.median(good)), 2)})"
-                rows.append((words, text))
+        if name in ds and ds[name].dtype.kind == "f" and np.isfinite(ds[name].values).any():
+            good = ds[name].values[np.isfinite(ds[name].values)]
+            text = rounded(float(good.max()), 2)
+            if name == "error_estimate" and good.max() > 0.01:
+                text = f"{percent(float(good.max()))} (median {percent(float(np.median(good)))})"
+            rows.append((told, text))
     return rows
 
 
 def figures(folder: Path) -> list[dict[str, str]]:
-    """Figures of a folder as data URIs with captions: those of its indices first, then what else lies there."""
+    """Return the figures of a folder as data URIs with captions: those of its indices first, then other files."""
     listed: list[dict[str, Any]] = []
     for index in sorted(folder.glob("index*.json"), key=lambda p: (p.name != "index.json", p.name)):
         try:
@@ -199,19 +236,25 @@ def figures(folder: Path) -> list[dict[str, str]]:
             log.warning("%s cannot be read: %s", index, problem)
     names = {str(item.get("name")) for item in listed}
     stems = sorted({p.stem for p in folder.glob("*.[sp][vn]g") if not p.name.startswith(".")} - names)
-    listed += [{"name": s, "caption": style.plain(s), "sentence": ""} for s in stems]
+    listed += [{"name": s, "caption": plain(s), "sentence": ""} for s in stems]
     found = []
     for item in listed:
         if source := _data_uri(folder, str(item["name"])):
-            found.append(
-                {
-                    "name": str(item["name"]),
-                    "source": source,
-                    "caption": str(item.get("caption", "")),
-                    "sentence": str(item.get("sentence", "")),
-                }
-            )
+            texts = {key: str(item.get(key, "")) for key in ("name", "caption", "sentence")}
+            found.append(texts | {"source": source})
     return found
+
+
+def _placed(found: list[dict[str, str]]) -> dict[str, list[dict[str, Any]]]:
+    """Sort figures into the sections of the report and number them in the order of the page."""
+    placed: dict[str, list[dict[str, Any]]] = {key: [] for key in ("decide", "why", "ends", "models")}
+    for item in found:
+        section = next((key for key, starts in SECTIONS.items() if item["name"].startswith(starts)), "why")
+        placed[section].append(item)
+    every = [item for items in placed.values() for item in items]
+    for number, item in enumerate(every, 1):
+        item["number"] = number  # type: ignore[assignment]
+    return placed
 
 
 def _data_uri(folder: Path, name: str) -> str:

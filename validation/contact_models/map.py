@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.report.figures import style
+from trackroller.report.numbers import factor_label, number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +34,7 @@ def choice_map(tolerance: float = 0.05) -> Figure:
     style.head(
         figure,
         "The cheapest contact model that a tolerance allows",
-        f"Above: paper's roller, free, no axial force, {style.number(100 * tolerance)} % (dashed: half and "
+        f"Above: paper's roller, free, no axial force, {number(100 * tolerance)} % (dashed: half and "
         "twice). Below: random designs.",
     )
     style.finish(figure)
@@ -69,7 +70,7 @@ def _regions(axes: Axes, tolerance: float) -> None:
     axes.set_xscale("log")
     style.log_ticks(axes.xaxis, 0.02, 0.6)
     axes.set_xlabel(r"Friction coefficient $\mu$ [–]")
-    axes.set_ylabel(style.factor_label("contact_angle"))
+    axes.set_ylabel(factor_label("contact_angle"))
 
 
 def _shares(axes: Axes) -> None:
@@ -81,7 +82,7 @@ def _shares(axes: Axes) -> None:
         width = 100 * m["shares"][:, k]
         axes.barh(at, width, 0.7, left, color=SHADES[k], hatch=HATCHES[k], edgecolor="0.2", label=name)
         left = left + width
-    axes.set_yticks(at, [f"{style.number(100 * float(t))} %" for t in m["tolerances"]])
+    axes.set_yticks(at, [f"{number(100 * float(t))} %" for t in m["tolerances"]])
     axes.invert_yaxis()
     axes.set_xlim(0, 100)
     axes.set_ylabel("Tolerance")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.report.figures import style
+from trackroller.report.numbers import level_text, number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,7 +41,7 @@ def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
             image = _patch(axes[row, column], one, mu, top)
             if row == 0:
                 axes[row, column].set_title(name, pad=3)
-        text = f"$\\mu$ = {style.number(mu)}, {style.level_text('motor_force', force)}"
+        text = f"$\\mu$ = {number(mu)}, {level_text('motor_force', force)}"
         axes[row, 0].set_ylabel(f"{text}\n" + r"$y_\mathrm{C}$ (rolling) [mm]")
     for last in axes[-1]:
         last.set_xlabel(r"$x_\mathrm{C}$ (lateral) [mm]")

@@ -11,7 +11,6 @@ import numpy as np
 from trackroller.report.figures.style import (
     REGIME_COLOURS,
     REGIME_HATCHES,
-    REGIME_LABELS,
     FigureInfo,
     finish,
     head,
@@ -20,6 +19,7 @@ from trackroller.report.figures.style import (
     save,
     write_index,
 )
+from trackroller.report.numbers import REGIME_LABELS
 
 Record = dict[str, Any]
 CHECKS = {

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.report.figures import style
+from trackroller.report.numbers import rounded, with_unit
 from validation.tradeoff.summary import levels
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
         k = list(SERIES).index(key)
         taken += _series(axes, found, quantity, colours[k], style.MARKERS[k], style.LINES[k], SERIES[key])
     letters = _presets(axes, records, summary["presets"], quantity)
-    axes.set_xlabel(style.with_unit("CPU time a case", "ms"))
+    axes.set_xlabel(with_unit("CPU time a case", "ms"))
     axes.set_ylabel(f"Relative error of the {words} [{unit}]")
     axes.margins(x=0.12, y=0.06)
     style.log_ticks(axes.xaxis, *axes.get_xlim())
@@ -181,8 +182,8 @@ def _sentence(series: dict[Any, list[Record]], quantity: str, words: str) -> str
         if found:
             best = min(found, key=lambda r: levels(r, quantity)[2])
             parts.append(
-                f"{name} reaches {style.rounded(levels(best, quantity)[2], 2)} in 99 % of the designs for "
-                f"{style.rounded(1e3 * best['cost'], 2)} ms"
+                f"{name} reaches {rounded(levels(best, quantity)[2], 2)} in 99 % of the designs for "
+                f"{rounded(1e3 * best['cost'], 2)} ms"
             )
     return f"The {words}: " + "; ".join(parts) + "." if parts else f"The {words} against its cost."
 
@@ -218,8 +219,8 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
         return None
     low, high = axes.get_xlim()
     style.log_ticks(axes.xaxis, low, high)
-    axes.set_xlabel(style.with_unit("Points across the patch, or of quadrature", "-"))
-    axes.set_ylabel(style.with_unit("Relative error, median of the designs", "-"))
+    axes.set_xlabel(with_unit("Points across the patch, or of quadrature", "-"))
+    axes.set_ylabel(with_unit("Relative error, median of the designs", "-"))
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)
     style.head(figure, "How fast the stages converge", "median error over the designs; order: slope of the line")
     caption = (
@@ -258,7 +259,7 @@ def spread(summary: dict[str, Any], ds: xr.Dataset) -> Drawn | None:
     axes.axhline(1.0, color=_GREY, linewidth=0.7, linestyle=(0, (1, 2)))
     axes.text(0.02, 1.12, "1 % of the designs", fontsize=6.5, color=_GREY, transform=axes.get_yaxis_transform())
     axes.set_ylim(0.7 * smallest, 130)
-    axes.set_xlabel(style.with_unit("Relative error of the peak stress", "-"))
+    axes.set_xlabel(with_unit("Relative error of the peak stress", "-"))
     axes.set_ylabel("Share of designs beyond [%]")
     figure.legend(loc="outside lower left", ncols=3, handlelength=2.6)
     style.head(figure, "How the error of the peak stress spreads", "full sliding; worst of the four peaks of a design")

@@ -88,8 +88,9 @@ QUANTITIES = (
 def errors(paired: xr.Dataset) -> xr.Dataset:
     """Error of each cheaper model against the reference where both roll, over `contact_model` and `design`.
 
-    `paired`: dataset of `trackroller.report.comparison.pairs`. Relative errors; friction forces over mu F_N, the spin moment over
-    mu F_N sqrt(a b), stick as a difference of shares; the larger of both contacts and bodies.
+    `paired`: dataset of `trackroller.report.comparison.pairs`. Errors are relative; those of friction forces are over
+    mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick is a difference of shares. The larger error
+    of both contacts and bodies counts.
     """
     import xarray as xr
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.report.figures import style
+from trackroller.report.numbers import level_text, long_name, number, rounded, short_levels
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -66,7 +66,7 @@ def _categories(name: str, values: np.ndarray) -> Groups:
     """Also numbers of which one is no finite one, as the curve of a straight guide."""
     kinds = list(dict.fromkeys(values.tolist())) if values.dtype.kind != "f" else np.unique(values).tolist()
     index = np.array([kinds.index(v) if v == v else -1 for v in values.tolist()])
-    texts = tuple(style.short_levels([style.level_text(name, k) for k in kinds]))
+    texts = tuple(short_levels([level_text(name, k) for k in kinds]))
     at = np.arange(len(kinds), dtype=float)
     return Groups(name, at, texts, at, at, index, False)
 
@@ -76,8 +76,8 @@ def span(name: str, low: float, high: float) -> str:
     figures = 2 if name in (FRICTION, *DERIVED) else 4 if low == high else 3
     low, high = float(f"{low:.{figures}g}"), float(f"{high:.{figures}g}")
     if low == high:
-        return style.level_text(name, low)
-    return f"{style.number(low)} to {style.level_text(name, high, unit=name not in ('guide_curve_radius',))}"
+        return level_text(name, low)
+    return f"{number(low)} to {level_text(name, high, unit=name not in ('guide_curve_radius',))}"
 
 
 def drives(ds: xr.Dataset) -> Groups:
@@ -90,7 +90,7 @@ def drives(ds: xr.Dataset) -> Groups:
     for s in parts:
         own = np.abs(force[sign == s])
         way = {-1.0: "driven", 0.0: "free rolling", 1.0: "braked"}[s]
-        low, high = (style.rounded(float(v), 2) for v in (own.min(), own.max()))
+        low, high = (rounded(float(v), 2) for v in (own.min(), own.max()))
         texts.append(way if s == 0 else f"{way}, {low} N" if low == high else f"{way}, {low} to {high} N")
     index = np.searchsorted(parts, sign)
     at = np.arange(len(parts), dtype=float)
@@ -99,7 +99,7 @@ def drives(ds: xr.Dataset) -> Groups:
 
 def name_of(name: str) -> str:
     """A factor, or the spin, in running text."""
-    return DERIVED.get(name) or ("friction" if name == FRICTION else style.long_name(name))
+    return DERIVED.get(name) or ("friction" if name == FRICTION else long_name(name))
 
 
 def spin_is_its_own(ds: xr.Dataset) -> bool:

@@ -18,7 +18,7 @@ from trackroller.report.comparison.groups import (
     span,
     spin_is_its_own,
 )
-from trackroller.report.figures import style
+from trackroller.report.numbers import capital, rounded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,7 @@ def percent(value: float) -> str:
     """A share or an error in two figures."""
     if not np.isfinite(value):
         return "unlimited"
-    return f"{style.rounded(100 * value, 2)} %" if value >= 1e-4 or value == 0 else "0.01 %"
+    return f"{rounded(100 * value, 2)} %" if value >= 1e-4 or value == 0 else "0.01 %"
 
 
 def sentences(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
@@ -312,4 +312,4 @@ def gap(found: xr.Dataset, name: str) -> str:
             middle, _, most = _spread(e)
             said.append(f"{model} is off by {percent(middle)} in the median and {percent(most)} at most")
     words = next((q.words.split(" (")[0] for q in measured(found) if q.name == name), name)
-    return f"{style.capital(words)}: {', '.join(said)}." if said else ""
+    return f"{capital(words)}: {', '.join(said)}." if said else ""

@@ -13,6 +13,7 @@ from trackroller.report.comparison.groups import spin_is_its_own
 from trackroller.report.comparison.words import gap, percent, short, telling_factors
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
+from trackroller.report.numbers import capital, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -212,7 +213,7 @@ def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     if "life" in paired:
         capped_life, height = capped(shown.ds["life"].values)
         lives = shown.ds["life"].copy(data=capped_life)
-        label = style.with_unit(style.capital(paired.attrs["life"]), paired["life"].attrs["units"])
+        label = with_unit(capital(paired.attrs["life"]), paired["life"].attrs["units"])
         rows.append((label.replace(" of ", " of\n"), lambda one: lives.sel(contact_model=one["contact_model"].item())))
     if not rows:
         return None

@@ -12,6 +12,7 @@ import numpy as np
 from trackroller.parameters import PARAMETERS
 from trackroller.report.comparison.groups import DERIVED, DRIVE, FRICTION, Groups, drives, factors, groups
 from trackroller.report.figures import style
+from trackroller.report.numbers import capital, factor_label, level_text, long_name
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,7 +43,7 @@ class Frame:
 
     def titles(self) -> list[str]:
         """Headings of the columns."""
-        return [style.capital(t) for t in self.columns.texts] if self.columns is not None else [""]
+        return [capital(t) for t in self.columns.texts] if self.columns is not None else [""]
 
     def inside(self, column: int) -> np.ndarray:
         """Designs of a column, (n,)."""
@@ -105,7 +106,7 @@ def _held(ds: xr.Dataset, shown: tuple[str, ...]) -> tuple[np.ndarray, str]:
         level = given if given in levels else levels[len(levels) // 2] if values.dtype.kind == "f" else levels[0]
         kept &= values == level
         bare = name in (DRIVE, "guide_curve_radius", "material_pair")
-        said.append(("" if bare else f"{style.long_name(name)} ") + style.level_text(name, level))
+        said.append(("" if bare else f"{long_name(name)} ") + level_text(name, level))
     return kept, f"Held: {'; '.join(said)}." if said else ""
 
 
@@ -153,7 +154,7 @@ def set_axis(axes: Axes, x: Groups) -> None:
 def axis_label(name: str) -> str:
     """Axis label of a factor or of what is computed from factors."""
     derived = {"spin": r"Spin $\varphi\,\rho$ [–]", "lean": r"$\mu\,\tan\alpha$ [–]"}
-    return derived[name] if name in DERIVED else style.factor_label(name)
+    return derived[name] if name in DERIVED else factor_label(name)
 
 
 def line(

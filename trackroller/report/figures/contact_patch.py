@@ -8,6 +8,7 @@ import numpy as np
 
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, framed, patches_of
+from trackroller.report.numbers import REGIME_LABELS, number, rounded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,8 +23,8 @@ def case_text(ds: xr.Dataset) -> str:
     """What the case is, as far as the data set tells."""
     regime = int(ds["regime"]) if "regime" in ds else 0
     forces = ds["normal_force"].values if "normal_force" in ds else np.array([])
-    text = f"Regime: {style.REGIME_LABELS[regime]}"
-    said = [f"{style.rounded(float(f), 4)} N in contact {i + 1}" for i, f in enumerate(forces) if np.isfinite(f)]
+    text = f"Regime: {REGIME_LABELS[regime]}"
+    said = [f"{rounded(float(f), 4)} N in contact {i + 1}" for i, f in enumerate(forces) if np.isfinite(f)]
     return f"{text}; normal force {' and '.join(said)}." if said else f"{text}."
 
 
@@ -115,7 +116,7 @@ def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
         + ("The black dot is the spin pole, about which the surfaces turn on each other. " if pole else "")
         + case_text(ds)
     )
-    largest = style.number(float(sizes[best].max()))
+    largest = number(float(sizes[best].max()))
     sentence = f"The largest shear traction is {largest} MPa, in contact {patches[best].contact}."
     return figure, style.FigureInfo("contact_shear", caption, sentence)
 
@@ -165,7 +166,7 @@ def _pole(axes: Axes, patch: Patch) -> None:
     elif np.isfinite(x):
         beyond = x > 0.5 * (left + right)
         axes.annotate(
-            f"spin pole at x = {style.number(x)} mm",
+            f"spin pole at x = {number(x)} mm",
             (0.99 if beyond else 0.01, 0.03),
             fontsize=6.5,
             ha="right" if beyond else "left",
@@ -207,11 +208,11 @@ def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
         f"direction: what each strip of the running track takes. {case_text(ds)}"
     )
     totals = [float(q.summed(p, 0)) for p, q in zip(profiles, patches, strict=True)]
-    words = " and ".join(f"{style.number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))
+    words = " and ".join(f"{number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))
     worst = int(np.argmax([p.max() for p in profiles]))
     place = float(patches[worst].x[int(np.argmax(profiles[worst]))])
     sentence = (
-        f"Friction takes {words}; the strip at x = {style.rounded(place, 2)} mm of contact "
+        f"Friction takes {words}; the strip at x = {rounded(place, 2)} mm of contact "
         f"{patches[worst].contact} takes most."
     )
     return figure, style.FigureInfo("contact_energy", caption, sentence)

@@ -9,6 +9,7 @@ import numpy as np
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import widths
 from trackroller.report.figures.contact_patch import case_text
+from trackroller.report.numbers import rounded
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,7 +83,7 @@ def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], to
     other = "y" if axis == "x" else "x"
     place = ""
     if f"peak_{other}" in part:
-        place = f", plane ${other}_\\mathrm{{C}}$ = {style.rounded(float(part[f'peak_{other}']), 2)} mm"
+        place = f", plane ${other}_\\mathrm{{C}}$ = {rounded(float(part[f'peak_{other}']), 2)} mm"
     axes.set_title(f"{body.capitalize()}, {words} section{place}", loc="left", fontsize=7.5, pad=4)
     axes.set_xlabel(f"${axis}_\\mathrm{{C}}$ ({words}) [mm]", labelpad=1)
     axes.set_ylabel("Depth $z_\\mathrm{C}$ [mm]")
@@ -121,6 +122,6 @@ def _sentence(part: xr.Dataset, bodies: list[str]) -> str:
     said = []
     for body in bodies:
         value, depth = float(part["peak_stress"].sel(body=body)), float(part["peak_z"].sel(body=body))
-        where = "at the surface" if depth < 1e-3 else f"{style.rounded(depth, 2)} mm deep"
+        where = "at the surface" if depth < 1e-3 else f"{rounded(depth, 2)} mm deep"
         said.append(f"{value:.0f} MPa {where} in the {body}")
     return f"The peak is {' and '.join(said)}."

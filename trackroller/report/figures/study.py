@@ -1,78 +1,108 @@
-"""All figures of a gathered study: each drawn only when the study has what it needs."""
+"""All figures of a gathered study and of its analysis: each is drawn only when the study has what it needs."""
 
 from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from trackroller.report.figures import comparison as ladder
+import xarray as xr
+
+from trackroller.analysis.pareto import study_pareto
+from trackroller.report import sentences as words
 from trackroller.report.figures import style
-from trackroller.report.figures.study_effects import main_effects
-from trackroller.report.figures.study_life import life_against_friction
-from trackroller.report.figures.study_loads import forces_against_axial, stress_against_fit
-from trackroller.report.figures.study_maps import life_map
-from trackroller.report.figures.study_regimes import regime_map
-from trackroller.report.figures.study_view import StudyView
+from trackroller.report.figures.comparison import drawers
+from trackroller.report.figures.factors import by_factor
+from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
+from trackroller.report.figures.maps import life_map
+from trackroller.report.figures.pareto import pareto_front, robust_points
+from trackroller.report.figures.regimes import regime_map
+from trackroller.report.figures.sensitivity import (
+    convergence,
+    interactions,
+    main_outputs,
+    morris_plane,
+    overview,
+    tornado,
+)
 from trackroller.report.figures.woehler import woehler
+from trackroller.report.findings import FRICTION_OUTPUTS, friction_error
+from trackroller.report.view import StudyView
 
 log = logging.getLogger(__name__)
-FIGURES: tuple[Callable[[StudyView], Any], ...] = (
-    life_against_friction,
-    stress_against_fit,
-    life_map,
-    woehler,
-    forces_against_axial,
-    main_effects,
-    regime_map,
-)
+Draw = Callable[[], "tuple[Any, style.FigureInfo] | None"]
+OF_CASES = (by_factor, life_map, stress_against_fit, woehler, forces_against_axial, regime_map)
+OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
 
 
-def draw_all(study_nc: Path, out_dir: Path) -> list[style.FigureInfo]:
+def draw_all(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) -> list[style.FigureInfo]:
     """Draw the figures of a study as SVG and PNG and write their captions to `index.json`.
 
     Parameters
     ----------
     study_nc : gathered study, a grid unstacked into its factors or with one dimension `case`
     out_dir : folder for the figures, made when missing
+    sensitivity_nc : its analysis, if there is one
 
     Returns
     -------
     What was drawn, in the order of the report. A figure that cannot be drawn is left out with a logged
     warning: a picture never fails a run.
     """
-    import xarray as xr
-
-    with xr.open_dataset(study_nc) as ds:
-        view = StudyView.of(ds)
-        draws = [*_comparison(ds), *(partial(draw, view) for draw in FIGURES)]
-    infos = []
+    with xr.open_dataset(study_nc) as opened:
+        ds = opened.load()
+    jobs = list(_jobs(ds, StudyView.of(ds)))
+    if sensitivity_nc is not None:
+        with xr.open_dataset(sensitivity_nc) as opened:
+            before, after = _of_analysis(opened.load())
+        jobs = [*before, *jobs, *after]
+    error, infos = friction_error(StudyView.of(ds)), []
     with style.look(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
-        for draw in draws:
-            try:
-                drawn = draw()
-                if drawn is None:
-                    continue
-                figure, info = drawn
-                style.save(figure, Path(out_dir), info.name)
-            except OSError:  # a full disk is not the figure's fault
-                raise
-            except Exception as problem:
-                log.warning("figure %s was not drawn: %s", draw.func.__name__, problem, exc_info=True)
-                continue
-            infos.append(info)
+        for draw in jobs:
+            info = _saved(draw, Path(out_dir))
+            if info is not None:
+                about = any(name in info.name or name in info.caption for name in ("friction power", *FRICTION_OUTPUTS))
+                infos.append(replace(info, sentence=f"{info.sentence} {error.text}") if error and about else info)
     style.write_index(infos, Path(out_dir))
     return infos
 
 
-def _comparison(ds: Any) -> list[partial[Any]]:
-    """What draws the contact models side by side, where the study has several."""
+def _saved(draw: Draw, out_dir: Path) -> style.FigureInfo | None:
     try:
-        return ladder.drawers(ds)
-    except Exception as problem:  # a picture never fails a run
-        log.warning("the contact models were not compared: %s", problem, exc_info=True)
-        return []
+        drawn = draw()
+        if drawn is None:
+            return None
+        style.save(drawn[0], out_dir, drawn[1].name)
+    except OSError:  # a full disk is not the figure's fault
+        raise
+    except Exception as problem:
+        log.warning("a figure was not drawn: %s", problem, exc_info=True)
+        return None
+    return drawn[1]
+
+
+def _jobs(ds: xr.Dataset, view: StudyView) -> Iterator[Draw]:
+    """Drawings from the cases: contact models side by side, the study's own, the Pareto front."""
+    for make in (drawers, lambda study: [partial(draw, view) for draw in OF_CASES], partial(_front, view)):
+        try:
+            yield from make(ds)
+        except Exception as problem:  # a picture never fails a run
+            log.warning("figures were left out: %s", problem, exc_info=True)
+
+
+def _front(view: StudyView, ds: xr.Dataset) -> list[Draw]:
+    front = study_pareto(ds)
+    return [] if front is None else [partial(pareto_front, front, view)]
+
+
+def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:
+    """Drawings from the analysis that stand before and after those of the cases."""
+    if words.robust_design(sens):
+        return [partial(robust_points, sens, str(n)) for n in sens["output"].values if "life" in str(n)], []
+    first, *others = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]
+    return first, [partial(overview, sens), *(draw for part in others for draw in part)]

@@ -1,4 +1,4 @@
-"""One look for all figures: 85 mm columns, colours and marks that survive grey print and colour blindness.
+"""One look for all figures: true printed sizes, colours and marks that survive grey print and colour blindness.
 
 Figures are built without pyplot, so that drawing needs no display and leaves the caller's own figures alone.
 """
@@ -11,44 +11,23 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
-from trackroller.study.design.levels import short
+import matplotlib
+import seaborn
+from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import TextToPath
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from trackroller.report.numbers import number
 
-COLUMN_MM = 85.0  # width of a column of a two-column page
+COLUMN_MM = 85.0  # a column of a two-column page
+WIDE_MM = 170.0  # the one wide column of the report
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*")
 LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
-REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")
 REGIME_COLOURS = ("#f2f2f2", "#f0c36d", "#5b8db8", "#4d4d4d")
 REGIME_HATCHES = ("", "////", "xxxx", "")
-UNITS = {
-    "1": "–",
-    "-": "–",
-    "degree": "°",
-    "deg": "°",
-    "m min-1": "m/min",
-    "h-1": "1/h",
-    "J m-1": "J/m",
-    "N mm": "N·mm",
-}
-SYMBOLS = {
-    "A_T": r"$A_\mathrm{T}$",
-    "r_C,G": r"$r_\mathrm{C,G}$",
-    "r_C,TR": r"$r_\mathrm{C,TR}$",
-    "r_Curve": r"$r_\mathrm{Curve}$",
-    "alpha": r"$\alpha$",
-    "F_rad": r"$F_\mathrm{rad}$",
-    "F_ax": r"$F_\mathrm{ax}$",
-    "F_Motor": r"$F_\mathrm{Motor}$",
-    "mu": r"$\mu$",
-    "v": r"$v$",
-    "n_G": r"$n_\mathrm{G}$",
-}
-
 _RC: dict[Any, Any] = {
     "font.size": 7.5,
     "axes.titlesize": 8.0,
@@ -91,10 +70,7 @@ class FigureInfo:
 
 @contextlib.contextmanager
 def look() -> Iterator[None]:
-    """The common style for everything drawn inside; restored afterwards."""
-    import matplotlib
-    import seaborn
-
+    """Set the common style for everything drawn inside; it is restored afterwards."""
     style: dict[Any, Any] = dict(seaborn.axes_style("ticks"))
     style.update({"axes.grid": True, "grid.color": "0.88"})
     style.update(_RC)
@@ -103,18 +79,14 @@ def look() -> Iterator[None]:
 
 
 def palette(count: int) -> list[Any]:
-    """`count` colours that colour-blind readers tell apart, without those too light for a line; after eight again."""
-    import seaborn
-
+    """Return `count` colours that colour-blind readers tell apart; after eight they repeat."""
     colours = seaborn.color_palette("colorblind")
     dark = [colours[i] for i in (0, 1, 2, 3, 4, 5, 7, 9)]
     return [dark[i % len(dark)] for i in range(max(count, 1))]
 
 
 def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> Figure:
-    """An empty figure of true printed size [mm] whose parts are laid out without overlap."""
-    from matplotlib.figure import Figure
-
+    """Return an empty figure of true printed size [mm] whose parts are laid out without overlap."""
     figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), layout="constrained")
     engine: Any = figure.get_layout_engine()
     engine.set(w_pad=0.03, h_pad=0.03)
@@ -122,10 +94,7 @@ def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> Figure:
 
 
 def wrapped(text: str, width_mm: float, size: float, weight: str = "normal") -> list[str]:
-    """Lines of `text` that are no wider than `width_mm` when set in `size` points."""
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.textpath import TextToPath
-
+    """Break a text into lines that are no wider than `width_mm` when set in `size` points."""
     font, measure, limit = FontProperties(size=size, weight=weight), TextToPath(), width_mm / 25.4 * 72
     lines: list[str] = []
     for word in text.split(" "):
@@ -138,7 +107,7 @@ def wrapped(text: str, width_mm: float, size: float, weight: str = "normal") -> 
 
 
 def head(figure: Figure, title: str, subtitle: str = "") -> None:
-    """Title in bold and, under it, what was held; wrapped so that nothing runs out of the figure."""
+    """Write the title in bold and the subtitle under it, wrapped so that nothing runs out of the figure."""
     width = float(figure.get_figwidth()) * 25.4 - 3
     lines = wrapped(title, width, 7.5, "bold")
     small = wrapped(subtitle, width, 7.0)
@@ -160,9 +129,7 @@ def _set_title(figure: Figure) -> None:
 
 
 def log_ticks(axis: Any, low: float, high: float) -> None:
-    """Ticks of a logarithmic axis: decades when there are many, 1-2-5 with plain numbers when there are few."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
-
+    """Set ticks of a logarithmic axis: decades when there are many, 1-2-5 with plain numbers when there are few."""
     axis.set_minor_formatter(NullFormatter())
     decades = math.log10(high / low) if low > 0 and high > low else 0.0
     if not 0 < decades <= 1.6:
@@ -174,7 +141,7 @@ def log_ticks(axis: Any, low: float, high: float) -> None:
 
 
 def finish(figure: Figure) -> None:
-    """Take the right and upper spines away where there is no twin axis."""
+    """Hide the right and upper spines of all axes but colour bars."""
     for axes in figure.axes:
         for side in ("top", "right"):
             if side in axes.spines:
@@ -182,7 +149,7 @@ def finish(figure: Figure) -> None:
 
 
 def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
-    """Write `name`.svg and `name`.png; both whole or not at all. Result: the two paths."""
+    """Write `name`.svg and `name`.png, both whole or not at all, and return the two paths."""
     out_dir.mkdir(parents=True, exist_ok=True)
     _set_title(figure)
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
@@ -195,116 +162,10 @@ def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
 
 
 def write_index(infos: Sequence[FigureInfo], out_dir: Path, name: str = "index.json") -> Path:
-    """Captions and sentences of the figures in `out_dir`, for the report."""
+    """Write captions and sentences of the figures in `out_dir`, for the report."""
     out_dir.mkdir(parents=True, exist_ok=True)
     path = out_dir / name
     part = path.with_name(f".{name}.part")
     part.write_text(json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     part.replace(path)
     return path
-
-
-def unit_text(units: str) -> str:
-    """A CF unit as a reader expects it."""
-    return UNITS.get(units, units)
-
-
-def with_unit(text: str, units: str) -> str:
-    """Axis label: quantity and its unit in brackets."""
-    return f"{text} [{unit_text(units)}]"
-
-
-def plain(name: str) -> str:
-    """A name without underscores."""
-    return name.replace("_", " ")
-
-
-def capital(text: str) -> str:
-    """Text with a capital first letter, the rest as it is."""
-    return text[:1].upper() + text[1:]
-
-
-def long_name(name: str) -> str:
-    """A factor in words, for running text."""
-    if name == "normal":  # an option, whose name alone says little
-        return "normal problem"
-    return PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
-
-
-def factor_label(name: str, units: str | None = None) -> str:
-    """Axis label of a factor: long name, symbol, unit."""
-    parameter = PARAMETERS.get(name)
-    if parameter is None:
-        return with_unit(capital(plain(name)), units) if units else capital(plain(name))
-    text = parameter.long_name[0].upper() + parameter.long_name[1:]
-    return with_unit(f"{text} {SYMBOLS.get(parameter.symbol, parameter.symbol)}", parameter.unit)
-
-
-def number(value: float) -> str:
-    """A number in at most four figures, thousands as 12 300 and large ones as 1.2e+09."""
-    if value is None or math.isnan(value):
-        return "–"
-    if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
-    size = abs(value)
-    if size >= 1e6 or (0 < size < 1e-3):
-        mantissa, exponent = f"{value:.1e}".split("e")
-        return f"{mantissa.replace('-', '−')}·10{str(int(exponent)).translate(_RAISED)}"
-    if size >= 1e4:
-        return f"{float(f'{value:.3g}'):,.0f}".replace(",", "\u00a0").replace("-", "−")
-    return f"{value:.4g}".replace("-", "−")
-
-
-def rounded(value: float, figures: int) -> str:
-    """`number` of a value cut to so many figures."""
-    return number(float(f"{value:.{figures}g}"))
-
-
-def near(value: float, span: float) -> str:
-    """A value rounded to a thousandth of the span it lies in: 0.2498 of 0.25 is 0.25, 1.6e-5 of 0.25 is 0."""
-    if not (span > 0 and math.isfinite(span) and math.isfinite(value)):
-        return number(value)
-    digits = 2 - math.floor(math.log10(span))
-    return rounded(round(value, digits) + 0.0, 3)
-
-
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def level_text(name: str, value: Any, unit: bool = True) -> str:
-    """A level of a factor in words: 'straight' for an infinite curve, 'driven −30 N' for a motor force."""
-    if isinstance(value, str):
-        return short(name, value) if name in MAPPING_FIELDS else _pair(value)
-    value = float(value)
-    if name == "motor_force" and unit:
-        if value == 0:
-            return "free rolling"
-        return f"{'driven' if value < 0 else 'braked'} {number(value)} N"
-    if name == "guide_curve_radius" and unit:
-        if math.isinf(value):
-            return "straight"
-        return f"{'outer' if value > 0 else 'inner'} curve {number(abs(value))} mm"
-    if not unit or name not in PARAMETERS or PARAMETERS[name].unit == "-":
-        return number(value)
-    return f"{number(value)} {unit_text(PARAMETERS[name].unit)}".replace(" °", "°")
-
-
-def short_levels(names: Sequence[str]) -> list[str]:
-    """Names of categories without the part of a pair that all of them share: only what differs tells them apart."""
-    parts = [_parts(name) for name in names]
-    if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
-        for keep in (0, 1):
-            if len({p[1 - keep] for p in parts}) == 1:
-                return [p[keep] for p in parts]
-    return list(names)
-
-
-def _parts(name: str) -> list[str]:
-    if name.endswith(" on itself"):
-        return [name.removesuffix(" on itself")] * 2
-    return name.split(" / " if " / " in name else " on ")
-
-
-def _pair(label: str) -> str:
-    parts = label.split(" / ")
-    return f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)

@@ -1,37 +1,38 @@
-"""The S-N (Woehler) diagram of each body with the operating points of a study."""
+"""The S-N diagram (Wöhler lines) of each body with the operating points of a study."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from trackroller.damage import fatigue
 from trackroller.report.figures import style
-from trackroller.report.figures.study_life import MAX_POINTS, legend
-from trackroller.report.figures.study_view import StudyView, study_settings
+from trackroller.report.figures.panels import MAX_POINTS, Entries, legend
+from trackroller.report.findings import strength
+from trackroller.report.numbers import count, listing, rounded, with_unit
+from trackroller.report.view import BODIES, StudyView
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-BODIES = ("roller", "guide")
-BEYOND = 1e4  # the axis ends at so many times the cycles of the knee; what lives longer is marked at its edge
+BEYOND = 1e4  # the axis ends at so many times the cycles of the knee
 MAX_MATERIALS = 6
 _FIELDS = ("tensile_strength", "fatigue_strength_ratio", "cycles_at_tensile_strength", "cycles_at_fatigue_limit")
+_DASHES = {0.1: (0, (1, 1.2)), 0.9: (0, (4, 1.5))}
 Line = tuple[float, float, float, float]
+Points = dict[str, tuple[np.ndarray, np.ndarray]]
 
 
 def line_of(material: Mapping[str, Any]) -> Line:
-    """R_m, sigma_D [MPa], N_Rm and N_k [1] of a material's values."""
+    """Return R_m, sigma_D [MPa], N_Rm and N_k [1] of a material's values."""
     strength, ratio, first, knee = (float(material[name]) for name in _FIELDS)
     return strength, strength * ratio, first, knee
 
 
 def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np.ndarray) -> np.ndarray:
-    """Stress [MPa] of the line at a failure probability over cycles [1], shape as `cycles`.
+    """Return the stress [MPa] of the S-N curve at a failure probability over cycles [1], shape as `cycles`.
 
     Parameters
     ----------
@@ -45,38 +46,41 @@ def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np
 
 
 def scatters(material: Mapping[str, Any]) -> bool:
-    """Does the material give a scatter range?"""
+    """Say whether the material gives a scatter range."""
     return material.get("scatter_in_cycles") is not None or material.get("scatter_in_stress") is not None
 
 
 def woehler(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """S-N line of every material with the peak stress and life of every case, one panel a body."""
-    known = _materials(view)
-    rule = str(study_settings(view.attrs).get("life_rule", "elementary"))
-    shown = [(body, points) for body in BODIES if (points := _points(view, body, known, rule))]
-    if not shown:
+    """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
+
+    A body of which no life lies on the axis gets no panel: a heap of marks at the edge says nothing.
+    """
+    known, rule = _materials(view), str(view.study.get("life_rule", "elementary"))
+    bodies = [(body, points) for body in BODIES if (points := _points(view, body, known, rule))]
+    if not bodies:
         return None
+    ends = _ends([points[n] for _, points in bodies for n in points], [known[n] for _, p in bodies for n in p])
+    shown = [(b, points) for b, points in bodies if any((life <= ends[1]).any() for _, life in points.values())]
+    shown = shown or bodies[:1]
     names = list(dict.fromkeys(name for _, points in shown for name in points))[:MAX_MATERIALS]
     colours = dict(zip(names, style.palette(len(names)), strict=True))
-    figure = style.new_figure(24 + 52 * len(shown) + 2.4 * (len(names) + 5))
-    panels = figure.subplots(len(shown), 1, sharex=True, squeeze=False)[:, 0]
-    ends = _ends([points[n] for _, points in shown for n in points], [known[n] for n in names])
-    beyond = 0
+    figure = style.new_figure(68 + 2.4 * (len(names) + 3), style.WIDE_MM)
+    panels = figure.subplots(1, len(shown), sharey=True, squeeze=False)[0]
     for axes, (body, points) in zip(panels, shown, strict=True):
-        for i, name in enumerate(names):
-            if name in points:
-                beyond += _draw(axes, known[name], rule, *points[name], colours[name], style.MARKERS[i % 10], ends)
+        for i, name in enumerate(n for n in names if n in points):
+            _lines(axes, known[name], rule, colours[name], ends)
+            _cases(axes, *points[name], {"color": colours[name], "marker": style.MARKERS[i % 10]}, ends[1])
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_xlim(*ends)
         style.log_ticks(axes.yaxis, *axes.get_ylim())
         axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
-        axes.set_ylabel(style.with_unit("Peak von Mises stress", "MPa"))
-    panels[-1].set_xlabel(style.with_unit("Overrollings to failure", "1").replace("[1]", "[–]"))
-    legend(figure, _entries(names, colours, known), columns=2)
+        axes.set_xlabel(with_unit("Overrollings to failure", "1"))
+    panels[0].set_ylabel(with_unit("Peak von Mises stress", "MPa"))
+    legend(figure, _entries(names, colours, known), columns=4)
     style.head(figure, "S-N diagram with the cases of the study", "Dots: peak stress and life, the worse contact.")
     style.finish(figure)
-    return figure, _info(shown, known, rule, beyond)
+    return figure, _info(view, shown, known, rule, ends[1])
 
 
 def _materials(view: StudyView) -> dict[str, dict[str, Any]]:
@@ -87,31 +91,31 @@ def _materials(view: StudyView) -> dict[str, dict[str, Any]]:
     return {name: dict(m) for name, m in found.items() if isinstance(m, Mapping) and all(f in m for f in _FIELDS)}
 
 
-def _points(
-    view: StudyView, body: str, known: Mapping[str, Any], rule: str
-) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """For each material: stress [MPa], life [1] and whether it rolls, of every case that has a life."""
-    table, column = view.table, f"life_cycles_{body}"
-    if column not in table:
-        return {}
-    life = table[column].to_numpy(dtype=float)
+def material_of(view: StudyView, body: str) -> np.ndarray:
+    """Return the name of the material of a body in every case, shape (n,)."""
     name = f"{body}_material"
-    given = table[name].to_numpy() if name in table else np.full(len(table), str(view.base.get(name, "")), dtype=object)
-    if "material_pair" in table and name not in table:
-        pairs = [str(p).split(" / ") for p in table["material_pair"]]
-        given = np.array([p[0] if body == "roller" else p[-1] for p in pairs], dtype=object)
-    rolls = table["regime"].to_numpy() == 0 if "regime" in table else np.ones(len(table), dtype=bool)
-    found = {}
-    for material in dict.fromkeys(map(str, given)):
-        mine = (given.astype(str) == material) & (life > 0)
+    if name in view.table:
+        return view.table[name].to_numpy().astype(str)
+    if "material_pair" in view.table:
+        pairs = [str(p).split(" / ") for p in view.table["material_pair"]]
+        return np.array([p[0] if body == "roller" else p[-1] for p in pairs], dtype=str)
+    return np.full(len(view.table), str(view.base.get(name, "")))
+
+
+def _points(view: StudyView, body: str, known: Mapping[str, Any], rule: str) -> Points:
+    """For each material: stress [MPa] and life [1] of every rolling case that has a life; else of all that have one."""
+    life = view.column(f"life_cycles_{body}")
+    rows = (life > 0) & view.rolling if ((life > 0) & view.rolling).any() else life > 0
+    given, found = material_of(view, body), {}
+    for material in dict.fromkeys(given):
+        mine = (given == material) & rows
         if material not in known or not mine.any():
             continue
-        if f"peak_stress_{body}" in table:
-            stress = table[f"peak_stress_{body}"].to_numpy(dtype=float)[mine]
-        else:
+        stress = view.column(f"peak_stress_{body}")[mine]
+        if np.isnan(stress).all():  # a study of lives alone
             with np.errstate(invalid="ignore"):
                 stress = curve(known[material], rule, 0.5, life[mine])
-        found[material] = (stress, life[mine], rolls[mine])
+        found[material] = stress, life[mine]
     return found
 
 
@@ -125,147 +129,67 @@ def _ends(points: list, materials: list) -> tuple[float, float]:
     return max(low / 2, 1.0), top
 
 
-def _draw(
-    axes: Axes,
-    material: Mapping[str, Any],
-    rule: str,
-    stress: np.ndarray,
-    life: np.ndarray,
-    rolls: np.ndarray,
-    colour: Any,
-    marker: str,
-    ends: tuple[float, float],
-) -> int:
-    """One material's lines and points; how many of them lie beyond the axis."""
+def _lines(axes: Axes, material: Mapping[str, Any], rule: str, colour: Any, ends: tuple[float, float]) -> None:
+    """Draw the S-N curve of a material, with its scatter if it gives one."""
     at = np.geomspace(*ends, 400)
-    axes.plot(at, curve(material, rule, 0.5, at), color=colour, linewidth=1.0, zorder=2)
-    if scatters(material):
-        for probability in fatigue.PROBABILITIES:
-            if probability != 0.5:
-                axes.plot(
-                    at,
-                    curve(material, rule, probability, at),
-                    color=colour,
-                    linewidth=0.8,
-                    linestyle=_STYLE[probability],
-                    zorder=2,
-                )
-    strength, limit, first, knee = line_of(material)
-    axes.plot(
-        [first, knee],
-        [strength, limit],
-        color="0.1",
-        marker="|",
-        markersize=9,
-        markeredgewidth=0.9,
-        linestyle="none",
-        zorder=3,
-    )
-    use = np.flatnonzero(rolls if rolls.any() else np.isfinite(stress))
-    far = use[life[use] > ends[1]]
-    use = use[life[use] <= ends[1]]
-    if use.size:
-        middle = use[np.argsort(life[use])[use.size // 2]]
-        use = use[:: -(-use.size // MAX_POINTS)]
-        axes.scatter(
-            life[use],
-            stress[use],
-            s=8,
-            marker=marker,
-            color=colour,
-            alpha=0.35,
-            linewidth=0,
-            zorder=3,
-            rasterized=use.size > 500,
-        )
-        axes.scatter(
-            life[middle],
-            stress[middle],
-            s=30,
-            marker=marker,
-            facecolor="white",
-            edgecolor="0.1",
-            linewidth=0.9,
-            zorder=5,
-        )
-    axes.scatter(
-        np.full(far.size, ends[1]),
-        stress[far],
-        s=9,
-        marker=">",
-        facecolor="white",
-        edgecolor=colour,
-        linewidth=0.5,
-        clip_on=False,
-        zorder=4,
-    )
-    return int(far.size)
+    for probability in fatigue.PROBABILITIES if scatters(material) else (0.5,):
+        look = {"linewidth": 1.0 if probability == 0.5 else 0.8, "linestyle": _DASHES.get(probability, "-")}
+        axes.plot(at, curve(material, rule, probability, at), color=colour, zorder=2, **look)
+    most, limit, first, knee = line_of(material)
+    ends_look = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
+    axes.plot([first, knee], [most, limit], color="0.1", zorder=3, **ends_look)
 
 
-_STYLE = {0.1: (0, (1, 1.2)), 0.9: (0, (4, 1.5))}
+def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any], top: float) -> None:
+    """Draw the cases of a material on the axis, and their median as a large mark."""
+    use = np.flatnonzero(life <= top)
+    if not use.size:
+        return
+    middle = use[np.argsort(life[use])[use.size // 2]]
+    some = use[:: -(-use.size // MAX_POINTS)]
+    raster = some.size > 500
+    axes.scatter(life[some], stress[some], s=8, alpha=0.35, linewidth=0, zorder=3, rasterized=raster, **look)
+    large = {"marker": look["marker"], "facecolor": "white", "edgecolor": "0.1", "linewidth": 0.9}
+    axes.scatter(life[middle], stress[middle], s=30, zorder=5, **large)
 
 
-def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, Any]) -> list:
-    small = {"markersize": 3}
-    entries = [(n, {"color": colours[n], "marker": style.MARKERS[i % 10], **small}) for i, n in enumerate(names)]
-    none = {"linestyle": "none"}
-    entries.append(("median of the cases", {"color": "0.1", "marker": "o", "markerfacecolor": "white", **none}))
-    ends = {"color": "0.1", "marker": "|", "markersize": 8, **none}
-    entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", ends))
+def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, Any]) -> Entries:
+    entries: Entries = [
+        (n, {"color": colours[n], "marker": style.MARKERS[i % 10], "markersize": 3}) for i, n in enumerate(names)
+    ]
+    none = {"linestyle": "none", "color": "0.1"}
+    entries.append(("median of the cases", {"marker": "o", "markerfacecolor": "white", **none}))
+    entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", {"marker": "|", "markersize": 8, **none}))
     if any(scatters(known[n]) for n in names):
-        entries += [
-            (f"{100 * p:.0f} % fail", {"color": "0.3", "linestyle": _STYLE.get(p, "-")}) for p in fatigue.PROBABILITIES
-        ]
+        dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in fatigue.PROBABILITIES]
+        entries += [(f"{100 * p:.0f} % fail", look) for p, look in dashes]
     return entries
 
 
-def _info(shown: list, known: Mapping[str, Any], rule: str, beyond: int) -> style.FigureInfo:
+def _info(view: StudyView, shown: list, known: Mapping[str, Any], rule: str, top: float) -> style.FigureInfo:
     caption = (
-        "Woehler lines of the materials (failure probability 50 %, and 10 and 90 % where the material gives its "
-        "scatter) with the peak von Mises stress (MPa) and the life in overrollings of every case. "
+        "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
+        "with the peak von Mises stress (MPa) and the life in overrollings of the rolling cases. "
         f"{fatigue.CONVENTIONS[rule]}."
     )
-    left = sum(int((~rolls).sum()) for _, points in shown[:1] for _, _, rolls in points.values())
-    if left and any(rolls.any() for _, points in shown for _, _, rolls in points.values()):
-        caption += f" {left} cases in full slip or lift-off are not drawn."
-    if beyond:
-        caption += f" {beyond} lives beyond the axis are marked at its right edge."
-    sentences = [_sentence(body, points, known) for body, points in shown]
-    return style.FigureInfo("woehler", caption, " ".join(s for s in sentences if s))
+    left = int((~view.rolling).sum())
+    caption += f" {count(left)} cases that do not roll are not drawn." if left and view.rolling.any() else ""
+    beyond = sum(int((life > top).sum()) for _, points in shown for _, life in points.values())
+    caption += f" {count(beyond)} lives lie beyond the axis." if beyond else ""
+    said = []
+    for body, _ in shown:
+        names = material_of(view, body)
+        most, limit = (np.array([line_of(known[n])[i] if n in known else np.nan for n in names]) for i in (0, 1))
+        said.append(strength(body, view.column(f"peak_stress_{body}"), limit, most, view.rolling))
+    texts = [s.text for s in said if s] + [_scatter_words(known, names) for _, names in shown[:1]]
+    return style.FigureInfo("woehler", caption, " ".join(t for t in texts if t))
 
 
-def _sentence(body: str, points: Mapping[str, Any], known: Mapping[str, Any]) -> str:
-    """Where a body's cases lie on its lines; the rolling ones where there are any."""
-    use = {n: rolls if rolls.any() else np.ones_like(rolls) for n, (_, _, rolls) in points.items()}
-    stress = np.concatenate([p[0][use[n]] for n, p in points.items()])
-    limit = np.concatenate([np.full(use[n].sum(), line_of(known[n])[1]) for n in points])
-    strength = np.concatenate([np.full(use[n].sum(), line_of(known[n])[0]) for n in points])
-    good = np.isfinite(stress)
-    if not good.any():
-        return ""
-    below, above = float((stress < limit)[good].mean()), float((stress > strength)[good].mean())
-    ratio = float(np.median((stress / limit)[good]))
-    text = f"Half of the cases load the {body} to more than {style.rounded(ratio, 2)} times its fatigue limit"
-    said = [f"{_share(below)} stay below it" if below else "none stays below it"]
-    if above:
-        said.append(f"{_share(above)} lie above the tensile strength, where there is no fatigue life in earnest")
-    text += f"; {' and '.join(said)}."
-    ranges = {}
-    for name in points:
-        if scatters(known[name]):
-            k = fatigue.woehler_exponent(*line_of(known[name]))
-            t_n = float(
-                fatigue.scatter_ranges(k, known[name].get("scatter_in_cycles"), known[name].get("scatter_in_stress"))[0]
-            )
-            ranges[name] = t_n**-0.5
-    if ranges:
-        name = min(ranges, key=lambda n: ranges[n])
-        text += (
-            f" By the scatter of {name} one in ten has failed at {style.rounded(ranges[name], 2)} times the life "
-            "of the 50 % line."
-        )
-    return text
-
-
-def _share(share: float) -> str:
-    return "all" if share == 1 else f"{min(99.0, max(1.0, 100 * share)):.0f} %"
+def _scatter_words(known: Mapping[str, Any], names: Points) -> str:
+    """Say at which share of the median life one in ten has failed, for each material that gives its scatter."""
+    said = []
+    for name in (n for n in names if scatters(known[n])):
+        k = fatigue.woehler_exponent(*line_of(known[name]))
+        own = known[name].get("scatter_in_cycles"), known[name].get("scatter_in_stress")
+        said.append(f"{rounded(float(fatigue.scatter_ranges(k, *own)[0]) ** -0.5, 2)} times its median life ({name})")
+    return f"By the scatter of the material, 10 % have failed at {listing(said)}." if said else ""

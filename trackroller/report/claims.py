@@ -1,0 +1,242 @@
+"""Sentences as objects that can be checked, and the statistics that they state.
+
+Every sentence on the rows of a study is a `Sentence`: its text, what it claims as plain values, and the rows that it
+speaks of. `tests/report/test_truth.py` recomputes the claims from the raw rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.stats import binom
+
+from trackroller.report.view import MOST_LEVELS, StudyView
+
+FEW = 20  # events below this number are named one by one and attributed to nothing
+FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
+FEWEST_ROWS = 20  # rows of a class below which its median is not compared
+UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change
+MOST = 0.9  # share of pairs that must agree in the direction of an effect
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """One statement on a study.
+
+    Attributes
+    ----------
+    kind : name of the kind of sentence; each kind has its own check in the truth test
+    text : the sentence
+    values : what it claims, in plain numbers and names
+    rows : cases that it speaks of, shape (n,) bool; None for a statement on the analysis
+    """
+
+    kind: str
+    text: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+    rows: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class Effect:
+    """How an output changes between two levels or classes of a factor.
+
+    Attributes
+    ----------
+    low, high : levels (of pairs), or the last value of the low class and the first of the high one (of classes)
+    ratio : median of the ratios of pairs, or ratio of the medians of the classes [1]
+    interval : 95 % interval of that ratio of medians (of classes), NaN for pairs
+    size : number of pairs, or of rows in the smaller class
+    rising, falling : pairs in which the output rises and falls (of pairs)
+    """
+
+    factor: str
+    low: Any
+    high: Any
+    ratio: float
+    interval: tuple[float, float]
+    size: int
+    rising: int = 0
+    falling: int = 0
+
+
+def median_interval(values: np.ndarray) -> tuple[float, float]:
+    """Return a distribution-free interval of the median with a coverage of at least 95 %.
+
+    Parameters
+    ----------
+    values : independent draws, shape (n,), n >= 6
+
+    Notes
+    -----
+    The order statistics k and n - k + 1 enclose the median with probability 1 - 2 P(B < k), B binomial (n, 1/2).
+    """
+    values = np.sort(values)
+    k = int(binom.ppf(0.025, len(values), 0.5))
+    return float(values[max(k - 1, 0)]), float(values[min(len(values) - k, len(values) - 1)])
+
+
+def difference_of_medians(first: np.ndarray, second: np.ndarray) -> tuple[float, float, float]:
+    """Return the difference of two medians, second minus first, with its 95 % interval.
+
+    Notes
+    -----
+    The interval joins the distribution-free intervals of both medians by the method of variance estimates recovery.
+
+    References
+    ----------
+    Zou, Donner (2008): Construction of confidence limits about effect measures. Statistics in Medicine 27, 1693-1702.
+    """
+    a, b = float(np.median(first)), float(np.median(second))
+    (low_a, high_a), (low_b, high_b) = median_interval(first), median_interval(second)
+    low = b - a - np.hypot(b - low_b, high_a - a)
+    return b - a, float(low), float(b - a + np.hypot(high_b - b, a - low_a))
+
+
+def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> tuple[np.ndarray, list[Any]]:
+    """Return log10 of an output over (combination of all other factors, level of the factor), NaN where missing.
+
+    Parameters
+    ----------
+    rows : cases to use, shape (n,) bool
+
+    Returns
+    -------
+    Matrix of shape (m, levels) and the levels. Only combinations with two levels or more are kept.
+    """
+    table, others = view.table[rows], [f for f in view.factors if f != factor]
+    levels = view.levels(factor)
+    if not len(table) or len(levels) > MOST_LEVELS:
+        return np.empty((0, len(levels))), levels
+    codes = [np.unique(table[f].to_numpy(), return_inverse=True)[1] for f in others]
+    key = np.unique(np.stack(codes, axis=1), axis=0, return_inverse=True)[1].ravel() if codes else np.zeros(len(table))
+    key = key.astype(int)
+    place = {level: i for i, level in enumerate(levels)}
+    matrix = np.full((int(key.max()) + 1, len(levels)), np.nan)
+    values = table[column].to_numpy(dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        matrix[key, [place[v] for v in table[factor]]] = np.log10(np.where(values > 0, values, np.nan))
+    return matrix[(~np.isnan(matrix)).sum(axis=1) > 1], levels
+
+
+def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:
+    """Compare designs that differ in one factor only, between its ends or between its most different levels.
+
+    Unlimited values count with their direction. None if there are too few pairs, or if the designs do not pair.
+    """
+    matrix, levels = pair_matrix(view, column, factor, rows)
+    if 2 * len(matrix) < FEWEST_PAIRS or len(matrix) < 0.2 * rows.sum() / max(len(levels), 1):
+        return None
+    found = []
+    for j in range(len(levels)):
+        for i in range(j):
+            with np.errstate(invalid="ignore"):
+                steps = matrix[:, j] - matrix[:, i]
+            steps = steps[~np.isnan(steps)]
+            if steps.size >= FEWEST_PAIRS and np.isfinite(np.median(steps)):
+                found.append((abs(float(np.median(steps))), i, j, steps))
+    if not found:
+        return None
+    if view.ordered(factor):
+        _, i, j, steps = max(found, key=lambda item: (item[2] - item[1], item[3].size))
+    else:
+        _, i, j, steps = max(found, key=lambda item: item[0])
+        if np.median(steps) < 0:
+            i, j, steps = j, i, -steps
+    rising, falling = int((steps > 0).sum()), int((steps < 0).sum())
+    ratio = float(10 ** np.median(steps))
+    return Effect(factor, levels[i], levels[j], ratio, (np.nan, np.nan), steps.size, rising, falling)
+
+
+def class_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:
+    """Compare the third of the designs with the lowest value of a factor to the third with the highest.
+
+    Designs with the same value of the factor stay in one class. None if a class has fewer than 20 rows.
+    """
+    if not view.ordered(factor):
+        return None
+    x, values = view.table[factor].to_numpy(dtype=float)[rows], view.table[column].to_numpy(dtype=float)[rows]
+    good = np.isfinite(values) & (values > 0)
+    x, logs = x[good], np.log10(values[good])
+    if len(x) < 3 * FEWEST_ROWS:
+        return None
+    ends = np.sort(x)[[len(x) // 3, len(x) - 1 - len(x) // 3]]
+    return _between(factor, x, logs, float(ends[0]), float(ends[1]))
+
+
+def _between(factor: str, x: np.ndarray, logs: np.ndarray, end: float, start: float) -> Effect | None:
+    low, high = logs[x <= end], logs[x >= start]
+    if end >= start or min(low.size, high.size) < FEWEST_ROWS:
+        return None
+    step, least, most = difference_of_medians(low, high)
+    interval = (float(10**least), float(10**most))
+    return Effect(factor, end, start, float(10**step), interval, min(low.size, high.size))
+
+
+def strata(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> list[tuple[str, Any, Effect]]:
+    """Return the same effect within each level of each category: (category, level, effect), where rows suffice."""
+    found = []
+    for category in view.categories:
+        if category == effect.factor:
+            continue
+        own = view.table[category].to_numpy()
+        for level in view.levels(category):
+            inside = rows & (own == level)
+            part = _repeated(view, column, effect, inside)
+            if part is not None:
+                found.append((category, level, part))
+    return found
+
+
+def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> Effect | None:
+    """Return the effect between the same levels or classes for other rows."""
+    if np.isfinite(effect.interval[0]):
+        x, values = (view.table[c].to_numpy(dtype=float)[rows] for c in (effect.factor, column))
+        good = np.isfinite(values) & (values > 0)
+        return _between(effect.factor, x[good], np.log10(values[good]), effect.low, effect.high)
+    matrix, levels = pair_matrix(view, column, effect.factor, rows)
+    if not len(matrix):
+        return None
+    with np.errstate(invalid="ignore"):
+        steps = matrix[:, levels.index(effect.high)] - matrix[:, levels.index(effect.low)]
+    steps = steps[~np.isnan(steps)]
+    if not steps.size or not np.isfinite(np.median(steps)):
+        return None
+    up, down = int((steps > 0).sum()), int((steps < 0).sum())
+    nothing = (np.nan, np.nan)
+    return Effect(effect.factor, effect.low, effect.high, float(10 ** np.median(steps)), nothing, steps.size, up, down)
+
+
+def leading_factor(view: StudyView, column: str, rows: np.ndarray) -> str:
+    """Return the factor whose levels (or thirds) explain most of the variance of the logarithm of an output."""
+    values = view.column(column)
+    good = rows & np.isfinite(values) & (values > 0)
+    logs = np.log10(values[good])
+    if logs.size < 2 or not np.ptp(logs) > 0:
+        return ""
+    share = {}
+    for name in view.factors:
+        index, _ = classes(view, name, good, 3)
+        means = np.array([logs[index == k].mean() if (index == k).any() else 0.0 for k in range(index.max() + 1)])
+        share[name] = float(np.var(means[index]) / np.var(logs))
+    return max(share, key=lambda name: share[name]) if share else ""
+
+
+def classes(view: StudyView, name: str, rows: np.ndarray, most: int) -> tuple[np.ndarray, list[Any]]:
+    """Sort rows into the factor's own levels, or into `most` classes of equally many rows.
+
+    Returns
+    -------
+    Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or its ends (low, high).
+    """
+    values, levels = view.table[name].to_numpy()[rows], view.levels(name)
+    if not view.numeric(name) or len(levels) <= MOST_LEVELS:
+        place = {v: i for i, v in enumerate(levels)}
+        return np.array([place.get(v, 0) for v in values], dtype=int), list(levels)
+    edges = np.unique(np.quantile(values, np.linspace(0, 1, most + 1), method="nearest"))
+    index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, max(len(edges) - 2, 0))
+    kinds, index = np.unique(index, return_inverse=True)
+    return index, [(float(values[index == k].min()), float(values[index == k].max())) for k in range(len(kinds))]

@@ -1,0 +1,204 @@
+"""Peak stress against fit, and the forces of both contacts against axial force."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from trackroller.report.claims import classes, leading_factor
+from trackroller.report.effects import effect_of
+from trackroller.report.figures import style
+from trackroller.report.figures.panels import Entries, drive_entries, drive_of, legend, marks, sampled
+from trackroller.report.findings import lift_off, surface
+from trackroller.report.numbers import SPOKEN, SYMBOLS, factor_label, level_text, long_name, number, quantity, with_unit
+from trackroller.report.view import BODIES, StudyView
+
+CLOUD = 400  # cases of a sample drawn, where more would hide each other
+LINES = 5
+FORCES = (
+    ("normal_force", "Normal force", r"$F_\mathrm{N}$"),
+    ("lateral_force", "Lateral force", r"$F_\mathrm{T}$"),
+    ("driving_force", "Driving force", r"$F_\mathrm{A}$"),
+)
+
+
+def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+    """Draw peak stress over the fit, coloured by what decides it; filled marks at the surface, hollow ones below."""
+    fits = next((f for f in map(view.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
+    bodies = [b for b in BODIES if view.has(f"peak_stress_{b}")]
+    if not fits or not bodies:
+        return None
+    hue = _hue(view, f"peak_stress_{bodies[0]}", fits)
+    rows, held = view.hold((*fits, hue) if hue else fits)
+    rows = rows[view.rolling[rows.index]]
+    groups = _stress_groups(view, rows, hue)
+    rows, label = add_fit(view, rows)
+    if not len(rows):
+        return None
+    drawn, thinned = (rows, "") if view.grid else sampled(rows, CLOUD * len(groups))
+    figure = style.new_figure(64 + 3.6 * (len(groups) + 2), style.WIDE_MM)
+    panels = figure.subplots(1, len(bodies), sharex=True, sharey=True, squeeze=False)[0]
+    entries: Entries = []
+    for i, ((text, members), colour) in enumerate(zip(groups, style.palette(len(groups)), strict=True)):
+        look = {"color": colour, "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6] if view.grid else "none"}
+        entries += [(text, look)] if text else []
+        for axes, body in zip(panels, bodies, strict=True):
+            _stress_series(axes, drawn[drawn.index.isin(members)], body, look, view.grid)
+    for axes, body in zip(panels, bodies, strict=True):
+        axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
+        axes.set_ylim(bottom=0)
+        axes.set_xlabel(label)
+    panels[0].set_ylabel(with_unit("Peak von Mises stress", "MPa"))
+    dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
+    entries += [("filled: peak at the surface", dot), ("hollow: peak below it", {**dot, "markerfacecolor": "white"})]
+    legend(figure, entries)
+    style.head(figure, "Peak stress against fit", f"{held} {thinned}".strip())
+    style.finish(figure)
+    caption = (
+        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
+        f"guide; rolling designs. Filled marks: the peak lies at the surface; hollow marks: below it. {held} {thinned}"
+    )
+    return figure, style.FigureInfo("stress_against_fit", caption.strip(), _stress_sentence(view, bodies[0], fits))
+
+
+def _stress_sentence(view: StudyView, body: str, fits: tuple[str, ...]) -> str:
+    """State the effect of the fit on the peak and where the peak lies, from all valid designs."""
+    said = [surface(view, body, view.valid)]
+    if fits[0] in view.factors:
+        column = f"peak_stress_{body}"
+        said.insert(0, effect_of(view, column, f"peak stress of the {body}", fits[0], view.valid))
+    return " ".join(s.text for s in said if s)
+
+
+def _hue(view: StudyView, column: str, fits: tuple[str, ...]) -> str:
+    """Return the factor besides the fit that decides the peak stress, '' if there is none."""
+    others = [f for f in view.factors if f not in fits]
+    if not others:
+        return ""
+    lead = leading_factor(view, column, view.rolling)
+    return lead if lead in others else others[0]
+
+
+def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
+    """Return rows with a column `_fit`, and its axis label.
+
+    Fit is groove over guide radius; where a roller is straight or convex the ratio is turned over, so that it passes
+    through 0 instead of infinity.
+    """
+    rows = rows.copy()
+    roller = rows.get("roller_profile_radius", view.base.get("roller_profile_radius"))
+    guide = rows.get("guide_profile_radius", view.base.get("guide_profile_radius"))
+    roller, guide = (np.broadcast_to(np.asarray(v, dtype=float), len(rows)) for v in (roller, guide))
+    r_t, r_g = SYMBOLS["r_C,TR"], SYMBOLS["r_C,G"]
+    if np.all((roller < 0) & np.isfinite(roller)):
+        rows["_fit"] = -roller / guide
+        return rows, f"Fit: groove over guide radius $-${r_t}/{r_g} [–]"
+    rows["_fit"] = -guide / roller
+    return rows, f"Fit: guide over groove radius $-${r_g}/{r_t} [–]"
+
+
+def _stress_groups(view: StudyView, rows: pd.DataFrame, hue: str) -> list[tuple[str, np.ndarray]]:
+    """Name and row numbers of at most five lines: levels of the deciding factor, or its thirds."""
+    if not hue:
+        return [("", rows.index.to_numpy())]
+    inside = np.isin(np.arange(len(view.table)), rows.index)
+    index, ends = classes(view, hue, inside, 3)
+    here = np.flatnonzero(inside)
+    present = [k for k in range(len(ends)) if (index == k).any()]
+    if len(present) > LINES:
+        present = [present[k] for k in np.unique(np.linspace(0, len(present) - 1, LINES).round().astype(int))]
+    return [(_group_words(hue, ends[k]), here[index == k]) for k in present]
+
+
+def _group_words(hue: str, end: Any) -> str:
+    if isinstance(end, tuple):
+        return f"{long_name(hue)} {end[0]:.3g} to {end[1]:.3g}"
+    return level_text(hue, end) if hue in SPOKEN or isinstance(end, str) else f"{long_name(hue)} {level_text(hue, end)}"
+
+
+def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], grid: bool) -> None:
+    part, y = part.sort_values("_fit"), f"peak_stress_{body}"
+    if grid:
+        axes.plot(part["_fit"], part[y], color=look["color"], linestyle=look["linestyle"], zorder=2)
+    flag = part.get(f"at_surface_{body}")
+    at_surface = np.ones(len(part), dtype=bool) if flag is None else (flag == 1).to_numpy()
+    marks(axes, part, "_fit", y, {**look, "s": 15 if grid else 8}, at_surface)
+
+
+def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+    """Draw normal, lateral and driving force of both contacts over the axial force, by drive."""
+    x = "axial_force"
+    if not view.behind(x) or not view.numeric(x):
+        return None
+    kinds = [k for k in FORCES if f"{k[0]}_1" in view.table and (view.has(f"{k[0]}_1") or view.has(f"{k[0]}_2"))]
+    if not kinds:
+        return None
+    drives = drive_of(view.levels("motor_force") if "motor_force" in view.factors else None)
+    shown = (*view.behind(x), *(["motor_force"] if drives != [None] else []))
+    rows, held = view.hold(shown)
+    drawn, thinned = (rows, "") if view.grid else sampled(rows, CLOUD)
+    figure = style.new_figure(74, style.WIDE_MM)
+    panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
+    colours = style.palette(3)
+    looks = [{"color": colours[c], "marker": "os"[c], "s": (10, 20)[c] if view.grid else (5, 9)[c]} for c in (0, 1)]
+    for axes, (name, words, symbol) in zip(panels, kinds, strict=True):
+        for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
+            part = (drawn if level is None else drawn[drawn["motor_force"] == level]).sort_values(x)
+            y, look = f"{name}_{contact}", looks[contact - 1]
+            if view.grid:
+                axes.plot(part[x], part[y], color=look["color"], linestyle=style.LINES[j % 6], zorder=2)
+            marks(axes, part, x, y, look, contact == 1)
+        axes.set_ylabel(with_unit(f"{words} {symbol}", "N"))
+        axes.set_xlabel(factor_label(x))
+        axes.margins(y=0.1)
+    if view.grid:
+        _shade_lift_off(panels, rows, x)
+    faces = [{"markerfacecolor": colours[0]}, {"markerfacecolor": "none"}]
+    entries: Entries = [
+        (f"contact {c + 1}", {"color": colours[c], "marker": "os"[c], "linestyle": "none", **faces[c]}) for c in (0, 1)
+    ]
+    legend(figure, entries + (drive_entries(drives) if drives != [None] and view.grid else []), 5)
+    style.head(figure, "Forces of both contacts against axial force", f"{held} {thinned}".strip())
+    style.finish(figure)
+    told = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
+    caption = (
+        "Forces (N) of contact 1 (filled circles) and contact 2 (open squares) on the roller over the axial force"
+        f"{told}. {held} {thinned}"
+    )
+    return figure, style.FigureInfo("forces_against_axial_force", caption.strip(), _force_sentence(view))
+
+
+def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
+    """Shade the axial forces at which a contact lifts off in every line."""
+    if "regime" not in rows:
+        return
+    lifted = rows.groupby(x)["regime"].apply(lambda r: bool((r == 2).all()))
+    values = lifted.index.to_numpy()
+    halves = np.concatenate([values[:1], (values[1:] + values[:-1]) / 2, values[-1:]])
+    look = {"facecolor": style.REGIME_COLOURS[2], "alpha": 0.25, "hatch": "xxxx", "edgecolor": "white", "linewidth": 0}
+    for i in np.flatnonzero(lifted.to_numpy()):
+        for axes in panels:
+            axes.axvspan(halves[i], halves[i + 1], zorder=0, **look)
+    if lifted.any():
+        box = {"facecolor": "white", "edgecolor": "none", "pad": 1}
+        place = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": 6.8, "bbox": box}
+        panels[0].annotate("lift-off", (halves[-1], 0.3), **place)
+
+
+def _force_sentence(view: StudyView) -> str:
+    """State from which axial force on designs lift off; else what the contacts carry at the largest one."""
+    lifted = lift_off(view)
+    if lifted is not None:
+        return lifted.text
+    both = np.stack([view.column("normal_force_1"), view.column("normal_force_2")])
+    axial = np.abs(view.column("axial_force"))
+    good = np.flatnonzero(np.isfinite(both).all(axis=0) & np.isfinite(axial))
+    if not good.size:
+        return ""
+    last = good[np.argmax(axial[good])]
+    one, two = (quantity(float(v), "N") for v in both[:, last])
+    at = number(float(view.column("axial_force")[last]))
+    return f"No case lifts off; at an axial force of {at} N the contacts of case {last} carry {one} and {two}."

@@ -1,0 +1,190 @@
+"""Life over the two factors that decide it, with the regimes hatched and labelled."""
+
+from __future__ import annotations
+
+import itertools
+import textwrap
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from trackroller.report.claims import classes
+from trackroller.report.figures import style
+from trackroller.report.figures.panels import sampled
+from trackroller.report.findings import extremes
+from trackroller.report.numbers import REGIME_LABELS, capital, factor_label, level_text, long_name, rounded, with_unit
+from trackroller.report.view import MOST_LEVELS, StudyView
+
+MAX_TICKS = 9
+Pair = tuple[str, str]
+
+
+def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+    """Draw life over the two numeric factors with most effect; regimes and designs outside the model are marked."""
+    if view.life is None or not view.has(view.life[0]):
+        return None
+    pair = _life_pair(view)
+    if pair is None:
+        return None
+    column, words, unit = view.life
+    rows, held = view.hold(pair)
+    if not np.isfinite(rows[column]).any():
+        return None
+    figure = style.new_figure(84, style.WIDE_MM)
+    axes = figure.subplots()
+    cells = view.grid or all(len(view.levels(f)) <= MOST_LEVELS for f in pair)
+    if cells:
+        image = _life_cells(axes, view, rows, pair, column)
+    else:
+        drawn, held = sampled(rows)
+        image = _life_points(axes, drawn, pair, column)
+    bar = figure.colorbar(
+        image, ax=axes, aspect=25, pad=0.02, extend="max" if np.isposinf(rows[column]).any() else "neither"
+    )
+    bar.set_label(with_unit(capital(words), unit))
+    style.log_ticks(bar.ax.yaxis, *image.get_clim())
+    axes.set_xlabel(factor_label(pair[0]))
+    axes.set_ylabel(factor_label(pair[1]))
+    axes.grid(False)
+    over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
+    style.head(figure, capital(over), held)
+    style.finish(figure)
+    how = "Each cell is the median of its cases" if cells and not view.grid else "Outlined parts do not roll"
+    how = how if cells else "One mark a case; squares: full slip, triangles: lift-off"
+    inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
+    said = extremes(view, column, words, unit, pair, inside)
+    return figure, style.FigureInfo("life_map", f"{capital(over)}. {how}. {held}".strip(), said.text)
+
+
+def _life_pair(view: StudyView) -> Pair | None:
+    """Of the pairs of numeric factors, return the one that shows most regimes, then most effect on life."""
+    names = [f for f in view.factors if view.numeric(f) and len(view.levels(f)) > 1]
+    column = view.life[0] if view.life else ""
+    swing = {f: _swing(view, f, column) for f in names}
+
+    def worth(pair: Pair) -> tuple[float, ...]:
+        rows, _ = view.hold(pair)
+        regimes = rows["regime"].nunique() if "regime" in rows and view.grid else 1
+        few = [len(view.levels(f)) <= MOST_LEVELS for f in pair]
+        alike = view.grid or few[0] == few[1]  # a sample is drawn as cells or as points, not as rows of points
+        several = float(sum(len(view.levels(f)) > 2 for f in pair))
+        return (
+            float(np.isfinite(rows[column]).any()),
+            float(alike),
+            several,
+            float(regimes),
+            sum(swing[f] for f in pair),
+        )
+
+    pairs = list(itertools.combinations(names, 2))
+    if not pairs:
+        return None
+    x, y = max(pairs, key=worth)
+    return (x, y) if len(view.levels(x)) >= len(view.levels(y)) else (y, x)
+
+
+def _swing(view: StudyView, name: str, column: str) -> float:
+    """Largest difference of the mean log life between levels of a factor; chooses what is drawn, states nothing."""
+    life = view.column(column)
+    good = np.isfinite(life) & (life > 0)
+    if not good.any():
+        return 0.0
+    index, ends = classes(view, name, good, 5)
+    logs = np.log10(life[good])
+    return float(np.ptp([logs[index == k].mean() for k in range(len(ends)) if (index == k).any()]))
+
+
+def _table(rows: pd.DataFrame, pair: Pair, column: str, levels: tuple[list, list]) -> np.ndarray:
+    """Values (medians of a sample) over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
+    cells = np.full((len(levels[1]), len(levels[0])), np.nan)
+    place = [{v: i for i, v in enumerate(part)} for part in levels]
+    medians = rows.groupby(list(pair), as_index=False)[column].median()
+    for x, y, value in zip(medians[pair[0]], medians[pair[1]], medians[column], strict=True):
+        cells[place[1][y], place[0][x]] = value
+    return cells
+
+
+def _norm(life: np.ndarray) -> LogNorm:
+    finite = life[np.isfinite(life) & (life > 0)]
+    low, high = finite.min(), finite.max()
+    return LogNorm(low, high if high > low else 10 * low)
+
+
+def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
+    levels = view.levels(pair[0]), view.levels(pair[1])
+    life = _table(rows, pair, column, levels)
+    axes.set_facecolor("0.75")  # cells without a life
+    cells = np.ma.masked_invalid(np.where(np.isposinf(life), 1e300, life))
+    image = axes.pcolormesh(cells, cmap="cividis", norm=_norm(life), edgecolor="face", linewidth=0.1)
+    _ticks(axes, pair, levels)
+    if "regime" in rows and view.grid:
+        regime = _table(rows, pair, "regime", levels)
+        for code in (1, 2, 3):
+            _hatched(axes, regime == code, code)
+    return image
+
+
+def _ticks(axes: Axes, pair: Pair, levels: tuple[list, list]) -> None:
+    """Write level values at the middle of the cells, thinned when there are many."""
+    for axis, name, values in ((axes.xaxis, pair[0], levels[0]), (axes.yaxis, pair[1], levels[1])):
+        shown = range(0, len(values), -(-len(values) // MAX_TICKS))
+        axis.set_ticks([i + 0.5 for i in shown], [tick_text(name, values[i]) for i in shown])
+        axis.set_tick_params(length=2)
+
+
+def tick_text(name: str, value: Any) -> str:
+    """Write a level at an axis: short, without unit."""
+    if isinstance(value, str):
+        return textwrap.fill(level_text(name, value).replace(" on ", " on\u00a0"), 24).replace("\u00a0", " ")
+    return "∞" if np.isposinf(value) else rounded(value)
+
+
+def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
+    """Hatch the cells of a regime, outline the region and write its name in its middle."""
+    if not cells.any():
+        return
+    look = {"facecolor": (1, 1, 1, 0.35), "edgecolor": (0.25, 0.25, 0.25), "linewidth": 0}
+    for j, i in np.argwhere(cells):
+        axes.add_patch(Rectangle((i, j), 1, 1, hatch=style.REGIME_HATCHES[code] or "....", **look))
+    padded = np.pad(cells, 1)
+    edges = [[(i - 1, j), (i, j)] for j, i in np.argwhere(padded[1:, :] != padded[:-1, :])]
+    edges += [[(i, j - 1), (i, j)] for j, i in np.argwhere(padded[:, 1:] != padded[:, :-1])]
+    axes.add_collection(LineCollection(edges, colors="black", linewidths=1.0, zorder=4))
+    spots = np.argwhere(cells) + 0.5
+    middle = spots[np.argmin(((spots - spots.mean(axis=0)) ** 2).sum(axis=1))]
+    box = {"facecolor": "white", "edgecolor": "0.3", "linewidth": 0.5, "boxstyle": "round,pad=0.2"}
+    thin = np.ptp(spots[:, 1]) + 1 < 0.12 * cells.shape[1]
+    label = {"ha": "center", "va": "center", "fontsize": 6.8, "zorder": 5, "rotation": 90 if thin else 0, "bbox": box}
+    axes.text(middle[1], middle[0], REGIME_LABELS[code], **label).set_in_layout(False)
+
+
+def _life_points(axes: Axes, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
+    """Draw a sample: one mark a case, its regime in the shape of the mark."""
+    norm = _norm(rows[column].to_numpy())
+    regime = rows["regime"].to_numpy() if "regime" in rows else np.zeros(len(rows))
+    image = None
+    for code, marker in ((0, "o"), (1, "s"), (2, "^")):
+        part = rows[regime == code]
+        if not len(part):
+            continue
+        look = {"marker": marker, "linewidth": 0.6 if code else 0.2, "edgecolor": "black" if code else "0.6"}
+        points = axes.scatter(
+            part[pair[0]],
+            part[pair[1]],
+            c=part[column],
+            cmap="cividis",
+            norm=norm,
+            s=13,
+            label=REGIME_LABELS[code],
+            rasterized=len(part) > 500,
+            **look,
+        )
+        image = image or points
+    axes.figure.legend(loc="outside lower left", ncols=3, handletextpad=0.2)
+    return image

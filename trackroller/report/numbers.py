@@ -1,0 +1,226 @@
+"""Numbers, shares, intervals, units, names and levels as an engineer writes them: the only formatting module."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.study.design.levels import short
+
+REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")
+UNITS = {
+    "1": "–",
+    "-": "–",
+    "degree": "°",
+    "deg": "°",
+    "m min-1": "m/min",
+    "h-1": "1/h",
+    "J m-1": "J/m",
+    "N mm": "N·mm",
+}
+SYMBOLS = {
+    "A_T": r"$A_\mathrm{T}$",
+    "r_C,G": r"$r_\mathrm{C,G}$",
+    "r_C,TR": r"$r_\mathrm{C,TR}$",
+    "r_Curve": r"$r_\mathrm{Curve}$",
+    "alpha": r"$\alpha$",
+    "F_rad": r"$F_\mathrm{rad}$",
+    "F_ax": r"$F_\mathrm{ax}$",
+    "F_Motor": r"$F_\mathrm{Motor}$",
+    "mu": r"$\mu$",
+    "v": r"$v$",
+    "n_G": r"$n_\mathrm{G}$",
+}
+SPOKEN = ("motor_force", "guide_curve_radius", "material_pair", "roller_material", "guide_material")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float) -> str:
+    """Write a number in at most four figures, thousands as 12,300 and large ones as 1.2·10⁹.
+
+    Parameters
+    ----------
+    value : any float; NaN becomes a dash and infinity its sign
+
+    Examples
+    --------
+    >>> number(12345.0), number(0.25), number(-7.0)
+    ('12,300', '0.25', '−7')
+    """
+    if math.isnan(value):
+        return "–"
+    if math.isinf(value):
+        return "∞" if value > 0 else "−∞"
+    size = abs(value)
+    if size >= 1e7 or (0 < size < 1e-3):
+        mantissa, exponent = f"{value:.2e}".split("e")
+        return f"{float(mantissa):g}·10{str(int(exponent)).translate(_RAISED)}".replace("-", "−")
+    if size >= 1e4:
+        return f"{float(f'{value:.3g}'):,.0f}".replace("-", "−")
+    return f"{value:.4g}".replace("-", "−")
+
+
+def rounded(value: float, figures: int = 3) -> str:
+    """Write a number cut to so many figures."""
+    return number(float(f"{value:.{figures}g}"))
+
+
+def near(value: float, span: float) -> str:
+    """Write a value rounded to a thousandth of the span it lies in: 0.2498 of 0.25 is 0.25, 1.6e-5 of 0.25 is 0."""
+    if not (span > 0 and math.isfinite(span) and math.isfinite(value)):
+        return number(value)
+    digits = 2 - math.floor(math.log10(span))
+    return rounded(round(value, digits) + 0.0)
+
+
+def life(value: float) -> str:
+    """Write a life: three figures, or the word 'unlimited'."""
+    return "unlimited" if value == math.inf else rounded(value)
+
+
+def count(cases: int) -> str:
+    """Write a number of cases with commas: 5,400."""
+    return f"{cases:,}"
+
+
+def share(part: int, whole: int) -> str:
+    """Write a share of cases in percent; only all of them are 100 % and only none of them are 0 %.
+
+    Parameters
+    ----------
+    part, whole : numbers of cases, 0 <= part <= whole and whole > 0
+
+    Examples
+    --------
+    >>> share(1, 3), share(5399, 5400), share(3, 3)
+    ('33 %', '99.98 %', '100 %')
+    """
+    if part in (0, whole):
+        return "100 %" if part else "0 %"
+    exact, digits = 100 * part / whole, 0
+    while not 0.5 * 10**-digits < exact < 100 - 10**-digits:
+        digits += 1
+    return f"{exact:.{digits}f} %"
+
+
+def plus_minus(value: float, low: float, high: float) -> str:
+    """Write a value with half its 95 % interval, both to two figures of the half: '2.04 ± 0.19'.
+
+    An interval that is not known (NaN) is left out. Every ± of the report is this half width.
+    """
+    half = (high - low) / 2
+    if not math.isfinite(value):
+        return "–"
+    if not math.isfinite(half) or half <= 0:
+        return rounded(value)
+    digits = 1 - math.floor(math.log10(half))
+    if digits <= 0 or digits > 4:
+        return f"{rounded(value)} ± {rounded(half, 2)}"
+    return f"{value:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
+
+
+def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
+    """Write a share of variance or a probability as '61 ± 3 %', or '61 %' without an interval; never below 0."""
+    exact, half = 100 * max(0.0, value), 50 * (high - low)
+    if math.isfinite(half):
+        return f"{exact:.0f} ± {max(1.0, half):.0f} %" if half >= 0.5 or exact >= 1 else f"{exact:.1f} ± {half:.1f} %"
+    return f"{exact:.0f} %" if exact == 0 or 1 <= exact <= 99 else f"{exact:.2g} %" if exact < 1 else f"{exact:.4g} %"
+
+
+def times(ratio: float) -> str:
+    """Write a ratio above 1 as '26-fold', one below 10 in three figures: '2.64-fold'."""
+    return f"{rounded(ratio, 3 if ratio < 10 else 2)}-fold"
+
+
+def capital(text: str) -> str:
+    """Write the first letter large, the others as they are."""
+    return text[:1].upper() + text[1:]
+
+
+def listing(words: Sequence[str], last: str = "and") -> str:
+    """Join words: 'a', 'a and b', 'a, b and c'; 'none' for an empty list."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else "none"
+
+
+def unit_text(units: str) -> str:
+    """Write a CF unit as a reader expects it, '–' for a pure number."""
+    return UNITS.get(units, units)
+
+
+def with_unit(text: str, units: str) -> str:
+    """Write an axis label: the quantity and its unit in brackets."""
+    return f"{text} [{unit_text(units)}]"
+
+
+def quantity(value: float, units: str) -> str:
+    """Write a number with its unit, for running text; pure numbers stand alone."""
+    unit = unit_text(units)
+    return f"{life(value)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
+
+
+def plain(name: str) -> str:
+    """Write a name without underscores."""
+    return name.replace("_", " ")
+
+
+def long_name(name: str) -> str:
+    """Name a factor in running text."""
+    if name == "normal":  # an option whose name alone says little
+        return "normal problem"
+    return PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
+
+
+def factor_label(name: str, units: str | None = None) -> str:
+    """Label the axis of a factor: long name, symbol, unit."""
+    parameter = PARAMETERS.get(name)
+    if parameter is None:
+        return with_unit(capital(plain(name)), units) if units else capital(plain(name))
+    return with_unit(
+        f"{capital(parameter.long_name)} {SYMBOLS.get(parameter.symbol, parameter.symbol)}", parameter.unit
+    )
+
+
+def level_text(name: str, value: Any, unit: bool = True) -> str:
+    """Write a level of a factor: 'straight' for an infinite curve, 'driven −30 N' for a motor force."""
+    if isinstance(value, str):
+        return short(name, value) if name in MAPPING_FIELDS else _pair(value)
+    value = float(value)
+    if name == "motor_force" and unit:
+        return "free rolling" if value == 0 else f"{'driven' if value < 0 else 'braked'} {number(value)} N"
+    if name == "guide_curve_radius" and unit:
+        if math.isinf(value):
+            return "straight"
+        return f"{'outer' if value > 0 else 'inner'} curve {number(abs(value))} mm"
+    if not unit or name not in PARAMETERS or PARAMETERS[name].unit == "-":
+        return number(value)
+    return f"{number(value)} {unit_text(PARAMETERS[name].unit)}".replace(" °", "°")
+
+
+def setting(name: str, value: Any) -> str:
+    """Write a factor and its level: 'friction coefficient 0.3', 'driven −30 N', 'straight'."""
+    text = level_text(name, value)
+    spoken = name in SPOKEN and not (name == "guide_curve_radius" and text == "straight")
+    return text if spoken else "straight track" if name == "guide_curve_radius" else f"{long_name(name)} {text}"
+
+
+def short_levels(names: Sequence[str]) -> list[str]:
+    """Drop from names of pairs the part that all of them share: only what differs tells them apart."""
+    parts = [_parts(name) for name in names]
+    if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
+        for keep in (0, 1):
+            if len({p[1 - keep] for p in parts}) == 1:
+                return [p[keep] for p in parts]
+    return list(names)
+
+
+def _parts(name: str) -> list[str]:
+    if name.endswith(" on itself"):
+        return [name.removesuffix(" on itself")] * 2
+    return name.split(" / " if " / " in name else " on ")
+
+
+def _pair(label: str) -> str:
+    parts = label.split(" / ")
+    return f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)

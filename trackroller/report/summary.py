@@ -1,0 +1,65 @@
+"""The head of the report: six lines that answer what an engineer asks first."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from trackroller.report import sentences as words
+from trackroller.report.claims import Sentence
+from trackroller.report.findings import accuracy, best_design, friction_error, occurrence, valid_designs
+from trackroller.report.numbers import REGIME_LABELS, capital, count
+from trackroller.report.view import StudyView
+
+Line = tuple[str, list[Sentence]]
+LIVES = ("roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_life_cycles")
+
+
+def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> list[Line]:
+    """Return the lines of *In short*: a head and its sentences; a line without content is left out.
+
+    Parameters
+    ----------
+    view : the study
+    sens : its analysis, if there is one
+    models : sentences of the comparison of contact models, if the study has one
+    """
+    lines = [
+        ("Valid designs", [valid_designs(view), stopped(view)]),
+        ("What decides", [decides(sens)]),
+        ("Best", [best_design(view)]),
+        ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
+        ("How sure", [friction_error(view), *accuracy(view), *(Sentence("models", text) for text in models)]),
+        ("Enough samples?", [enough(view, sens)]),
+    ]
+    return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
+
+
+def stopped(view: StudyView) -> Sentence | None:
+    """Count the cases in which the condition of `stop_if` ended the search for stresses."""
+    hit = view.column("stopped", 0.0) == 1
+    if not hit.any():
+        return None
+    cases = int(hit.sum())
+    text = f"{count(cases)} of {count(len(hit))} cases met the condition of `stop_if`: they have no stress and no life."
+    return Sentence("stopped", text, {"count": cases}, np.ones(len(hit), dtype=bool))
+
+
+def decides(sens: xr.Dataset | None) -> Sentence | None:
+    """State what decides life (else the first output that has an index), or the best design point."""
+    if sens is None:
+        return None
+    names = [str(n) for n in sens["output"].values]
+    if words.robust_design(sens):
+        lives = [n for n in LIVES if n in names]
+        return words.robustness(sens, lives[0]) if lives else None
+    ranked = [n for n in [*LIVES, *names] if n in names and words.order(sens, n)]
+    return words.decides(sens, ranked[0]) if ranked else None
+
+
+def enough(view: StudyView, sens: xr.Dataset | None) -> Sentence | None:
+    """Say whether the samples suffice; designs without samples need no answer."""
+    asked = view.study.get("samples")
+    if sens is None or not isinstance(asked, int) or words.robust_design(sens):
+        return None
+    return words.samples(sens, asked)
