@@ -108,8 +108,9 @@ class StudyView:
         return bool(np.issubdtype(np.asarray(self.table[name]).dtype, np.number))
 
     def ordered(self, name: str) -> bool:
-        """Say whether more of the factor means something: not for materials, drives and curves of the track."""
-        return self.numeric(name) and name not in SPOKEN and bool(np.isfinite(self.table[name]).all())
+        """Say whether more of the factor means something: not for materials, nor for a few drives or curves."""
+        spoken = name in SPOKEN and len(self.levels(name)) <= MOST_LEVELS
+        return self.numeric(name) and not spoken and bool(np.isfinite(self.table[name]).all())
 
     @cached_property
     def categories(self) -> tuple[str, ...]:

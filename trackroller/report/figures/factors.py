@@ -125,7 +125,10 @@ def _panel(
     if ordered:
         axes.xaxis.set_major_locator(MaxNLocator(5))
         return
-    texts = [textwrap.fill(t, 18) for t in short_levels([level_text(name, e) for e in ends])]
+    texts = [
+        textwrap.fill(t, 18)
+        for t in short_levels([_class_words(name, e) if isinstance(e, tuple) else level_text(name, e) for e in ends])
+    ]
     axes.set_xticks(at, texts, rotation=0 if len(texts) <= 3 and max(map(len, texts)) < 14 else 35, fontsize=6.2)
     for label in axes.get_xticklabels():
         label.set(ha="right" if label.get_rotation() else "center", rotation_mode="anchor")
