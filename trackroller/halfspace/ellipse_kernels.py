@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trackroller.halfspace.influence import PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU
+from trackroller.halfspace.rigid_slip import lateral_slip, pole_offset, rolling_slip_without_division
 from trackroller.halfspace.vectors import angle, exp, inner, log, sine_cosine
 
 XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
@@ -43,13 +44,10 @@ MOST_POINTS = 1024  # points of a rule; a row holds four rays for each point
 
 @inner
 def slip_at(patch, x, y):
-    """Return the rigid slip v/omega of the roller against the guide at (x, y) [mm], eqs (21), (24), branch-free."""
-    left = patch.k1 * (x + patch.a)
-    right = patch.k2 * (x - patch.a)
-    v_x = patch.sine * (y - patch.k0 - (left if x < patch.pole_x else right))
-    flat = patch.radius * patch.cosine
-    product = min(x * patch.cosine * (2.0 * patch.radius * patch.sine + x * patch.cosine), flat * flat)
-    return v_x, (patch.shift - flat) + math.sqrt(flat * flat - product)
+    """Return the rigid slip v/omega of the roller against the guide at (x, y) [mm], eq. (24)."""
+    offset = pole_offset(x, patch.a, patch.k0, patch.k1, patch.k2)
+    v_y = rolling_slip_without_division(x, patch.sine, patch.cosine, patch.radius, patch.shift)
+    return lateral_slip(y, offset, patch.sine), v_y
 
 
 @inner

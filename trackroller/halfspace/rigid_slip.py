@@ -1,0 +1,147 @@
+"""Rigid slip of a roller on its guide in full sliding: the formulas of eqs (20)-(25), each once.
+
+`trackroller.contact.slip` is the public face of this module. The formulas stand here because the stress kernels of
+this room need them as well, and a room imports only from the rooms below it. Every function takes floats in compiled
+code and floats or arrays in plain Python, with the same digits.
+
+Frame: x_C lateral, y_C in the rolling direction (Kalker and CONTACT use x for rolling). Slip is the velocity of the
+roller relative to the guide over the angular speed omega, in mm.
+
+References
+----------
+Wenzel, Bienefeld, Kretschmer, Kirchner (2022): Introducing an open-source simulation model for track rollers
+considering friction. Applied Mechanics 3, 692-704, eqs (20)-(25). doi:10.3390/applmech3020041
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba.extending import register_jitable
+
+from trackroller.halfspace.vectors import FAST
+
+_TINY = 1e-300  # keeps the slopes of a pole outside the patch finite
+
+# Without checks for division by zero, loops over these formulas run in vector registers.
+_formula: Any = register_jitable(error_model="numpy")
+_quick_formula: Any = register_jitable(error_model="numpy", fastmath=FAST)
+
+
+@_formula
+def profile_slip(x, sine, cosine, radius):
+    """Return the rolling slip v_y/omega of the circular guide profile, eq. (20) [mm].
+
+    Eq. (20) reads sqrt(r^2 - (x cos(alpha) + r sin(alpha))^2) - r cos(alpha). The form below does not cancel at
+    small x. ASSUME: beyond the equator of the profile the slip keeps the value that it has at the equator.
+
+    Parameters
+    ----------
+    x : float or ndarray
+        Lateral position x_C [mm].
+    sine, cosine : float or ndarray
+        Of the signed contact angle, +alpha in contact 1 and -alpha in contact 2.
+    radius : float or ndarray
+        Guide profile radius r_C,G [mm].
+
+    Returns
+    -------
+    float or ndarray
+        Slip over omega [mm].
+    """
+    deep = x * cosine * (2.0 * radius * sine + x * cosine)
+    deepest = radius * radius * cosine * cosine
+    return -np.minimum(deep, deepest) / (np.sqrt(np.maximum(deepest - deep, 0.0)) + radius * cosine)
+
+
+@_formula
+def rolling_slip(x, sine, cosine, radius, shift):
+    """Return the rolling slip v_y/omega, eq. (21) [mm]: eq. (20) and the rolling radius shift x_spin sin(alpha).
+
+    The paper misprints r_C,G sin(alpha) under the root as r_C,G - sin(alpha).
+
+    Parameters
+    ----------
+    x, sine, cosine, radius : float or ndarray
+        See `profile_slip`.
+    shift : float or ndarray
+        Rolling radius shift r_Delta0 [mm].
+
+    Returns
+    -------
+    float or ndarray
+        Slip over omega [mm].
+    """
+    return shift + profile_slip(x, sine, cosine, radius)
+
+
+@_quick_formula
+def rolling_slip_without_division(x, sine, cosine, radius, shift):
+    """Return `rolling_slip` as eq. (21) writes it; the stress kernels take it at millions of points.
+
+    The division of `rolling_slip` makes these kernels 15 % slower (validation/benchmarks/slip_forms.py). This form
+    cancels at small x: its absolute error is 1e-16 r cos(alpha).
+    """
+    flat = radius * cosine
+    deep = np.minimum(x * cosine * (2.0 * radius * sine + x * cosine), flat * flat)
+    return (shift - flat) + np.sqrt(flat * flat - deep)
+
+
+@_formula
+def slip_zeros(sine, cosine, radius, shift):
+    """Return the two lateral positions where the rolling slip of eq. (21) vanishes [mm]; NaN where it does not.
+
+    The first one lies near the spin pole, the second one on the other side of the guide's crest.
+    """
+    product = 2.0 * radius * cosine * shift - shift * shift
+    # a shift beyond the equator's has no zero: the root would belong to the lower half of the circle
+    square = radius * radius * sine * sine + product if radius * cosine >= shift else np.nan
+    reach = np.sqrt(square) + radius * np.abs(sine)
+    return np.sign(sine) * product / reach / cosine, -np.sign(sine) * reach / cosine
+
+
+@_formula
+def spin_pole(a, b, sine, shift):
+    """Return x_spin, eq. (23), and y_spin, eq. (22), of the spin pole [mm]; y_spin is 0 outside the patch.
+
+    Parameters
+    ----------
+    a, b : float or ndarray
+        Lateral and rolling semi-axis [mm].
+    sine : float or ndarray
+        Of the signed contact angle.
+    shift : float or ndarray
+        Rolling radius shift r_Delta0 [mm].
+    """
+    x = shift / sine
+    return x, 0.0 - b * np.sqrt(np.maximum(1.0 - (x / a) ** 2, 0.0))
+
+
+@_formula
+def pole_line(a, x_spin, y_spin, model):
+    """Return the coefficients of the line of poles y_delta(x), see `pole_offset`.
+
+    `model` is the paper's assumption: 0 concentric, 1 pole on the edge, eq. (22), 2 skewed, eq. (25).
+    """
+    if model == 0:
+        return 0.0 * y_spin, 0.0 * y_spin, 0.0 * y_spin
+    if model == 1:
+        return y_spin, 0.0 * y_spin, 0.0 * y_spin
+    return 0.0 * y_spin, y_spin / np.maximum(x_spin + a, _TINY), y_spin / np.minimum(x_spin - a, -_TINY)
+
+
+@_formula
+def pole_offset(x, a, k0, k1, k2):
+    """Return y_delta(x), where the lateral slip vanishes, eq. (25) [mm].
+
+    Eq. (25) rises from 0 at the edges x = -a and x = a to y_spin at the pole. As y_spin <= 0, its branch is the
+    larger one of both lines.
+    """
+    return k0 + np.maximum(k1 * (x + a), k2 * (x - a))
+
+
+@_formula
+def lateral_slip(y, offset, sine):
+    """Return the lateral slip v_x/omega, eq. (24) [mm], with the `offset` y_delta of `pole_offset`."""
+    return sine * (y - offset)
