@@ -7,6 +7,7 @@ from trackroller.contact import fastsim, kalker, linear
 from trackroller.contact.common import Elastic, Ellipse, Slip
 from trackroller.contact.fastsim import FastsimSettings
 from trackroller.contact.friction_laws import exponential_falling
+from trackroller.contact.slip import Creepage
 
 STEEL = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
 
@@ -23,7 +24,7 @@ def values(r):
 def test_small_creepages_give_the_forces_of_the_linear_theory(b):
     ellipse = patch(b=b)
     for creep in ((1e-7, 0, 0), (0, 1e-7, 0), (0, 0, 1e-7)):
-        f = values(fastsim.solve_patch(ellipse, *creep, 0.3, STEEL).resultants)[0]
+        f = values(fastsim.solve_patch(ellipse, Creepage(*creep), 0.3, STEEL).resultants)[0]
         exact = values(linear.resultants(ellipse, *creep, STEEL))[0]
         np.testing.assert_allclose(f[:2], exact[:2], rtol=3e-3, atol=1e-9)
 
@@ -31,9 +32,9 @@ def test_small_creepages_give_the_forces_of_the_linear_theory(b):
 def test_full_sliding_and_pure_drilling():
     ellipse = patch(0.2, 0.2)
     full = 0.1 * ellipse.normal_force[0]
-    f = values(fastsim.solve_patch(ellipse, -0.5, 0.0, 0.0, 0.1, STEEL).resultants)[0]
+    f = values(fastsim.solve_patch(ellipse, Creepage(-0.5, 0.0, 0.0), 0.1, STEEL).resultants)[0]
     assert f[1] == pytest.approx(full, rel=2e-3)
-    f = values(fastsim.solve_patch(ellipse, 0.0, 0.0, 50.0, 0.1, STEEL).resultants)[0]
+    f = values(fastsim.solve_patch(ellipse, Creepage(0.0, 0.0, 50.0), 0.1, STEEL).resultants)[0]
     assert f[2] == pytest.approx(-3 * np.pi / 16 * full * 0.2, rel=5e-3)
 
 
@@ -42,8 +43,8 @@ def test_full_sliding_and_pure_drilling():
     [((1e-3, 0.0, 0.0), 0.05), ((3e-4, 3e-4, 0.0), 0.06), ((-0.0035, 0.0, 0.03), 0.08), ((0.0, 0.0, 0.03), 0.08)],
 )
 def test_forces_near_the_exact_theory(creep, tolerance):
-    fast = values(fastsim.solve_patch(patch(), *creep, 0.3, STEEL).resultants)[0]
-    rigid = kalker.Creepage(*(np.array([c]) for c in creep))
+    fast = values(fastsim.solve_patch(patch(), Creepage(*creep), 0.3, STEEL).resultants)[0]
+    rigid = Creepage(*(np.array([c]) for c in creep))
     exact = values(kalker.solve_patch(patch(), rigid, 0.3, STEEL).resultants)[0]
     limit = 0.3 * patch().normal_force[0]
     np.testing.assert_allclose(fast[:2], exact[:2], rtol=tolerance, atol=2e-3 * limit)
@@ -65,7 +66,9 @@ def test_mirror_and_bound():
 def test_steps_and_strips_are_fine_enough():
     fine = FastsimSettings(strips=96, steps=384)
     for creep in ((-0.0035, 0.0, 0.03), (1e-4, 0.0, 0.03)):
-        f, g = (values(fastsim.solve_patch(patch(), *creep, 0.3, STEEL, s).resultants)[0] for s in (None, fine))
+        f, g = (
+            values(fastsim.solve_patch(patch(), Creepage(*creep), 0.3, STEEL, s).resultants)[0] for s in (None, fine)
+        )
         np.testing.assert_allclose(f, g, rtol=1e-2)
 
 
@@ -78,10 +81,8 @@ def test_forces_over_creepages_and_shapes():
     size, angle = 10 ** rng.uniform(-0.5, 1.5, n) * mu * p / 8e4, rng.uniform(-0.5, 0.5, n) * np.pi
     xi, phi = size * np.sin(angle), size * np.cos(angle) / c
     ellipse = Ellipse(c / root, c * root, np.full(n, p))
-    exact = kalker.solve_patch(
-        ellipse, kalker.Creepage(xi, 0 * xi, phi), mu, elastic, kalker.KalkerSettings(elements=24)
-    )
-    fast = fastsim.solve_patch(ellipse, xi, 0.0, phi, mu, elastic)
+    exact = kalker.solve_patch(ellipse, Creepage(xi, 0 * xi, phi), mu, elastic, kalker.KalkerSettings(elements=24))
+    fast = fastsim.solve_patch(ellipse, Creepage(xi, 0.0, phi), mu, elastic)
     scale = (mu * ellipse.normal_force)[:, None] * [1, 1, c]
     error = (values(fast.resultants) - values(exact.resultants)) / scale
     assert np.all(np.sqrt(np.mean(error**2, axis=0)) < [0.027, 0.017, 0.015])
@@ -94,8 +95,8 @@ def test_lateral_force_of_far_sliding_is_exact():
     fast, exact = (
         values(s.resultants)[:, 0]
         for s in (
-            fastsim.solve_patch(ellipse, 0.05, 0.0, 0.02, 0.1, STEEL),
-            kalker.solve_patch(ellipse, kalker.Creepage(*(np.full(3, v) for v in (0.05, 0.0, 0.02))), 0.1, STEEL),
+            fastsim.solve_patch(ellipse, Creepage(0.05, 0.0, 0.02), 0.1, STEEL),
+            kalker.solve_patch(ellipse, Creepage(*(np.full(3, v) for v in (0.05, 0.0, 0.02))), 0.1, STEEL),
         )
     )
     np.testing.assert_allclose(fast, exact, rtol=0.025)
@@ -103,7 +104,7 @@ def test_lateral_force_of_far_sliding_is_exact():
 
 def test_work_of_the_slip_is_that_of_the_creepages():
     xi, phi = np.array([-0.0035, 1e-4, 0.01]), np.array([0.03, 0.003, -0.1])
-    s = fastsim.solve_patch(patch([0.3] * 3, [0.18] * 3, [700.0] * 3), xi, 0.0, phi, 0.3, STEEL)
+    s = fastsim.solve_patch(patch([0.3] * 3, [0.18] * 3, [700.0] * 3), Creepage(xi, 0.0, phi), 0.3, STEEL)
     f = values(s.resultants)
     np.testing.assert_allclose(s.friction_energy_per_distance, -(xi * f[:, 1] + phi * f[:, 2]), rtol=1e-9)
 
@@ -111,20 +112,18 @@ def test_work_of_the_slip_is_that_of_the_creepages():
 def test_falling_friction_lowers_the_forces():
     s = fastsim.solve_patch(
         patch(),
-        -0.0035,
-        0.0,
-        0.03,
+        Creepage(-0.0035, 0.0, 0.03),
         0.3,
         STEEL,
         FastsimSettings(law=exponential_falling(30.0, 0.4), travel_speed=2000.0),
     )
     assert s.friction_change[0] < 0.02
-    constant = fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.3, STEEL)
+    constant = fastsim.solve_patch(patch(), Creepage(-0.0035, 0.0, 0.03), 0.3, STEEL)
     assert abs(s.resultants.spin_moment[0]) < abs(constant.resultants.spin_moment[0])
 
 
 def test_vanishing_friction_or_creepage():
-    f = values(fastsim.solve_patch(patch(), -0.0035, 0.0, 0.03, 0.0, STEEL).resultants)
+    f = values(fastsim.solve_patch(patch(), Creepage(-0.0035, 0.0, 0.03), 0.0, STEEL).resultants)
     np.testing.assert_allclose(f, 0.0, atol=1e-15)
-    f = values(fastsim.solve_patch(patch(), 0.0, 0.0, 0.0, 0.3, STEEL).resultants)
+    f = values(fastsim.solve_patch(patch(), Creepage(0.0, 0.0, 0.0), 0.3, STEEL).resultants)
     np.testing.assert_allclose(f, 0.0, atol=1e-15)

@@ -13,6 +13,7 @@ from trackroller.contact.friction_laws import exponential_falling
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import exact_shape
 from trackroller.contact.kalker.cells import unit_cells
+from trackroller.contact.slip import Creepage
 
 STEEL = Elastic(np.array([79e3]), np.array([0.33]), np.zeros(1))
 MU = np.array([0.3])
@@ -71,7 +72,7 @@ def test_the_pressure_of_an_ellipse_gives_the_ellipse_the_better_the_more_elemen
     for n in (10, 20, 40):
         e, grid = hertz_patch(n, *curvatures)
         fine = fastsim.FastsimSettings(strips=96, steps=300)
-        exact = fastsim.solve_patch(e, slip.longitudinal, 0.0, slip.spin, MU, STEEL, fine)
+        exact = fastsim.solve_patch(e, Creepage.of_slip(slip), MU, STEEL, fine)
         found = fastsim_grid.solve_grid(grid, slip, MU, STEEL, fastsim.FastsimSettings(steps=6 * n // 5))
         scale = 0.3 * 115 * np.array([1, 1, math.sqrt(e.semi_axis_lateral[0] * e.semi_axis_rolling[0])])
         errors.append(np.abs((numbers(found) - numbers(exact)) / scale).max())

@@ -12,7 +12,7 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
 from trackroller.contact.friction_laws import constant, exponential_falling, law_of, linear_falling, table
 from trackroller.contact.hertz import HertzShape
 from trackroller.contact.models import contact_model
-from trackroller.contact.sliding_law import integrals
+from trackroller.contact.sliding import integrals
 from trackroller.errors import InputError
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.case import to_table
@@ -120,7 +120,9 @@ def test_drilling_under_a_linear_law_is_a_closed_integral():
     slope = 0.8 / 4.0
     # a flat guide, so that the slip is a plain rotation
     slip = Slip(sine * ONE, np.cos(0.5) * ONE, 1e9 * ONE, radius * ONE, 0.0 * ONE)
-    found, _ = integrals(circle, slip, 0.3 * ONE, law, TRAVEL, spin_model="concentric", nodes=12)
+    found = integrals(
+        circle, slip, 0.3 * ONE, law=law, travel_speed=TRAVEL, spin_model="concentric", nodes=12
+    ).resultants
     expected = 0.3 * 700 * 0.2**3 * 2 * np.pi * (np.pi / 16 - slope * 2 / 15)
     assert abs(found.spin_moment[0]) == pytest.approx(expected, rel=1e-4)
 
@@ -133,13 +135,13 @@ def test_sliding_integrals_converge(name):
     a, b, angle = np.exp(rng.uniform(-2.5, 0, n)), np.exp(rng.uniform(-2.5, 0, n)), rng.uniform(0.2, 1.3, n)
     ellipse = Ellipse(a, b, np.ones(n))
     slip = Slip(np.sin(angle), np.cos(angle), np.full(n, 6.0), np.full(n, 16.0), rng.uniform(-0.6, 0.6, n) * a)
-    (low, power_low), (high, power_high) = (
-        integrals(ellipse, slip, np.full(n, 0.3), LAWS[name], TRAVEL, nodes=k) for k in (12, 48)
+    low, high = (
+        integrals(ellipse, slip, np.full(n, 0.3), law=LAWS[name], travel_speed=TRAVEL, nodes=k) for k in (12, 48)
     )
     for part in ("lateral_force", "driving_force", "spin_moment"):
         scale = 0.3 * ellipse.normal_force * (np.maximum(a, b) if part == "spin_moment" else 1.0)
-        assert np.max(np.abs(getattr(low, part) - getattr(high, part)) / scale) < 3e-5
-    np.testing.assert_allclose(power_low, power_high, rtol=1e-4)
+        assert np.max(np.abs(getattr(low.resultants, part) - getattr(high.resultants, part)) / scale) < 3e-5
+    np.testing.assert_allclose(low.power, high.power, rtol=1e-4)
 
 
 def test_constant_laws_are_the_same_to_the_last_bit():

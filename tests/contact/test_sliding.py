@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from trackroller.contact.common import Ellipse, Slip
-from trackroller.contact.sliding import friction_power, resultants, slip_field, tractions
+from trackroller.contact.sliding import integrals, resultants, slip_field, tractions
 
 
 def patch(a, b, alpha, shift, radius=6.0, p=1.0):
@@ -52,7 +52,7 @@ def test_resultants_and_power_match_adaptive_quadrature(a, b, alpha, shift, spin
         r.lateral_force[0],
         r.driving_force[0],
         r.spin_moment[0],
-        friction_power(ellipse, slip, np.ones(1), spin_model=spin_model)[0],
+        integrals(ellipse, slip, np.ones(1), spin_model=spin_model).power[0],
     ]
     scale = np.array([1, 1, max(a, b), max(a, b)]) * ellipse.normal_force[0]
     np.testing.assert_allclose(np.array(found) / scale, np.array(exact) / scale, atol=1e-5)

@@ -10,8 +10,7 @@ from reference_cases import DATA
 import trackroller as tr
 from trackroller.contact.common import DetailedSlip, Slip
 from trackroller.contact.cross_sections import arcs
-from trackroller.contact.sliding import rolling_slip
-from trackroller.contact.slip import contour_over_tangent, turning_of
+from trackroller.contact.slip import contour_over_tangent, rolling_slip, turning_of
 from trackroller.errors import InputError
 from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.case import to_table

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.contact.sliding import rolling_slip
-from trackroller.contact.slip import pole_split
+from trackroller.contact.slip import pole_split, rolling_slip
 from trackroller.errors import InputError
 from trackroller.roller import accuracy as ac
 from validation.tradeoff import page as tradeoff_page

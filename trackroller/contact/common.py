@@ -17,6 +17,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from trackroller.contact.slip import pole_lateral, profile_slip
+
 
 class _Rows:
     """Row selection for dataclasses whose fields are arrays along one axis."""
@@ -148,7 +150,7 @@ class Slip(_Rows):
     @property
     def pole_lateral(self) -> np.ndarray:
         """Return x_spin = r_Delta0 / sin(alpha) [mm], eq. (23)."""
-        return self.shift / self.sine
+        return pole_lateral(self.shift, self.sine)
 
     def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
         """Return the rolling slip of the circular guide profile, eq. (20), less that of its tangent [1].
@@ -164,11 +166,8 @@ class Slip(_Rows):
         -------
         (n, m) array [1]
         """
-        s, c, r = self.sine[:, None], self.cosine[:, None], self.guide_profile_radius[:, None]
-        deep = x * c * (2.0 * r * s + x * c)
-        root = np.sqrt(np.maximum(r * r * c * c - deep, 0.0))
-        drop = np.where(root > 0.0, deep / (root + r * c), r * c)
-        return (x * s - drop) / self.rolling_radius[:, None]
+        sine, cosine, radius = self.sine[:, None], self.cosine[:, None], self.guide_profile_radius[:, None]
+        return (x * sine + profile_slip(x, sine, cosine, radius)) / self.rolling_radius[:, None]
 
     def detailed(self, turning: np.ndarray | None = None, contour: np.ndarray | None = None) -> DetailedSlip:
         """Return the same kinematics with turning and contour; an argument that is not given keeps its value.
@@ -233,6 +232,13 @@ class Resultants(_Rows):
     lateral_force: np.ndarray
     driving_force: np.ndarray
     spin_moment: np.ndarray
+
+    def replaced(self, rows: np.ndarray, other: Resultants) -> Resultants:
+        """Return the same resultants with those of the patches `rows` taken from `other`."""
+        parts = [np.array(getattr(self, field.name)) for field in dataclasses.fields(self)]
+        for part, field in zip(parts, dataclasses.fields(other), strict=True):
+            part[rows] = getattr(other, field.name)
+        return Resultants(*parts)
 
 
 @dataclass(frozen=True)
@@ -311,6 +317,7 @@ class ContactModel:
     are the numbers of the rollers to which the patches belong. Contact 2 of a roller has a negative `slip.sine`.
     """
 
+    name = ""  # as in `parameters.CONTACT_MODELS`
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution; False: `stick` tells the stick area
     refines = False  # `surface` is exact for any number of elements of a refined patch
@@ -341,3 +348,7 @@ class ContactModel:
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
         return np.zeros(n), np.ones(n, bool)
+
+    def used(self, n: int) -> np.ndarray:
+        """Return the name of the contact model that gave the forces of each of n rollers, object array (n,)."""
+        return np.full(n, self.name, dtype=object)

@@ -1,4 +1,4 @@
-"""The ladder of contact models behind one face, so that the stages need not know which one works.
+"""The contact models by name, each a value behind `common.ContactModel`.
 
 A model gives the contact law of the equilibrium, and the tractions of given patches on a grid.
 """
@@ -7,25 +7,26 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Collection
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.contact import sliding
+from trackroller.contact import fastsim, kalker, sliding
 from trackroller.contact.common import ContactModel, Elastic, Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.errors import InputError
-
-if TYPE_CHECKING:
-    from trackroller.contact.settings import Accuracy
-
+from trackroller.contact.kalker.law import KalkerLaw
+from trackroller.contact.linear import LARGEST_RATIO
+from trackroller.contact.settings import Accuracy
+from trackroller.contact.table.model import TableModel
+from trackroller.errors import unknown_name
 
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models
+MOST_SLENDER = 0.99 * LARGEST_RATIO  # axis ratio up to which FASTSIM has flexibilities
 
 
 class SlidingModel(ContactModel):
     """Full sliding with an empirical spin pole (Wenzel et al. 2022), under any friction law."""
 
+    name = "sliding"
     difference_step = 1e-5
     residual = 1e-10
 
@@ -34,45 +35,42 @@ class SlidingModel(ContactModel):
         self.friction_law, self.travel = law, travel_speed
         self.full_sliding = law.is_constant
 
-    def _falling(self, ellipse, slip, friction, rows, nodes):
-        from trackroller.contact import sliding_law
-
-        travel = self.travel[rows]
-        return sliding_law.integrals(
-            ellipse, slip, friction, self.friction_law, travel, spin_model=self.spin_model, nodes=nodes
+    def _integrals(self, ellipse, slip, friction, rows, nodes: int) -> sliding.Integrals:
+        return sliding.integrals(
+            ellipse,
+            slip,
+            friction,
+            spin_model=self.spin_model,
+            nodes=nodes,
+            law=self.friction_law,
+            travel_speed=self.travel[rows],
         )
 
     def law(self, ellipse, slip, friction, rows, fine):
         nodes = self.settings.force_nodes if fine else self.settings.coarse_nodes
-        if not self.friction_law.is_constant:
-            return self._falling(ellipse, slip, friction, rows, nodes)[0]
-        return sliding.resultants(ellipse, slip, friction, spin_model=self.spin_model, nodes=nodes)
+        return self._integrals(ellipse, slip, friction, rows, nodes).resultants
 
     def surface(self, ellipse, slip, friction, rows):
-        points, falling = self.settings.traction_points, None
-        if not self.friction_law.is_constant:
-            points, falling = FINER * self.settings.elements, self.friction_law
+        constant_law = self.friction_law.is_constant
         return sliding.tractions(
             ellipse,
             slip,
             friction,
             spin_model=self.spin_model,
-            points=points,
-            law=falling,
+            points=self.settings.traction_points if constant_law else FINER * self.settings.elements,
+            law=None if constant_law else self.friction_law,
             travel_speed=self.travel[rows],
         )
 
     def power(self, ellipse, slip, friction, rows):
-        nodes = self.settings.force_nodes
-        if self.friction_law.is_constant:
-            per_omega = sliding.friction_power(ellipse, slip, friction, spin_model=self.spin_model, nodes=nodes)
-        else:
-            per_omega = self._falling(ellipse, slip, friction, rows, nodes)[1]
-        return Works.of_friction(per_omega / slip.rolling_radius)
+        found = self._integrals(ellipse, slip, friction, rows, self.settings.force_nodes)
+        return Works.of_friction(found.power / slip.rolling_radius)
 
 
 class KalkerModel(ContactModel):
-    """Steady rolling on the elastic half-space with stick and slip (Kalker 1990)."""
+    """Steady rolling on the elastic half-space with adhesion and slip areas (Kalker 1990)."""
+
+    name = "kalker"
 
     def __init__(
         self,
@@ -82,18 +80,13 @@ class KalkerModel(ContactModel):
         travel_speed: np.ndarray,
         profile_slip: bool = False,
     ) -> None:
-        from trackroller.contact.kalker import KalkerSettings
-        from trackroller.contact.kalker.law import KalkerLaw
-
-        chosen = KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
+        chosen = kalker.KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, chosen, travel_speed)
 
     def law(self, ellipse, slip, friction, rows, fine):
         return self._law(ellipse, slip, friction, rows, fine)
 
     def surface(self, ellipse, slip, friction, rows):
-        from trackroller.contact import kalker
-
         return kalker.to_tractions(ellipse, friction, self._law.kept(ellipse, slip, friction, rows))
 
     def power(self, ellipse, slip, friction, rows):
@@ -106,6 +99,8 @@ class KalkerModel(ContactModel):
 class FastsimModel(ContactModel):
     """Kalker's simplified theory; NaN where the ellipse is more slender than its coefficients reach."""
 
+    name = "fastsim"
+
     def __init__(
         self,
         settings: Accuracy,
@@ -114,54 +109,40 @@ class FastsimModel(ContactModel):
         travel_speed: np.ndarray,
         profile_slip: bool = False,
     ) -> None:
-        from trackroller.contact import fastsim
-
         self.elastic, self.travel = elastic, travel_speed
         n = settings.elements  # strips and steps in the proportion of the default settings
-        self._fastsim = fastsim
         self.settings = fastsim.FastsimSettings(
             strips=4 * n // 5, steps=6 * n // 5, points=n, law=law, profile_slip=profile_slip
         )
 
-    def _solution(self, ellipse, slip, friction, rows):
-        from trackroller.contact.linear import LARGEST_RATIO
-
-        a, b, most = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, 0.99 * LARGEST_RATIO
-        known = np.flatnonzero(np.maximum(a, b) <= most * np.minimum(a, b))
+    def _solution(self, ellipse, slip, friction, rows) -> tuple[fastsim.FastsimSolution, np.ndarray]:
+        """Return the solution of the patches that are not too slender, and their numbers."""
+        a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+        known = np.flatnonzero(np.maximum(a, b) <= MOST_SLENDER * np.minimum(a, b))
         part = slip.take(known)
-        solution = self._fastsim.solve_patch(
+        solution = fastsim.solve_patch(
             ellipse.take(known),
-            part.longitudinal,
-            0.0,
-            part.spin,
+            kalker.Creepage.of_slip(part, self.settings.profile_slip),
             friction[known],
             self.elastic.take(rows[known]),
             self.settings,
             self.travel[rows[known]],
-            part if self.settings.profile_slip else None,
         )
-
-        def spread(values):
-            full = np.full(len(rows), np.nan)
-            full[known] = values
-            return full
-
-        return solution, spread
+        return solution, known
 
     def law(self, ellipse, slip, friction, rows, fine):
-        solution, spread = self._solution(ellipse, slip, friction, rows)
+        solution, known = self._solution(ellipse, slip, friction, rows)
         r = solution.resultants
-        return Resultants(*(spread(v) for v in (r.lateral_force, r.driving_force, r.spin_moment)))
+        parts = (r.lateral_force, r.driving_force, r.spin_moment)
+        return Resultants(*(_spread(part, known, len(rows)) for part in parts))
 
     def surface(self, ellipse, slip, friction, rows):
-        from trackroller.contact.linear import LARGEST_RATIO
-
-        # patches too slender for the theory exist in full slip only, which needs no more of it than grid and pressure
+        # patches too slender for the theory occur in full slip only, which needs no more of it than grid and pressure
         a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-        most = 0.99 * LARGEST_RATIO
-        known = np.maximum(a, b) <= most * np.minimum(a, b)
-        rounder = dataclasses.replace(ellipse, semi_axis_lateral=np.where(known, a, np.clip(a, b / most, b * most)))
-        t = self._fastsim.tractions(rounder, slip, friction, self.elastic.take(rows), self.settings, self.travel[rows])
+        known = np.maximum(a, b) <= MOST_SLENDER * np.minimum(a, b)
+        near = np.where(known, a, np.clip(a, b / MOST_SLENDER, b * MOST_SLENDER))
+        rounder = dataclasses.replace(ellipse, semi_axis_lateral=near)
+        t = fastsim.tractions(rounder, slip, friction, self.elastic.take(rows), self.settings, self.travel[rows])
         wrong = ~known[:, None, None]
         fields = {
             name: np.where(wrong, np.nan, getattr(t, name))
@@ -171,8 +152,15 @@ class FastsimModel(ContactModel):
         return dataclasses.replace(t, x=widened, stick=t.stick & ~wrong, **fields)
 
     def power(self, ellipse, slip, friction, rows):
-        solution, spread = self._solution(ellipse, slip, friction, rows)
-        return Works.of_friction(spread(solution.friction_energy_per_distance))
+        solution, known = self._solution(ellipse, slip, friction, rows)
+        return Works.of_friction(_spread(solution.friction_energy_per_distance, known, len(rows)))
+
+
+def _spread(values: np.ndarray, places: np.ndarray, n: int) -> np.ndarray:
+    """Return n numbers, `values` at `places` and NaN elsewhere."""
+    full = np.full(n, np.nan)
+    full[places] = values
+    return full
 
 
 def contact_model(
@@ -184,36 +172,65 @@ def contact_model(
     travel_speed: np.ndarray | float = 1000.0,
     slip_terms: Collection[str] = (),
 ) -> ContactModel:
-    """The model `name` for n rollers.
+    """Return the contact model `name` for n rollers with elliptical patches.
 
     Parameters
     ----------
-    settings : of the accuracy asked for
-    elastic : combined constants of the rollers, arrays (n,)
-    spin_model : for sliding only
-    law : friction over its value at rest by slip speed; constant if not given
-    travel_speed : of the rollers [mm/s], (n,) or scalar
-    slip_terms : with 'profile', slip of the guide's profile instead of its tangent; sliding has it anyway, and 'curve'
-        is a matter of the slip that a model is given (`common.DetailedSlip`)
+    name : str
+        'sliding', 'fastsim', 'kalker' or 'kalker_table'. The table serves constant friction and the guide's tangent.
+    settings : Accuracy
+        Discretisation.
+    elastic : Elastic
+        Combined constants of the rollers, arrays (n,).
+    spin_model : str
+        Assumption on the spin pole, for 'sliding' only.
+    law : FrictionLaw, optional
+        Friction over its value at rest by slip speed; constant if not given.
+    travel_speed : ndarray, shape (n,), or float
+        Travel speed of the rollers [mm/s].
+    slip_terms : collection of str
+        With 'profile' the rigid slip follows the guide's profile instead of its tangent; 'sliding' always does.
+        'curve' changes the slip that a model is given, see `common.DetailedSlip`.
+
+    Returns
+    -------
+    ContactModel
+        The model.
+
+    Raises
+    ------
+    InputError
+        For an unknown name.
     """
     law, profile = law or constant(), "profile" in slip_terms
     travel = np.array(np.broadcast_to(np.asarray(travel_speed, float), np.shape(elastic.shear_modulus)))
     if name == "sliding":
         return SlidingModel(settings, spin_model, law, travel)
+    if name == "fastsim":
+        return FastsimModel(settings, elastic, law, travel, profile)
     if name == "kalker":
         return KalkerModel(settings, elastic, law, travel, profile)
     if name == "kalker_table":
-        from trackroller.contact.table.model import TableModel
-
-        return TableModel(elastic, lambda: KalkerModel(settings, elastic, law, travel))
-    if name == "fastsim":
-        return FastsimModel(settings, elastic, law, travel, profile)
-    raise InputError("contact_model", name, "sliding, fastsim, kalker or kalker_table")
+        return TableModel(elastic, KalkerModel(settings, elastic, law, travel))
+    raise unknown_name("contact_model", name, ("sliding", "fastsim", "kalker", "kalker_table"))
 
 
 def traction_share(surface: SurfaceTractions, friction: np.ndarray) -> np.ndarray:
-    """Traction over its bound mu p at element centres, (n, 2, ny, nx); outside the ellipse as at the nearest inside."""
-    from scipy.ndimage import distance_transform_edt
+    """Return the traction over its bound mu p at element centres; outside the ellipse that of the nearest element.
+
+    Parameters
+    ----------
+    surface : SurfaceTractions
+        Tractions of n ellipses on alike grids.
+    friction : ndarray, shape (n,)
+        Friction coefficient mu.
+
+    Returns
+    -------
+    ndarray, shape (n, 2, ny, nx)
+        x_C and y_C part of the share.
+    """
+    from scipy.ndimage import distance_transform_edt  # heavy, and only stresses under tractions on a grid need it
 
     bound = friction[:, None, None] * surface.pressure
     inside = surface.pressure > 0

@@ -1,27 +1,137 @@
-"""Parts of the rigid slip: the turning of a curved guide, a drawn contour, and the poles of the sliding model."""
+"""The rigid slip, eqs (20)-(25): formulas, creepages, and what a curved guide or a drawn contour adds to it.
+
+The formulas stand in `trackroller.halfspace.rigid_slip`, because the stress kernels of the room below need them too.
+This module is their public face: kernels and models import them from here.
+
+Frame: x_C lateral, y_C in the rolling direction (Kalker and CONTACT use x for rolling).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trackroller.contact.cross_sections import CrossSection
+from trackroller.errors import unknown_name
+from trackroller.halfspace.rigid_slip import (
+    lateral_slip,
+    pole_lateral,
+    pole_line,
+    pole_offset,
+    pole_rolling,
+    profile_slip,
+    rolling_slip,
+    slip_zeros,
+)
+from trackroller.parameters import SPIN_MODELS
 
-STEPS = 60  # most of Newton's method; four or five are usual
-FLATTEST = 0.05  # of the guide's contour against the radial direction, as its sine is followed
+if TYPE_CHECKING:
+    from trackroller.contact.common import Slip
+
+__all__ = [
+    "Creepage",
+    "contour_over_tangent",
+    "lateral_slip",
+    "pole_lateral",
+    "pole_line",
+    "pole_offset",
+    "pole_rolling",
+    "pole_split",
+    "profile_slip",
+    "rolling_slip",
+    "slip_zeros",
+    "spin_model_index",
+    "turning_of",
+]
+
+STEPS = 60  # limit of Newton's method; four or five steps are usual
+FLATTEST = 0.05  # smallest slope of the guide's contour, as a sine, at which the contour is followed
 
 
-def turning_of(curve_radius: np.ndarray, profile_radius: np.ndarray, cosine: np.ndarray) -> np.ndarray:
-    """How far a roller that follows the guide's curve turns per distance travelled [1/mm], shape (n,).
-
-    1/(r_Curve + r_C,G cos(alpha)): the points of contact travel on a circle of that radius about the axis of the
-    curve, the carrier of the roller turns with them, and the roller turns against the guide by both rotations.
-    0 on a straight guide, < 0 on a concave one; NaN where the contact lies beyond the axis of a concave guide.
+def spin_model_index(name: str) -> int:
+    """Return 0, 1, 2 for the paper's assumptions 'concentric', 'edge', 'skewed' on the spin pole.
 
     Parameters
     ----------
-    curve_radius : r_Curve [mm], signed, inf if straight; profile_radius : r_C,G [mm]; cosine : of alpha [1]
+    name : str
+        Name of the assumption.
+
+    Raises
+    ------
+    InputError
+        If there is no such assumption.
+    """
+    if name not in SPIN_MODELS:
+        raise unknown_name("spin_model", name, SPIN_MODELS)
+    return SPIN_MODELS.index(name)
+
+
+@dataclass(frozen=True)
+class Creepage:
+    """Rigid slip of the roller against the guide per travel speed in n patches.
+
+    w_x = eta - phi y and w_y = xi + phi x, plus the profile's part if `profile` is given.
+
+    Attributes
+    ----------
+    longitudinal : xi, creepage along y_C [1], (n,)
+    lateral : eta, creepage along x_C [1], (n,)
+    spin : phi, spin creepage about z_C [1/mm], (n,)
+    profile : kinematics whose `beyond_tangent` is added to w_y, or None
+    """
+
+    longitudinal: np.ndarray
+    lateral: np.ndarray
+    spin: np.ndarray
+    profile: Slip | None = None
+
+    @classmethod
+    def of_slip(cls, slip: Slip, profile: bool = False) -> Creepage:
+        """Return the creepages of a roller.
+
+        Parameters
+        ----------
+        slip : Slip
+            Kinematics of n patches.
+        profile : bool
+            Follow the guide's profile, eq. (20), instead of its tangent xi + phi x.
+        """
+        longitudinal, spin = np.asarray(slip.longitudinal, float), np.asarray(slip.spin, float)
+        return cls(longitudinal, np.zeros_like(longitudinal), spin, slip if profile else None)
+
+    def take(self, rows) -> Creepage:
+        """Return the creepages of the patches `rows` (integer or boolean array)."""
+        profile = None if self.profile is None else self.profile.take(rows)
+        return Creepage(self.longitudinal[rows], self.lateral[rows], self.spin[rows], profile)
+
+    def along(self, x: np.ndarray) -> np.ndarray:
+        """Return w_y at lateral positions x (n, m) [mm], shape (n, m)."""
+        tangent = self.longitudinal[:, None] + self.spin[:, None] * x
+        return tangent if self.profile is None else tangent + self.profile.beyond_tangent(x)
+
+
+def turning_of(curve_radius: np.ndarray, profile_radius: np.ndarray, cosine: np.ndarray) -> np.ndarray:
+    """Return the angle by which a roller turns with the guide's curve per distance travelled [1/mm].
+
+    The angle is 1/(r_Curve + r_C,G cos(alpha)). The points of contact travel on a circle of this radius about the
+    axis of the curve, and the carrier of the roller turns with them.
+
+    Parameters
+    ----------
+    curve_radius : ndarray, shape (n,)
+        r_Curve [mm], signed, inf if straight.
+    profile_radius : ndarray, shape (n,)
+        r_C,G [mm].
+    cosine : ndarray, shape (n,)
+        Of the contact angle.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        0 on a straight guide, < 0 on a concave one, NaN where the contact lies beyond the axis of a concave guide.
     """
     radius = curve_radius + profile_radius * cosine
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -29,14 +139,22 @@ def turning_of(curve_radius: np.ndarray, profile_radius: np.ndarray, cosine: np.
 
 
 def contour_over_tangent(guide: CrossSection, alpha: float) -> Callable[[np.ndarray], np.ndarray]:
-    """The guide's own shape in eq. (20): radial height over its tangent at lateral positions x (m,), outward [mm].
+    """Return the radial height of the guide's own contour over its tangent, the circle's part of eq. (20).
 
-    The position of a point (u, h) of the contour across the roller is u cos(alpha) + h sin(alpha), which eq. (20) has
-    as x cos(alpha), and its radial one h cos(alpha) - u sin(alpha). For the circle this is eq. (20) itself.
+    A point (u, h) of the contour lies at u cos(alpha) + h sin(alpha) across the roller, which is x cos(alpha) in
+    eq. (20), and at h cos(alpha) - u sin(alpha) in the radial direction. Newton's method finds u.
 
     Parameters
     ----------
-    guide : cross-section over the tangent plane; alpha : contact angle [rad]
+    guide : CrossSection
+        Cross-section over the tangent plane.
+    alpha : float
+        Contact angle [rad].
+
+    Returns
+    -------
+    callable
+        Maps lateral positions x (m,) [mm], counted outward, to heights (m,) [mm].
     """
     tangent, sine, cosine = np.tan(alpha), np.sin(alpha), np.cos(alpha)
     low, high = guide.limits
@@ -57,21 +175,28 @@ def contour_over_tangent(guide: CrossSection, alpha: float) -> Callable[[np.ndar
 def pole_split(
     a: np.ndarray, sine: np.ndarray, cosine: np.ndarray, radius: np.ndarray, shift: np.ndarray
 ) -> np.ndarray:
-    """Distance between the model's spin pole and where its slip vanishes, over a; shape (n,).
+    """Return the distance between the model's spin pole and the point where its slip vanishes, over a.
 
-    The pole of eq. (22) lies where the tangent to the guide's profile has no slip, the slip of eq. (21) vanishes where
-    the circle has none. Between them the empirical rule lets the shear turn askew, and the stress where the slip
-    vanishes grows as a logarithm without bound. 0 where the pole lies outside the patch; inf for a second zero in it.
+    The pole of eq. (22) lies where the tangent to the guide's profile has no slip; the slip of eq. (21) vanishes where
+    the circle has none. Between both points eq. (25) turns the shear obliquely, and the stress at the point without
+    slip grows as a logarithm without bound.
 
     Parameters
     ----------
-    a : lateral semi-axis [mm]; sine, cosine : of the signed contact angle [1]; radius : r_C,G [mm]; shift : [mm]
+    a : ndarray, shape (n,)
+        Lateral semi-axis [mm].
+    sine, cosine : ndarray, shape (n,)
+        Of the signed contact angle.
+    radius, shift : ndarray, shape (n,)
+        r_C,G and r_Delta0 [mm].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        0 where the pole lies outside the patch, inf where a second zero lies inside.
     """
     with np.errstate(invalid="ignore"):
-        pole = shift / sine
-        product = 2.0 * radius * cosine * shift - shift * shift
-        root = np.sqrt(radius * radius * sine * sine + product)
-        reach = root + radius * np.abs(sine)
-        zero, other = np.sign(sine) * product / reach / cosine, reach / cosine
+        pole = pole_lateral(shift, sine)
+        zero, other = slip_zeros(sine, cosine, radius, shift)
         split = np.where((np.abs(pole) < a) & (np.abs(zero) < a), np.abs(zero - pole) / a, 0.0)
-        return np.where(other < a, np.inf, split)
+        return np.where(np.abs(other) < a, np.inf, split)

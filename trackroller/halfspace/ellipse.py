@@ -40,6 +40,7 @@ from trackroller.halfspace.ellipse_kernels import (
 )
 from trackroller.halfspace.influence import add_load
 from trackroller.halfspace.kernels import point_kernel
+from trackroller.halfspace.rigid_slip import pole_lateral, pole_line, pole_rolling
 from trackroller.halfspace.vectors import FAST, inner
 from trackroller.numerics.quadrature import clustered_rule
 from trackroller.numerics.threads import share_rows
@@ -203,13 +204,8 @@ def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=0.0) ->
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     fixed = np.broadcast_to(np.asarray(fixed_direction, dtype=float), a.shape)
     shift = np.where(fixed == 0.0, slip.shift, 0.0)  # full slip has no spin pole
-    pole_x = shift / slip.sine
-    with np.errstate(invalid="ignore", divide="ignore"):
-        inside = np.abs(pole_x) < a
-        pole_y = np.where(inside, -b * np.sqrt(np.where(inside, 1.0 - (pole_x / a) ** 2, 0.0)), 0.0)
-        left, right = (np.where(inside, pole_y / (pole_x + end), 0.0) for end in (a, -a))
-    k0 = pole_y if spin_model == 1 else 0.0
-    k1, k2 = (left, right) if spin_model == 2 else (0.0, 0.0)
+    pole_x = pole_lateral(shift, slip.sine)
+    k0, k1, k2 = pole_line(a, pole_x, pole_rolling(pole_x, a, b), spin_model)
     radius = slip.guide_profile_radius
     columns = (a, b, friction, slip.sine, slip.cosine, radius, shift, fixed, pole_x, k0, k1, k2)
     rows = np.zeros(np.size(friction), PATCH)

@@ -9,6 +9,8 @@ import math
 
 import numpy as np
 
+from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
+
 
 def _scan_points() -> np.ndarray:
     """Points (rho cos, rho sin, depth) in normalised coordinates."""
@@ -57,9 +59,8 @@ def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
 
 def _fold(patches: np.ndarray, x: np.ndarray) -> np.ndarray:
     """y where the lateral slip vanishes at x (n, m)."""
-    left, right = patches["k1"][:, None] * (x + 1.0), patches["k2"][:, None] * (x - 1.0)
-    bend = np.where(x * patches["a"][:, None] < patches["pole_x"][:, None], left, right)
-    return (patches["k0"][:, None] + bend * patches["a"][:, None]) / patches["b"][:, None]
+    a, *line = (patches[name][:, None] for name in ("a", "k0", "k1", "k2"))
+    return pole_offset(x * a, a, *line) / patches["b"][:, None]
 
 
 def spike(patches: np.ndarray) -> np.ndarray:
@@ -70,9 +71,9 @@ def spike(patches: np.ndarray) -> np.ndarray:
     the distance, times this friction.
     """
     sine, cosine, radius, shift = (patches[name] for name in ("sine", "cosine", "radius", "shift"))
-    rise = radius * sine
-    root = np.sqrt(np.maximum(rise * rise + shift * (2.0 * radius * cosine - shift), 0.0))
-    x = np.stack([root - rise, -root - rise], axis=1) / (cosine * patches["a"])[:, None]
+    with np.errstate(invalid="ignore"):
+        x = np.stack(slip_zeros(sine, cosine, radius, shift), axis=1) / patches["a"][:, None]
+    x = np.nan_to_num(x, nan=2.0)  # no zero: a point outside the patch
     apart = np.abs(x - (patches["pole_x"] / patches["a"])[:, None])
     inside = np.maximum(1.0 - x * x - _fold(patches, x) ** 2, 0.0)
     share = np.clip((apart - SPLIT[0]) / (SPLIT[1] - SPLIT[0]), 0.0, 1.0)

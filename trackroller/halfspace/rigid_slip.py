@@ -95,27 +95,38 @@ def slip_zeros(sine, cosine, radius, shift):
     The first one lies near the spin pole, the second one on the other side of the guide's crest.
     """
     product = 2.0 * radius * cosine * shift - shift * shift
-    # a shift beyond the equator's has no zero: the root would belong to the lower half of the circle
-    square = radius * radius * sine * sine + product if radius * cosine >= shift else np.nan
-    reach = np.sqrt(square) + radius * np.abs(sine)
+    # a shift below the equator has no zero: the root of its negative distance makes the result NaN
+    above_equator = 0.0 * np.sqrt(radius * cosine - shift)
+    reach = np.sqrt(radius * radius * sine * sine + product) + radius * np.abs(sine) + above_equator
     return np.sign(sine) * product / reach / cosine, -np.sign(sine) * reach / cosine
 
 
 @_formula
-def spin_pole(a, b, sine, shift):
-    """Return x_spin, eq. (23), and y_spin, eq. (22), of the spin pole [mm]; y_spin is 0 outside the patch.
+def pole_lateral(shift, sine):
+    """Return the lateral position x_spin of the spin pole, eq. (23) [mm].
 
     Parameters
     ----------
-    a, b : float or ndarray
-        Lateral and rolling semi-axis [mm].
-    sine : float or ndarray
-        Of the signed contact angle.
     shift : float or ndarray
         Rolling radius shift r_Delta0 [mm].
+    sine : float or ndarray
+        Of the signed contact angle.
     """
-    x = shift / sine
-    return x, 0.0 - b * np.sqrt(np.maximum(1.0 - (x / a) ** 2, 0.0))
+    return shift / sine
+
+
+@_formula
+def pole_rolling(x_spin, a, b):
+    """Return y_spin of a spin pole on the trailing edge, eq. (22) [mm]; 0 for a pole outside the patch.
+
+    Parameters
+    ----------
+    x_spin : float or ndarray
+        Lateral position of the pole from the middle of the patch [mm].
+    a, b : float or ndarray
+        Lateral and rolling semi-axis [mm].
+    """
+    return 0.0 - b * np.sqrt(np.maximum(1.0 - (x_spin / a) ** 2, 0.0))
 
 
 @_formula

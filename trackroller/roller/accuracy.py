@@ -15,6 +15,7 @@ from importlib import resources
 from typing import Any
 
 from trackroller.contact.settings import Accuracy
+from trackroller.contact.table import stored
 from trackroller.errors import InputError, unknown_name
 from trackroller.halfspace.peak import PeakSettings
 from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
@@ -157,6 +158,13 @@ def accuracy_settings(
 @functools.lru_cache(maxsize=256)
 def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]) -> Accuracy:
     peaks = bool(outputs & PEAK_OUTPUTS)
+    if contact_model == "kalker_table" and tolerance < (finest := rounded_up(table_errors().p99)):
+        raise InputError(
+            "accuracy",
+            tolerance,
+            f"kalker_table keeps {finest:g} of mu F_N in 99 % of the cases",
+            "Use a preset or a larger tolerance, or contact_model: kalker.",
+        )
     wanted = (
         *FORCE_QUANTITIES,
         *(("friction_energy",) if "friction_work" in outputs else ()),
@@ -245,11 +253,23 @@ def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[
         ladder = contact_model if contact_model in rungs else "kalker"
         own = {ladder: {"elements": settings.elements}, "peak": own["peak"]}
     total: dict[str, Levels] = {}
+    if contact_model == "kalker_table":  # forces come from the table, whatever the elements for tractions
+        own.pop("kalker")
+        total = dict.fromkeys(("friction_force", "spin_moment"), table_errors())
     for ladder, wanted in own.items():
         found = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
         for name, levels in (found.errors if found else {}).items():
             total[name] = _sum(total[name], levels) if name in total else levels
     return total
+
+
+def table_errors() -> Levels:
+    """Return the measured errors of the forces that `kalker_table` gives, over mu F_N and mu F_N sqrt(a b)."""
+    errors = stored().errors
+    median, p99, worst = (
+        max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99", "worst")
+    )
+    return Levels(median, p99, p99, worst)
 
 
 def _sum(one: Levels, other: Levels) -> Levels:

@@ -101,9 +101,9 @@ def model_in_use(options: Options, contact_model: str, friction_law: str) -> str
     Notes
     -----
     `kalker` at accuracy preview takes its table where the table serves: Hertzian patches, constant friction and the
-    slip of the tangent plane. `kalker_table` takes the exact theory where friction depends on the slip speed.
+    slip of the tangent plane.
     """
-    if contact_model != "kalker_table" and (contact_model != "kalker" or options.settings.name != "preview"):
+    if contact_model != "kalker" or options.settings.name != "preview":
         return contact_model
     fits = options.normal == "hertz" and "profile" not in options.slip_terms and law_of(friction_law).is_constant
     return "kalker_table" if fits else "kalker"

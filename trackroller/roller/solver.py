@@ -93,12 +93,21 @@ def solve(
     if hasattr(cases, "data_vars"):
         single = "case" not in cases.dims
     table = to_table(cases, database)
-    _check_profiles(table, options)
+    _check_cases(table, options)
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
     return with_reasons(_assemble(join(windows), options, single), table, options)
 
 
-def _check_profiles(table: CaseTable, options: Options) -> None:
+def _check_cases(table: CaseTable, options: Options) -> None:
+    """Refuse profiles and friction laws that the options cannot serve."""
+    laws = table.friction_law[table.friction_law != ""]
+    if options.contact_model == "kalker_table" and laws.size:
+        raise InputError(
+            "friction_law",
+            laws[0],
+            "constant friction with contact_model: kalker_table",
+            "Take contact_model: kalker, or leave friction_law out.",
+        )
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
             raise InputError(
@@ -181,7 +190,7 @@ def _solve_group(table: CaseTable, options: Options) -> Block:
         stages.tractions(results, options)
     if "subsurface" in wanted:
         stages_stress.subsurface(results, options)
-    model = np.full(len(table), CONTACT_MODELS.index(options.contact_model), dtype=np.int8)
+    model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(len(table))], dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
 
 

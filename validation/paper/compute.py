@@ -64,7 +64,7 @@ def as_published(case: Case) -> xr.Dataset:
 def stress_at(scene: str, points: list[list[float]]) -> list[float]:
     """Von Mises stress [MPa] of the sliding model on the roller, at one point (x, y, z) [mm] below each contact."""
     from trackroller.contact.common import Ellipse, Slip
-    from trackroller.contact.sliding import spin_model_index
+    from trackroller.contact.slip import spin_model_index
     from trackroller.halfspace.ellipse import patch_rows, stress_parts
     from trackroller.halfspace.stress import von_mises
     from trackroller.materials import load_database

@@ -12,6 +12,7 @@ import xarray as xr
 from trackroller.contact import sliding
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.contact.hertz import contact_modulus, shape
+from trackroller.contact.slip import spin_model_index
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
 from trackroller.roller.case import Case, CaseTable, to_table
@@ -55,7 +56,7 @@ def patches_of(cases: Sequence[Case]) -> Patches:
     first = ds.isel(contact=0)
     ellipse = Ellipse(*(first[q].values for q in ("semi_axis_lateral", "semi_axis_rolling", "max_pressure")))
     slip = Slip(np.sin(alpha), np.cos(alpha), table.guide_profile_radius, radius, ds["rolling_radius_shift"].values)
-    rows = patch_rows(ellipse, slip, table.friction_coefficient, sliding.spin_model_index("skewed"))
+    rows = patch_rows(ellipse, slip, table.friction_coefficient, spin_model_index("skewed"))
     return Patches(ellipse, slip, table.friction_coefficient, table.roller.poisson_ratio, rows, ds)
 
 
@@ -126,8 +127,7 @@ def _axes(k_x: float, k_y: float, modulus: float) -> tuple[float, float]:
 
 def traction_stage(patches: Patches) -> list[Found]:
     """Friction force and energy summed over a grid of tractions, against the integrals."""
-    exact = sliding.resultants(patches.ellipse, patches.slip, patches.friction, nodes=64)
-    power = sliding.friction_power(patches.ellipse, patches.slip, patches.friction, nodes=64)
+    exact, power = vars(sliding.integrals(patches.ellipse, patches.slip, patches.friction, nodes=64)).values()
     power = power / patches.slip.rolling_radius
     bound = patches.friction * patches.ellipse.normal_force
     out: list[Found] = []

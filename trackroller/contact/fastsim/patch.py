@@ -25,6 +25,7 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Surfa
 from trackroller.contact.fastsim.point import enter, step
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
+from trackroller.contact.slip import Creepage
 from trackroller.numerics.threads import share_rows
 
 # Between linear theory and full sliding the flexibilities change with the creepages; fitted to the exact theory.
@@ -178,7 +179,7 @@ def flexibilities(a, b, limit, rigid, shear_modulus, poisson_ratio) -> tuple[np.
     return sticking + share * (far - sticking), l_x / l_2
 
 
-def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: Elastic):
+def _problem(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic):
     """Arrays a, b, mu p_max, rigid slips (n, 3) and flexibilities (n, 2: x, y) [mm/MPa] of n patches."""
     a, b, p, xi, eta, phi, mu, g, nu = (
         np.array(v, float, order="C")
@@ -186,9 +187,9 @@ def _problem(ellipse: Ellipse, longitudinal, lateral, spin, friction, elastic: E
             ellipse.semi_axis_lateral,
             ellipse.semi_axis_rolling,
             ellipse.max_pressure,
-            longitudinal,
-            lateral,
-            spin,
+            creep.longitudinal,
+            creep.lateral,
+            creep.spin,
             friction,
             elastic.shear_modulus,
             elastic.poisson_ratio,
@@ -217,25 +218,21 @@ def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
 
 def solve_patch(
     ellipse: Ellipse,
-    longitudinal,
-    lateral,
-    spin,
+    creep: Creepage,
     friction,
     elastic: Elastic,
     settings: FastsimSettings | None = None,
     travel_speed=None,
-    profile: Slip | None = None,
 ) -> FastsimSolution:
     """Simplified theory for n patches with rigid slip w = (eta - phi y, xi + phi x).
 
     Parameters
     ----------
     ellipse : Hertzian patches, arrays (n,)
-    longitudinal, lateral, spin : xi, eta [-], phi [1/mm], (n,) or scalars
+    creep : creepages, (n,) or scalars
     friction : coefficient mu [-], (n,) or scalar
     elastic : combined constants; the coupling constant is not used
     travel_speed : [mm/s], (n,) or scalar, for friction laws; that of the settings if not given
-    profile : adds the rolling slip of the guide's profile beyond its tangent, `Slip.beyond_tangent`, (n,)
 
     Errors against the exact theory, axis ratios of 0.2 to 5, creepages from stick to sliding (root mean square, worst):
     2.4 and 8 % of mu F_N in the lateral force, 1.4 and 5 % in the driving force, 1.2 and 6 % of mu F_N sqrt(ab) in
@@ -244,9 +241,9 @@ def solve_patch(
     """
     settings = settings or FastsimSettings()
     law = settings.law or constant()
-    a, b, scale, rigid, flexibility = _problem(ellipse, longitudinal, lateral, spin, friction, elastic)
+    a, b, scale, rigid, flexibility = _problem(ellipse, creep, friction, elastic)
     nodes, weights = np.polynomial.legendre.leggauss(settings.strips)
-    totals, bend = np.empty((2, a.size, 6)), _bend(profile, a, nodes)
+    totals, bend = np.empty((2, a.size, 6)), _bend(creep.profile, a, nodes)
     travel = _travel(travel_speed, settings, a.size)
     for k, steps in enumerate((settings.steps, 2 * settings.steps)):
         rest = (
@@ -276,10 +273,8 @@ def resultants(
     ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None
 ) -> Resultants:
     """Friction forces [N] and spin moment [N mm] on the roller, shape (n,); see `solve_patch`."""
-    profile = slip if settings is not None and settings.profile_slip else None
-    return solve_patch(
-        ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic, settings, profile=profile
-    ).resultants
+    settings = settings or FastsimSettings()
+    return solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings).resultants
 
 
 def tractions(
@@ -293,7 +288,7 @@ def tractions(
     """Pressure (of Hertz), shear and slip at points x points element centres; 0 outside the ellipse."""
     settings = settings or FastsimSettings()
     law = settings.law or constant()
-    a, b, scale, rigid, flexibility = _problem(ellipse, slip.longitudinal, 0.0, slip.spin, friction, elastic)
+    a, b, scale, rigid, flexibility = _problem(ellipse, Creepage.of_slip(slip), friction, elastic)
     points = settings.points
     shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
     u = (2.0 * np.arange(points) + 1.0) / points - 1.0

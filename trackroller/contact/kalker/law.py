@@ -10,7 +10,8 @@ from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.patch import solve_patch
-from trackroller.contact.kalker.problem import Creepage, KalkerSettings, PatchSolution, joined
+from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
+from trackroller.contact.slip import Creepage
 
 NEAR = 0.3  # change of creepage over the slip in the patch
 # A patch under a law that falls too steeply has several states or none. After so many solutions that did not converge
@@ -27,18 +28,14 @@ class KalkerLaw:
     settings : discretisation of the fine law; the rough one is the table of the exact theory, beyond its reach half
         the elements without extrapolation
     travel_speed : of n rollers [mm/s], (n,); that of the settings if not given
-    curve_radius : of the guide [mm], (n,), to count its turning in the spin, see `Creepage.of_slip`
 
     Contact 2 of a roller is told by its negative contact angle. Starts come from a patch's own past only, so that no
     number depends on what else is solved.
     """
 
-    def __init__(
-        self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None, curve_radius=None
-    ) -> None:
+    def __init__(self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None) -> None:
         self.elastic, self.settings = elastic, settings or KalkerSettings()
         self.travel = None if travel_speed is None else np.asarray(travel_speed, float)
-        self.curve = None if curve_radius is None else np.asarray(curve_radius, float)
         self._starts: dict[tuple[int, int, bool], tuple[np.ndarray, float]] = {}  # tractions and creepage
         self._misses: dict[tuple[int, int], int] = {}
         self._states: dict[tuple[int, int], tuple[float, bool]] = {}
@@ -48,22 +45,17 @@ class KalkerLaw:
         """Resultants on the roller, shape (n,); rough ones where not `fine`: the table's, or of half the elements."""
         if fine or isinstance(ellipse, GridPatch) or self.settings.profile_slip or not self._constant:
             return self.solve(ellipse, slip, friction, rows, fine).resultants
-        creep = self._creepage(slip, rows)
+        creep = Creepage.of_slip(slip, self.settings.profile_slip)
         found = table.solve_patch(ellipse, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))
-        rest, r = np.flatnonzero(~found.known), found.resultants
+        rest = np.flatnonzero(~found.known)
         if not rest.size:
-            return r
-        forces = np.stack([r.lateral_force, r.driving_force, r.spin_moment])
+            return found.resultants
         other = self.solve(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest], False).resultants
-        forces[:, rest] = other.lateral_force, other.driving_force, other.spin_moment
-        return Resultants(*forces)
+        return found.resultants.replaced(rest, other)
 
     @property
     def _constant(self) -> bool:
         return self.settings.law is None or self.settings.law.is_constant
-
-    def _creepage(self, slip: Slip, rows: np.ndarray) -> Creepage:
-        return Creepage.of_slip(slip, self.settings.profile_slip, None if self.curve is None else self.curve[rows])
 
     def solve(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> PatchSolution:
         """Solution of the patches of the rollers `rows`."""
@@ -71,7 +63,7 @@ class KalkerLaw:
         if not fine:
             settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
         keys = [(int(row), int(sine < 0), fine) for row, sine in zip(rows, slip.sine, strict=True)]
-        creep = self._creepage(slip, rows)
+        creep = Creepage.of_slip(slip, self.settings.profile_slip)
         friction = np.broadcast_to(np.asarray(friction, float), len(rows))
         known = self._near(keys, creep, ellipse)
 

@@ -14,7 +14,8 @@ from trackroller.contact.friction_laws import constant
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import batch, extrapolation
 from trackroller.contact.kalker.cells import cells, unit_cells
-from trackroller.contact.kalker.problem import Creepage, KalkerSettings, PatchSolution, joined
+from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
+from trackroller.contact.slip import Creepage
 
 BLOCK = 256  # patches whose tractions are held at once
 
@@ -152,7 +153,7 @@ def solve_patch(
     ellipse, friction, elastic = _prepared(ellipse, friction, elastic)
     n = friction.size
     xi, eta, phi = (_full(v, n) for v in (creep.longitudinal, creep.lateral, creep.spin))
-    creep = Creepage(xi, eta, phi, creep.slip)
+    creep = Creepage(xi, eta, phi, creep.profile)
     travel = _full(settings.travel_speed if travel_speed is None else travel_speed, n)
     parts = []
     for i in range(0, max(n, 1), BLOCK):

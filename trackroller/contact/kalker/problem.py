@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, Slip, Works
+from trackroller.contact.common import Resultants, Works
 from trackroller.contact.friction_laws import FrictionLaw
 
 
@@ -31,42 +31,6 @@ class KalkerSettings:
     profile_slip: bool = False
     law: FrictionLaw | None = None
     travel_speed: float = 1.0
-
-
-@dataclass(frozen=True)
-class Creepage:
-    """Rigid slip of the roller against the guide per travel speed: xi along y_C, eta along x_C, spin phi [1/mm].
-
-    w_x = lateral - spin y, w_y = longitudinal + spin x (+ extra(x), the profile part); arrays (n,).
-    `extra` maps lateral positions (n, nx) [mm] to slips, or is None.
-    """
-
-    longitudinal: np.ndarray
-    lateral: np.ndarray
-    spin: np.ndarray
-    slip: Slip | None = None
-
-    @classmethod
-    def of_slip(cls, slip: Slip, profile: bool = False, curve_radius: np.ndarray | None = None) -> Creepage:
-        """From the kinematics of the roller.
-
-        profile : rolling slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x
-        curve_radius : of the guide [mm], (n,), signed, inf if straight: the roller turns with the curve, so that the
-            spin is -sin(alpha)/r_A (1 + r_A/(r_Curve + r_C,G cos(alpha))); not given: as on a straight guide
-        """
-        longitudinal, spin = np.asarray(slip.longitudinal, float), np.asarray(slip.spin, float)
-        if curve_radius is not None:
-            spin = spin * (1.0 + slip.rolling_radius / (curve_radius + slip.guide_profile_radius * slip.cosine))
-        return cls(longitudinal, np.zeros_like(longitudinal), spin, slip if profile else None)
-
-    def take(self, rows) -> Creepage:
-        slip = None if self.slip is None else self.slip.take(rows)
-        return Creepage(self.longitudinal[rows], self.lateral[rows], self.spin[rows], slip)
-
-    def along(self, x: np.ndarray) -> np.ndarray:
-        """Rolling part of the rigid slip at lateral positions x (n, nx) [mm]."""
-        tangent = self.longitudinal[:, None] + self.spin[:, None] * x
-        return tangent if self.slip is None else tangent + self.slip.beyond_tangent(x)
 
 
 @dataclass(frozen=True)

@@ -88,6 +88,7 @@ class GridModel(ContactModel):
 class GridSlidingModel(GridModel):
     """Full sliding on solved patches."""
 
+    name = "sliding"
     residual = 1e-9  # the normal problem gives the same patch for the same load, so that smaller residuals are reached
 
     def __init__(self, patches: Patches, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray) -> None:
@@ -112,6 +113,8 @@ class GridSlidingModel(GridModel):
 
 class GridFastsimModel(GridModel):
     """Kalker's simplified theory, strip by strip over solved patches."""
+
+    name = "fastsim"
 
     def __init__(
         self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray, profile_slip: bool = False
@@ -140,6 +143,7 @@ class GridFastsimModel(GridModel):
 class GridKalkerModel(GridModel):
     """Kalker's exact theory of rolling contact with the traction bound of solved pressures."""
 
+    name = "kalker"
     refines = False
 
     def __init__(

@@ -13,7 +13,14 @@ import numpy as np
 from trackroller.contact.common import Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.grid_patch import GridPatch
-from trackroller.contact.sliding import spin_model_index
+from trackroller.contact.slip import (
+    pole_lateral,
+    pole_line,
+    pole_offset,
+    pole_rolling,
+    rolling_slip,
+    spin_model_index,
+)
 
 POINTS = 4  # Gauss points across each element
 PIECES = 3  # of each element along the rolling direction, in which a falling friction law is constant
@@ -32,18 +39,12 @@ class SlidingPatches:
 
 def _slip_of(x: np.ndarray, patch: GridPatch, slip: Slip, i: int, model: int) -> tuple[np.ndarray, np.ndarray]:
     """v_y / omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22), (25) [mm]."""
-    s, c, r, shift = slip.sine[i], slip.cosine[i], slip.guide_profile_radius[i], slip.shift[i]
-    rest = r * r * c * c - x * c * (2.0 * r * s + x * c)
-    root = np.sqrt(np.maximum(rest, 0.0))
-    along = np.where(rest < 0.0, shift - r * c, shift - x * c * (2.0 * r * s + x * c) / (root + r * c))
+    sine, shift = slip.sine[i], slip.shift[i]
+    along = rolling_slip(x, sine, slip.cosine[i], slip.guide_profile_radius[i], shift)
     a, b, middle = patch.semi_axis_lateral[i], patch.semi_axis_rolling[i], patch.centre[i]
-    u, pole = x - middle, shift / s - middle
-    if model == 0 or abs(pole) >= a:
-        return along, np.zeros_like(x)
-    depth = -b * np.sqrt(1.0 - (pole / a) ** 2)
-    if model == 1:
-        return along, np.full_like(x, depth)
-    return along, depth * np.where(u < pole, (u + a) / (pole + a), (u - a) / (pole - a))
+    x_spin = pole_lateral(shift, sine) - middle
+    line = pole_line(a, x_spin, pole_rolling(x_spin, a, b), model)
+    return along, pole_offset(x - middle, a, *line)
 
 
 def solve_sliding(

@@ -1,13 +1,10 @@
-"""The exact theory by its table, for `contact_model="kalker"` at `preview`.
+"""The exact theory by its table: contact model `kalker_table`, and `kalker` at accuracy `preview`.
 
-Forces, spin moment, stick and dissipation come from the table. Tractions, which stresses need, are those of the exact
-solver on a coarse grid at the slip that the table found. Rollers outside the table's range are solved exactly.
+Forces, spin moment, adhesion area and dissipation come from the table. Tractions, which stresses need, come from the
+exact solver at the creepages found with the table. Rollers outside the table's range are solved exactly.
 """
 
 from __future__ import annotations
-
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -16,57 +13,57 @@ from trackroller.contact.table import spline as table
 
 
 class TableModel(ContactModel):
-    """Contact model of n rollers with combined constants `elastic` (n,); `exact` makes the model behind it.
+    """Contact model of n rollers that looks the exact theory up in a table.
 
-    The step of derivatives and the residual are those of the exact model: a block may hold rollers of both kinds.
+    Parameters
+    ----------
+    elastic : Elastic
+        Combined constants of the rollers, arrays (n,).
+    exact : ContactModel
+        Model for tractions and for the rollers outside the table's range. Step of derivatives and residual are those
+        of this model, because a block of rollers may need both.
     """
 
+    name = "kalker_table"
     knows_tractions = False
-    # Relative error of the peak stress that table and coarse tractions bring, per unit of the friction coefficient.
-    # Measured on random designs against `standard`: the search's own estimate and this cover 99 % of the peaks.
+    # Relative error of the peak stress from the table and from coarse tractions, per unit of the friction coefficient.
+    # Measured on random designs against `standard`: the search's own estimate and this error cover 99 % of the peaks.
     peak_error = 0.12
 
-    def __init__(self, elastic: Elastic, exact: Callable[[], Any]) -> None:
-        self.elastic, self._make = elastic, exact
-        self._exact: Any = None
-
-    @property
-    def exact(self) -> Any:
-        """The exact model, made when first needed."""
-        if self._exact is None:
-            self._exact = self._make()
-        return self._exact
+    def __init__(self, elastic: Elastic, exact: ContactModel) -> None:
+        self.elastic, self.exact = elastic, exact
+        self._beyond = np.zeros(np.shape(elastic.coupling), bool)  # rollers outside the table's range
 
     def _table(self, ellipse: Ellipse, slip: Slip, friction, rows) -> table.TableSolution:
         return table.solve_patch(ellipse, slip.longitudinal, slip.spin, friction, self.elastic.take(rows))
 
     def law(self, ellipse: Ellipse, slip: Slip, friction, rows, fine: bool) -> Resultants:
-        """Resultants on the roller, shape (n,)."""
+        """Return the resultants on the roller, arrays (m,)."""
         found = self._table(ellipse, slip, friction, rows)
         rest = np.flatnonzero(~found.known)
         if not rest.size:
             return found.resultants
-        r = found.resultants
-        forces = np.stack([r.lateral_force, r.driving_force, r.spin_moment])
+        self._beyond[rows[rest]] = True
         other = self.exact.law(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
-        forces[:, rest] = other.lateral_force, other.driving_force, other.spin_moment
-        return Resultants(*forces)
+        return found.resultants.replaced(rest, other)
 
     def surface(self, ellipse: Ellipse, slip: Slip, friction, rows) -> SurfaceTractions:
-        """Tractions of the exact solver on a grid over each patch."""
+        """Return the tractions of the exact solver on a grid over each patch."""
         return self.exact.surface(ellipse, slip, friction, rows)
 
     def stick(self, ellipse: Ellipse, slip: Slip, friction, rows) -> np.ndarray:
-        """Share of each patch that sticks, shape (n,)."""
+        """Return the adhesion area over the area of each patch, shape (m,)."""
         found = self._table(ellipse, slip, friction, rows)
         share, rest = found.stick_fraction, np.flatnonzero(~found.known)
         if rest.size:
-            t = self.exact.surface(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
-            share[rest] = t.stick_share
+            share[rest] = self.exact.stick(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
         return share
 
     def power(self, ellipse: Ellipse, slip: Slip, friction, rows) -> Works:
-        """Dissipation: the work of the creepages; of unlike materials by the exact solver, with the pressures."""
+        """Return the dissipation: the work of the creepages, and of the pressures on unlike materials.
+
+        The table does not hold the work of the pressures, so the exact solver gives both on unlike materials.
+        """
         found = self._table(ellipse, slip, friction, rows)
         work, pressed = found.friction_energy_per_distance, np.zeros(len(rows))
         rest = np.flatnonzero(~found.known | (self.elastic.coupling[rows] != 0.0))
@@ -76,5 +73,9 @@ class TableModel(ContactModel):
         return Works(work, pressed)
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
-        """Residual of the friction law in the patches at the last fine call, and if it is met, (n,); 0 by the table."""
-        return (np.zeros(n), np.ones(n, bool)) if self._exact is None else self.exact.state(n)
+        """Return residual and convergence of the friction law in the patches solved exactly; 0 and True by table."""
+        return self.exact.state(n)
+
+    def used(self, n: int) -> np.ndarray:
+        """Return the name of the model that gave the forces of each of n rollers."""
+        return np.where(self._beyond, self.exact.name, self.name).astype(object)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.contact import table as tables
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, _Rows
+from trackroller.contact.common import ContactModel, Elastic, Ellipse, Resultants, Slip, _Rows
 from trackroller.contact.table.model import TableModel
 from trackroller.roller.equilibrium import ROLLING, Equilibrium, solve_equilibrium
 
@@ -27,7 +27,7 @@ class NearestInTable(TableModel):
     """The table's answer for the nearest coupling |K|/mu that it holds; NaN outside its range of ellipticities."""
 
     def __init__(self, elastic: Elastic) -> None:
-        super().__init__(elastic, lambda: None)
+        super().__init__(elastic, ContactModel())
 
     def look_up(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tables.TableSolution:
         """Resultants, stick and dissipation of patches, arrays (m,)."""

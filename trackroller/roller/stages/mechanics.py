@@ -12,7 +12,7 @@ import numpy as np
 from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
-from trackroller.contact.slip import turning_of
+from trackroller.contact.slip import pole_rolling, turning_of
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import contact_geometry, lever_arms
@@ -111,8 +111,7 @@ def _spin_pole(results: Results, options: Options) -> tuple[np.ndarray, np.ndarr
     """Return the spin pole x, y [mm] of the model's slip field, (2 n,), eqs (22), (23)."""
     patch, pole_x = results.patch, results.slip.pole_lateral
     with np.errstate(invalid="ignore"):
-        ratio = (pole_x - patch.centre) / patch.semi_axis_lateral
-        pole_y = np.where(np.abs(ratio) < 1, -patch.semi_axis_rolling * np.sqrt(np.maximum(1 - ratio**2, 0)), 0.0)
+        pole_y = np.nan_to_num(pole_rolling(pole_x - patch.centre, patch.semi_axis_lateral, patch.semi_axis_rolling))
     if options.spin_model == "concentric":
         pole_y = np.zeros_like(pole_y)
     return pole_x, np.where(np.isfinite(pole_x), pole_y, np.nan)
