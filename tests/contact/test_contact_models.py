@@ -144,3 +144,51 @@ def test_free_rolling_agrees_with_the_limit_of_fine_grids():
     assert off.max() < 0.02 and np.median(off) < 0.01
     coarse, fine = (np.array([r[f"grid_{n}x{n}"]["rolling_radius_shift"] for r in records]) for n in (40, 60))
     assert np.abs((fine + 2 * (fine - coarse)) / limit - 1.0).max() > 0.05
+
+
+TABLE_CASES = [
+    {"friction_coefficient": 0.3},
+    {"roller_material": "PA6", "motor_force": -20.0},
+    {"motor_force": -400.0},
+    {"roller_profile_radius": -6.005},  # b/a beyond the table's range: solved exactly
+]
+
+
+def test_kalker_at_preview_is_kalker_table_bit_for_bit():
+    outputs = ("forces", "contact", "friction_work", "peak_stress", "life")
+    exact, table = (
+        tr.solve(TABLE_CASES, outputs, contact_model=name, accuracy="preview") for name in ("kalker", "kalker_table")
+    )
+    for name in exact.data_vars:
+        np.testing.assert_array_equal(exact[name].values, table[name].values, err_msg=name)
+    meanings = exact.contact_model_used.attrs["flag_meanings"].split()
+    assert meanings[:3] == ["sliding", "fastsim", "kalker"]  # stored numbers keep their meaning
+    used = [meanings[i] for i in exact.contact_model_used.values]
+    assert used == ["kalker_table"] * 3 + ["kalker"]
+
+
+def test_kalker_table_at_standard_is_near_kalker_and_states_its_error():
+    cases = TABLE_CASES[:1]
+    table, exact = (tr.solve(cases, contact_model=name) for name in ("kalker_table", "kalker"))
+    limit = 0.3 * exact.normal_force.values
+    error = np.abs(table.lateral_force.values - exact.lateral_force.values) / limit
+    stated = table.lateral_force.attrs["relative_error_99_percent"]
+    assert 0 < error.max() < stated < 0.06
+    assert table.lateral_force.attrs["relative_error_refers_to"] == "mu F_N"
+
+
+@pytest.mark.parametrize(
+    ("options", "case", "field", "value"),
+    [
+        ({"normal": "halfspace"}, {}, "normal", "halfspace"),
+        ({"slip_terms": "profile"}, {}, "slip_terms", "profile"),
+        ({}, {"friction_law": {"kind": "linear", "speed": 50.0}}, "friction_law", "linear"),
+        ({"accuracy": 1e-3}, {}, "accuracy", "0.001"),
+    ],
+)
+def test_kalker_table_refuses_what_its_table_does_not_hold(options, case, field, value):
+    with pytest.raises(tr.InputError) as error:
+        tr.solve(case, contact_model="kalker_table", **options)
+    text = str(error.value)
+    assert error.value.field == field and value in text
+    assert "kalker_table" in text and "contact_model: kalker" in text

@@ -243,6 +243,8 @@ def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[
 
     Quantities without a measurement (settings of one's own) are missing.
     """
+    if contact_model == "kalker_table":  # measured for the creep forces of a patch only
+        return dict.fromkeys(("friction_force", "spin_moment"), table_errors())
     rungs = ladders()
     own: dict[str, dict[str, Any]]
     own = {
@@ -253,9 +255,6 @@ def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[
         ladder = contact_model if contact_model in rungs else "kalker"
         own = {ladder: {"elements": settings.elements}, "peak": own["peak"]}
     total: dict[str, Levels] = {}
-    if contact_model == "kalker_table":  # forces come from the table, whatever the elements for tractions
-        own.pop("kalker")
-        total = dict.fromkeys(("friction_force", "spin_moment"), table_errors())
     for ladder, wanted in own.items():
         found = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
         for name, levels in (found.errors if found else {}).items():
@@ -264,12 +263,10 @@ def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[
 
 
 def table_errors() -> Levels:
-    """Return the measured errors of the forces that `kalker_table` gives, over mu F_N and mu F_N sqrt(a b)."""
+    """Return the measured errors of the creep forces in the table, over mu F_N and mu F_N sqrt(a b)."""
     errors = stored().errors
-    median, p99, worst = (
-        max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99", "worst")
-    )
-    return Levels(median, p99, p99, worst)
+    median, p99 = (max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99"))
+    return Levels(median, p99, p99, p99)
 
 
 def _sum(one: Levels, other: Levels) -> Levels:

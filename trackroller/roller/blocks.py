@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclass
 class Block:
-    """Values by name, first axis the case (n,); `model` is the number of the contact model in `MODELS_USED`."""
+    """Values by name, first axis the case (n,); `model` is the number of the contact model in `CONTACT_MODELS`."""
 
     values: dict[str, np.ndarray]
     regime: np.ndarray

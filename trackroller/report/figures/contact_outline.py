@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.parameters import MODELS_USED
+from trackroller.parameters import CONTACT_MODELS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +81,7 @@ class Patch:
 
 def _slides(ds: xr.Dataset) -> bool:
     if "contact_model_used" in ds:
-        return MODELS_USED[int(ds["contact_model_used"])] == "sliding"
+        return CONTACT_MODELS[int(ds["contact_model_used"])] == "sliding"
     return ds.attrs.get("contact_model", "sliding") == "sliding"
 
 

@@ -29,7 +29,7 @@ from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.hertz import contact_modulus, exact_shape
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.contact.table import LARGEST_COUPLING
-from trackroller.parameters import MODELS_USED
+from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.choice.probe import Probe, force_error, probe
 from trackroller.roller.equilibrium import ROLLING
 from trackroller.roller.geometry import contact_geometry
@@ -210,7 +210,7 @@ def in_doubt(table: CaseTable, block: Block, tolerance: float) -> np.ndarray:
     if "error_estimate" in v:
         with np.errstate(invalid="ignore"):
             doubt |= np.any(v["error_estimate"] > tolerance, axis=(1, 2))
-    sliding = (block.model == MODELS_USED.index("sliding")) & (table.friction_coefficient > 0)
+    sliding = (block.model == CONTACT_MODELS.index("sliding")) & (table.friction_coefficient > 0)
     return np.flatnonzero(doubt & sliding & (block.regime == ROLLING))
 
 

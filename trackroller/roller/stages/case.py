@@ -8,7 +8,7 @@ import numpy as np
 
 from trackroller.contact.slip import pole_split
 from trackroller.damage import fatigue
-from trackroller.parameters import MODELS_USED
+from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
 from trackroller.roller.geometry import rolling_radius
@@ -98,7 +98,7 @@ def validity(table: CaseTable, block: Block) -> None:
         # ASSUME: the database holds no yield strength, so R_m stands for it
         warn("yield", np.max(v["max_pressure"], axis=1) > 1.6 * strength)
         warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
-        warn("split_pole", (block.model == MODELS_USED.index("sliding")) & split_pole(table, v))
+        warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & split_pole(table, v))
         warn("large_slip", np.abs(v["slip"]) > 0.1)
         if "peak_stress" in v:
             limits = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)[:, None, :]
