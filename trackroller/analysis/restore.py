@@ -53,45 +53,33 @@ def _check_rows(ds: xr.Dataset, design: SampledDesign) -> None:
     dims = case_dims(ds, design.factors)
     rows = int(np.prod([ds.sizes[d] for d in dims])) if dims else 1
     if rows != design.size:
-        raise InputError(
-            "study", f"{rows} rows", f"the {design.size} rows of its design {design.method}", "Gather the study again."
-        )
+        allowed = f"the {design.size} rows of its design {design.method}"
+        raise InputError("study", f"{rows} rows", allowed, "Gather the study again.")
     for name, factor in design.factors.items():
         if name not in ds.variables or not factor.ordered or ds[name].dtype.kind not in "fiu":
             continue
         if not np.allclose(flat(ds, name, dims), design.columns[name], rtol=1e-6, atol=1e-12):
-            raise InputError(
-                "study",
-                name,
-                "the values of its design: same seed, same samplers",
-                "Rows and study file do not belong together: run the study again.",
-            )
+            allowed = "the values of its design: same seed, same samplers"
+            remedy = "Rows and study file do not belong together. Run the study again."
+            raise InputError("study", name, allowed, remedy)
 
 
 def _table_design(ds: xr.Dataset, specs: Mapping[str, Any]) -> SampledDesign:
-    """A table's factors are those columns that vary; expressions beside it are not independent."""
-    names = [
-        str(n)
-        for n in ds.variables
-        if ds[n].dims == ("case",)
-        and n not in specs
-        and n != "case"
-        and (n in PARAMETERS or n in ds.coords or ds[n].dtype.kind in "OUST")
-    ]
+    """Return the design of a table: its factors are the columns that vary, without the expressions beside it."""
     columns: dict[str, np.ndarray] = {}
     free: dict[str, Factor] = {}
-    for name in names:
-        if name in BOOKKEEPING - {"material_pair"}:
-            continue
+    for name in map(str, ds.variables):
         values = ds[name].values
         number = values.dtype.kind in "fiu"
-        if number and not np.isfinite(values.astype(float)).all() and np.isnan(values.astype(float)).any():
+        if ds[name].dims != ("case",) or name in specs or name in {*BOOKKEEPING, "case"} - {"material_pair"}:
+            continue
+        if number and (np.isnan(values).any() or not (name in PARAMETERS or name in ds.coords)):
             continue
         levels = tuple(dict.fromkeys(values.tolist()))
-        if len(levels) > 1:
-            columns[name] = values.astype(float) if number else values.astype(object)
+        if len(levels) > 1 and values.dtype.kind in "fiuOUST":
+            columns[name] = values.astype(float if number else object)
             free[name] = Factor(name, "values", levels=levels)
-    if "material_pair" in free:  # the two materials are the pair once more
+    if "material_pair" in free:  # the pair stands for its two materials
         for name in MATERIAL_FIELDS:
             columns.pop(name, None)
             free.pop(name, None)

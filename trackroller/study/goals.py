@@ -1,4 +1,4 @@
-"""What a study file wants to know: how the results are analysed, and which designs are best.
+"""Keys of a study file that say how results are analysed and which designs are best.
 
     analysis:
       outputs: [roller_life_hours, friction_power, peak_stress[1,guide]]
@@ -10,7 +10,7 @@
       - regime != full_slip
       - max_pressure < 1500
 
-None of these keys takes part in the identity of a case: changing them solves nothing anew.
+These keys are not part of the identity of a case, so changing them solves no case again.
 """
 
 from __future__ import annotations
@@ -37,10 +37,12 @@ class Analysis(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    outputs: tuple[str, ...] | None = Field(None, description="results to analyse; chosen by the study's groups if not")
-    scale: str | dict[str, str] = Field({}, description="natural or log10, for all or by output; lives are log10 else")
-    keep: tuple[str, ...] = Field(("rolling",), description="regimes whose cases are used; others: left out, told")
-    measures: tuple[str, ...] = Field(MEASURES, description="given-data measures to take besides the design's own")
+    outputs: tuple[str, ...] | None = Field(None, description="results to analyse; default: the usual ones")
+    scale: str | dict[str, str] = Field(
+        {}, description="natural or log10, for all or by output; default log10 for lives"
+    )
+    keep: tuple[str, ...] = Field(("rolling",), description="regimes whose cases are used; others are counted")
+    measures: tuple[str, ...] = Field(MEASURES, description="given-data measures besides the indices of the design")
     resamples: int = Field(300, ge=50, le=10_000, description="bootstrap resamples behind the 95 % intervals")
     material_scatter: bool | float = Field(
         False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"
@@ -67,7 +69,7 @@ class Analysis(BaseModel):
     @classmethod
     def _outputs(cls, value: tuple[str, ...] | None) -> tuple[str, ...] | None:
         if value is not None and not value:
-            raise InputError("analysis.outputs", [], "at least one output", "Leave the key out for the usual ones.")
+            raise InputError("analysis.outputs", [], "at least one output", "Remove the key for the usual outputs.")
         return None if value is None else tuple(dict.fromkeys(value))
 
     @field_validator("material_scatter", mode="before")
@@ -81,7 +83,7 @@ class Analysis(BaseModel):
 
 
 def directions(value: Any) -> dict[str, str]:
-    """The key `pareto`: two or more outputs or factors, each with `max` or `min`."""
+    """Check the key `pareto`: two or more outputs or factors, each with `max` or `min`."""
     if not isinstance(value, Mapping) or len(value) == 1:
         raise InputError(
             "pareto",
@@ -93,7 +95,7 @@ def directions(value: Any) -> dict[str, str]:
 
 
 def comparisons(value: Any) -> list[str]:
-    """The key `constraints`: a list of comparisons."""
+    """Check the key `constraints`: a list of comparisons."""
     if not isinstance(value, (list, tuple)) or not all(isinstance(text, str) for text in value):
         raise InputError("constraints", value, "a list of comparisons", "For example ['max_pressure < 1500'].")
     for text in value:
@@ -107,7 +109,7 @@ def names_in(constraint: str) -> set[str]:
 
 
 def output_names(groups: Iterable[str]) -> list[str]:
-    """One number a case: names that `analysis.outputs`, `pareto` and `constraints` may use."""
+    """Return the names that `analysis.outputs`, `pareto` and `constraints` may use: results with one number a case."""
     groups = set(groups)
     there = {name for name, v in VARIABLES.items() if v.group in groups and not set(v.dims) & FIELDS}
     names = [name for name, (variable, *_) in DEFAULTS.items() if variable in there]
@@ -138,7 +140,7 @@ def check_scatter(wanted: bool | float, design: str, materials: Iterable[Any]) -
 
 
 def check(config: Any, factors: Mapping[str, Any]) -> None:
-    """Names in `analysis`, `pareto` and `constraints` exist in this study; raises `InputError` with the nearest."""
+    """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
     known = output_names(config.outputs)
     scale = config.analysis.scale
     for name in (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())):
@@ -149,7 +151,7 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
         if name not in free:
             raise _unknown("pareto", name, free, config.outputs)
         if "expression" not in factors.get(name, {}) and not _numeric(factors.get(name, {})):
-            raise InputError("pareto", name, "a number a case", "Names have no more and less.")
+            raise InputError("pareto", name, "a result or factor with one number a case", "Names have no order.")
     if config.design == "inner_outer" and config.pareto:
         raise InputError(
             "pareto",
@@ -166,7 +168,7 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
         dummy |= {name: "" for name, spec in factors.items() if not _numeric(spec)} | {name: name for name in REGIMES}
         expressions.condition(text, dummy)
     if config.constraints and not config.pareto:
-        raise InputError("constraints", list(config.constraints), "they limit a Pareto set", "Add the key pareto.")
+        raise InputError("constraints", list(config.constraints), "limits of a Pareto set", "Add the key pareto.")
 
 
 def _numeric(spec: Mapping[str, Any]) -> bool:
@@ -187,5 +189,5 @@ def _unknown(where: str, name: str, known: Iterable[str], groups: Iterable[str])
         example = ",".join(word for d, word in (("contact", "1"), ("body", "roller")) if d in dims)
         if example:
             return InputError(where, name, "one number a case", f"Choose one, such as {name}[{example}].")
-    short = [n for n in dict.fromkeys(known) if "[" not in n]  # the parts of a variable would hide the names
+    short = [n for n in dict.fromkeys(known) if "[" not in n]  # a list with the parts of variables would be too long
     return unknown_name(where, name, short)
