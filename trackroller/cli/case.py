@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.contact.point_files import files_beside
+from trackroller.roller.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_yaml, read_mapping
 from trackroller.parameters import OPTIONS, REGIMES

@@ -1,6 +1,6 @@
-"""Drawn and measured cross-sections of guide and roller: what a case may say about them.
+"""Check drawn and measured cross-sections of guide and roller as a case gives them.
 
-The picture in which they are drawn, for both bodies the same::
+Both bodies are drawn in the same picture::
 
          z (towards the roller's axis)
          |        roller: material above its curve
@@ -11,32 +11,33 @@ The picture in which they are drawn, for both bodies the same::
     -----+--------------------> x (along the roller's axis)
        x = 0: middle of the guide
 
-`frame: section` is this picture. Contact 1 takes its part with x >= 0, contact 2 that with x <= 0 mirrored (or the
-same part, if nothing is drawn there); the curve touches where its inclination is the contact angle. `frame: contact` is
-the picture turned by the contact angle, x = 0 at the nominal point of contact and x > 0 outward in both contacts, z
-along the common normal towards the roller. Where the two curves lie in the picture does not matter, only their shape.
+`frame: section` is this picture. Contact 1 takes the part with x >= 0. Contact 2 takes the mirrored part with x <= 0,
+or the same part as contact 1 if nothing is drawn there. The curve touches where its inclination is the contact angle.
+`frame: contact` is the picture turned by the contact angle: x = 0 is the nominal point of contact, x > 0 is outward in
+both contacts, z is the common normal towards the roller. Only the shape of a curve counts, not its place.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
-from trackroller.contact.point_files import read_points
 from trackroller.errors import InputError, unknown_name
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
 KEYS = (*FORMS, "frame", "smooth", "edge", "width")
 EDGE_KEYS = ("inner", "outer", "chamfer")
 FRAMES = ("section", "contact")
-FEWEST, MOST = 5, 20_000  # points of a drawn cross-section
+FEWEST, MOST = 5, 20_000  # smallest and largest number of points of a drawn cross-section
+
+PointReader = Callable[[Any, str], list[list[float]]]  # (name of a file, field) -> rows [x, z]
 
 
-def canonical(value: Mapping[str, Any], field: str = "profile") -> dict[str, Any]:
-    """A checked mapping of plain numbers that tells the same cross-section, files read into points.
+def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReader | None = None) -> dict[str, Any]:
+    """Return a checked mapping of plain numbers that describes the same cross-section.
 
     Parameters
     ----------
@@ -45,15 +46,22 @@ def canonical(value: Mapping[str, Any], field: str = "profile") -> dict[str, Any
         `parabola: r` its approximation in Hertz's theory;
         `arcs: [{radius: r, to: x}, ..., {radius: r}]` tangent arcs from inside to outside, x from the nominal contact;
         `points: [[x, z], ...]` drawn or measured points [mm], x increasing;
-        `file: name.csv` the same as two columns of a file (see `trackroller.contact.point_files.read_points`);
+        `file: name.csv` the same as two columns of a file, which `read` reads;
         and for points and files `frame: section | contact` (default section) and `smooth`: the standard deviation of
         the measuring noise [mm], 'auto', or 0 (default: the spline goes through every point);
-        for all `edge: {inner: mm, outer: mm, chamfer: mm}`: where the material ends, as distances from the nominal
-        contact along the tangent plane, and the radius its edge is rounded with; or `width: mm`, of the whole
-        groove or guide along the roller's axis
-    field : `guide_profile` or `roller_profile`, for messages
+        for all `edge: {inner: mm, outer: mm, chamfer: mm}`: the distances from the nominal contact along the tangent
+        plane at which the material ends, and the radius of the rounded edge; or `width: mm`, of the whole groove or
+        guide along the roller's axis
+    field : `guide_profile` or `roller_profile`, for error messages
+    read : function that reads the points of a file, see `roller.point_files.read_points`
 
-    Raises `InputError` naming the part, its value, what is allowed and what to do. An empty mapping gives {}.
+    Returns
+    -------
+    Mapping with `points` in place of `file`; {} for an empty mapping
+
+    Raises
+    ------
+    InputError : naming the wrong part, its value, what is allowed and what to do
     """
     if not value:
         return {}
@@ -66,15 +74,15 @@ def canonical(value: Mapping[str, Any], field: str = "profile") -> dict[str, Any
             field,
             sorted(map(str, value)),
             "exactly one of " + ", ".join(FORMS),
-            "Keep the one that describes the cross-section.",
+            "Keep the entry that describes the cross-section.",
         )
-    out = _shape(forms[0], value, field)
+    out = _shape(forms[0], value, field, read)
     if "points" not in out:
         for key in ("frame", "smooth"):
             if key in value:
                 raise InputError(f"{field}.{key}", value[key], "only with points or a file", "Leave it out.")
     if "edge" in value and "width" in value:
-        raise InputError(field, "edge and width", "one of both", "Keep the one that you know.")
+        raise InputError(field, "edge and width", "one of the two", "Keep the entry that you know.")
     if "edge" in value:
         out["edge"] = _edge(value["edge"], f"{field}.edge")
     if "width" in value:
@@ -93,12 +101,15 @@ def _number(value: Any, field: str, positive: bool = False, finite: bool = True)
     return number
 
 
-def _shape(form: str, value: Mapping[str, Any], field: str) -> dict[str, Any]:
+def _shape(form: str, value: Mapping[str, Any], field: str, read: PointReader | None) -> dict[str, Any]:
+    """Return the entries that describe the curve itself."""
     if form in ("arc", "parabola"):
         return {form: _number(value[form], f"{field}.{form}", finite=False)}
     if form == "arcs":
         return {"arcs": _arcs(value["arcs"], f"{field}.arcs")}
-    rows = read_points(value["file"], f"{field}.file") if form == "file" else value["points"]
+    if form == "file" and read is None:
+        raise InputError(f"{field}.file", value["file"], "points", "Read the file and give its rows as points.")
+    rows = read(value["file"], f"{field}.file") if form == "file" and read else value["points"]
     frame = value.get("frame", "section")
     if frame not in FRAMES:
         raise unknown_name(f"{field}.frame", str(frame), FRAMES)
@@ -109,7 +120,7 @@ def _shape(form: str, value: Mapping[str, Any], field: str) -> dict[str, Any]:
             f"{field}.{form}",
             [x[0], x[-1]],
             "points on both sides of the nominal contact x = 0",
-            "In frame: contact x counts from there; frame: section has x = 0 in the middle.",
+            "In frame: contact x counts from the nominal contact; in frame: section x = 0 is the middle of the guide.",
         )
     smooth = value.get("smooth", 0.0)
     if smooth != "auto" and not (_is_number(smooth) and 0.0 <= float(smooth) < math.inf):
@@ -155,7 +166,9 @@ def _points(rows: Any, field: str) -> list[list[float]]:
         )
     if not np.all(np.isfinite(points)):
         row = int(np.flatnonzero(~np.all(np.isfinite(points), axis=1))[0])
-        raise InputError(f"{field}[{row}]", points[row].tolist(), "finite numbers", "Leave out what was not measured.")
+        raise InputError(
+            f"{field}[{row}]", points[row].tolist(), "finite numbers", "Leave out the rows that were not measured."
+        )
     falls = np.flatnonzero(np.diff(points[:, 0]) <= 0)
     if falls.size:
         row = int(falls[0]) + 1
@@ -163,7 +176,7 @@ def _points(rows: Any, field: str) -> list[list[float]]:
             f"{field}[{row}]",
             points[row].tolist(),
             "x increases from row to row",
-            "Sort the points by x and keep one of those with the same x.",
+            "Sort the points by x and keep one point for each x.",
         )
     return points.tolist()
 

@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.contact import friction_laws, profiles
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.geometry import curvatures, rolling_radius
+from trackroller.roller.point_files import read_points
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
@@ -32,11 +34,9 @@ def mapping_text(name: str, value: Any) -> str:
             raise InputError(name, value, "a mapping, or one written as JSON") from None
     if not isinstance(value, Mapping):
         raise InputError(name, value, "a mapping, or not given")
-    if name == "friction_law":
-        from trackroller.contact.friction_laws import canonical
-    else:
-        from trackroller.contact.profiles import canonical
-    told = canonical(value, name)
+    told = (
+        friction_laws.canonical(value, name) if name == "friction_law" else profiles.canonical(value, name, read_points)
+    )
     return json.dumps(told, sort_keys=True) if told else ""
 
 

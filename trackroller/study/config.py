@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, field_validator
 
-from trackroller.contact.point_files import files_beside
+from trackroller.roller.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS

@@ -25,7 +25,7 @@ import numpy as np
 import trackroller as tr
 from trackroller.roller.case import CaseTable, to_table
 from trackroller.roller.equilibrium import ROLLING, solve_equilibrium
-from trackroller.roller.equilibrium.newton import newton_polish
+from trackroller.roller.equilibrium.newton import Bounds, newton_polish
 from trackroller.roller.equilibrium.roller import LAST_SLIP, Roller
 from trackroller.roller.options import Options
 from trackroller.roller.stages import mechanics as stages
@@ -99,7 +99,8 @@ def _followed_group(table: CaseTable, model: str, accuracy: str) -> tuple[np.nda
         scene = stages.prepare(replace(table, velocity=share * table.velocity), options)
         roller = Roller(scene.loads, scene.model.law, rows)
         low, high = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
-        best, at, normal, _ = newton_polish(roller, at.copy(), normal.copy(), low, high)
+        found = newton_polish(roller, at.copy(), normal.copy(), Bounds(low, high))
+        best, at, normal = found.residual, found.w, found.normal
         goes_on = best <= 1e-4
         rows, at, normal = rows[goes_on], at[goes_on], normal[:, goes_on]
         reached[rows] = share

@@ -1,4 +1,4 @@
-"""Which of several equilibria near self-locking: solutions followed from little friction to the given."""
+"""The choice between several equilibria near self-locking: solutions are followed from little friction upwards."""
 
 from __future__ import annotations
 
@@ -6,57 +6,66 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.roller.equilibrium.newton import bracketed, newton_polish
-from trackroller.roller.equilibrium.roller import LIFTED, ContactLaw, Loads, Roller
+from trackroller.roller.equilibrium.newton import Bounds, Solution, bracketed, newton_polish
+from trackroller.roller.equilibrium.roller import LIFTED, Roller
+
+STEPS = 20  # of the friction between its start and its full value
+FOLLOWED = 1e-8  # largest residual of a solution that is followed further
 
 
-def follow_friction(loads, law, rows, low, high):
-    """Solutions followed from little friction to the given; a contact that lifts off on the way stays off.
+def follow_friction(roller: Roller, bounds: Bounds) -> tuple[Solution, np.ndarray]:
+    """Follow the solutions of m rollers from little friction to the given friction.
 
-    Near self-locking, mu f = tan(alpha), the equations have several solutions or none; the one that grows out of the
-    frictionless wedge is the one that loading reaches. Returns what `newton_polish` does, and the rows that lift off.
+    Near self-locking, mu f = tan(alpha), the equations have several solutions or none. Loading reaches the solution
+    that grows out of the frictionless wedge. A contact that lifts off on the way stays off.
+
+    Returns
+    -------
+    Solution : of the rollers at their friction; the residual is inf where the branch was lost
+    (m,) array : True for rollers that lift off
     """
+    loads, law, rows = roller.loads, roller.law, roller.rows
     m = rows.size
-    lifted, w = np.zeros(m, bool), np.zeros(m)
-    normal = np.full((2, m), np.nan)
-    best, f = np.full(m, np.inf), np.full((3, 2, m), np.nan)
-    lost, found, grip = np.zeros(m, bool), np.zeros(m, bool), np.zeros(m)
+    found = Solution(np.full(m, np.inf), np.zeros(m), np.full((2, m), np.nan), np.full((3, 2, m), np.nan))
+    lifted, lost, answered, shed, grip = *np.zeros((4, m), bool), np.zeros(m)
     scale = np.ones_like(loads.friction)
     tangent = np.tan(loads.contact_angle[rows])
-    start = np.clip(0.2 * tangent / loads.friction[rows], 1e-8, 0.05)  # well before the wedge may lock
-    load, pushed = Roller(loads, law, rows).load, loads.axial_force[rows] != 0
-    shed = np.zeros(m, bool)  # a branch that ends where friction nearly carries the lateral load has shed a contact
-    for k in range(21):
+    start = np.clip(0.2 * tangent / roller.friction, 1e-8, 0.05)  # well below the friction at which the wedge may lock
+    for k in range(STEPS + 1):
         go = np.flatnonzero(~shed & ~lifted)
         if go.size == 0:
             break
-        scale[rows] = np.maximum(start ** (1 - k / 20), k / 20)
+        scale[rows] = np.maximum(start ** (1 - k / STEPS), k / STEPS)
         eased = replace(loads, friction=loads.friction * scale, motor_force=loads.motor_force * scale)
-        roller = Roller(eased, law, rows[go])
+        part = Roller(eased, law, rows[go])
         if k == 0:
-            w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=60, tolerance=1e-12)
+            found.w[:], found.normal[:] = bracketed(part, bounds.copy(), fine=True, sweeps=60, tolerance=1e-12)
         # to the last digit: small differences grow along a branch that nearly locks
-        best[go], w_new, n_new, f[:, :, go] = newton_polish(roller, w[go], normal[:, go], low[go], high[go])
-        fine = best[go] <= 1e-8
-        lost[go], found[go] = lost[go] | ~fine, found[go] | np.isfinite(best[go])
-        shrunk = np.any(normal[:, go] < 0.15 * roller.load, axis=0)
-        lifted[go] = np.where(fine, np.any(n_new <= LIFTED * roller.load, axis=0), shrunk)
+        new = newton_polish(part, found.w[go], found.normal[:, go], bounds.take(go))
+        found.residual[go], found.forces[:, :, go] = new.residual, new.forces
+        fine = new.residual <= FOLLOWED
+        lost[go], answered[go] = lost[go] | ~fine, answered[go] | np.isfinite(new.residual)
+        shrunk = np.any(found.normal[:, go] < 0.15 * part.load, axis=0)
+        lifted[go] = np.where(fine, np.any(new.normal <= LIFTED * part.load, axis=0), shrunk)
         on = go[fine]
-        w[on], normal[:, on] = w_new[fine], n_new[:, fine]
+        found.w[on], found.normal[:, on] = new.w[fine], new.normal[:, fine]
         with np.errstate(invalid="ignore"):
-            grip[on] = np.max(np.abs(f[0][:, on] / normal[:, on]), axis=0) / tangent[on]
-        shed = lost & ((grip > 0.5) | np.any(normal < 0.2 * load, axis=0)) & pushed
-    best = np.where(lost, np.inf, best)
-    lifted |= np.where(lost, shed, ~Roller(loads, law, rows).wedged(normal, f))
-    return best, w, normal, f, lifted & found  # a law that has no answer at all tells nothing
+            grip[on] = np.max(np.abs(found.forces[0][:, on] / found.normal[:, on]), axis=0) / tangent[on]
+        # a branch that ends where friction nearly carries the lateral load has lost a contact
+        weak = (grip > 0.5) | np.any(found.normal < 0.2 * roller.load, axis=0)
+        shed = lost & weak & (roller.axial_force != 0)
+    found.residual[lost] = np.inf
+    lifted |= np.where(lost, shed, ~roller.wedged(found.normal, found.forces))
+    return found, lifted & answered  # a law without any answer does not show lift-off
 
 
-def self_locking(loads: Loads, law: ContactLaw, rows: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Would friction lock the wedge of these rollers without axial force, mu f >= tan(alpha)? Shape (m,).
+def self_locking(roller: Roller, bounds: Bounds) -> np.ndarray:
+    """Return True where friction would lock the wedge without axial force, mu f >= tan(alpha), (m,).
 
-    Then the even balance is unstable: the lateral friction turns with the load, and the slightest axial force sheds a
-    contact. Judged with the coarse law; one without an answer says no.
+    In this case the even balance is unstable: the lateral friction turns with the load, and the slightest axial force
+    makes a contact lift off. The coarse law decides; where it has no answer, the result is False.
     """
-    roller = Roller(replace(loads, axial_force=np.zeros_like(loads.axial_force)), law, rows)
-    w, normal = bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
-    return roller.grips(normal, roller.contact(roller.shift(w), normal, False))
+    loads = roller.loads
+    even = Roller(replace(loads, axial_force=np.zeros_like(loads.axial_force)), roller.law, roller.rows)
+    w, normal = bracketed(even, bounds.copy(), fine=False, sweeps=25, tolerance=1e-3)
+    return even.grips(normal, even.contact(even.shift(w), normal, False))

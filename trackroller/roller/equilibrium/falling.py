@@ -1,46 +1,53 @@
-"""Where a roller balances its drive torque under friction that depends on the slip speed.
+"""Balance of the drive torque under friction that depends on the slip speed.
 
-Such friction may transmit most at a moderate slip and less beyond. Of several slips that balance the torque the one
-nearest to none is taken: it is the one that starting gently reaches, and the one that is stable.
+Such friction may transmit its largest torque at a moderate slip. If several slips balance the torque, the smallest one
+is taken: a gentle start reaches it, and it is stable.
 
-The search runs with the coarse contact law. Near the most that friction transmits, the coarse and the fine law may
-differ in where the balance lies and even in whether there is one; then the fine law is searched itself.
+The search uses the coarse contact law. Near the largest transmissible torque the coarse and the fine law may differ in
+the place of the balance, and even in whether there is one; there the fine law itself is searched.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from trackroller.roller.equilibrium.newton import bracketed, newton_polish
+from trackroller.roller.equilibrium.newton import Bounds, Solution, bracketed, newton_polish
 from trackroller.roller.equilibrium.roller import Roller
 
-POINTS = 24  # of the search away from no slip
-FIRST, LAST = -1.5, 3.5  # decades of slip over its scale between which it looks
+POINTS = 24  # slips of the search
+FIRST, LAST = -1.5, 3.5  # decades of slip over its scale between which the search looks
 GOLDEN, REFINEMENTS = 0.381966011250105, 12
-SWEEPS = 16  # of the fine law; where its forces jump, more lead nowhere
-NEAR = 0.1  # of the torque scale by which the coarse law may miss a balance that the fine one has
+SWEEPS = 16  # largest number of steps with the fine law; where its forces jump, more steps do not help
+NEAR = 0.1  # share of the torque scale by which the coarse law may miss a balance of the fine law
 
 
-def first_balance(roller: Roller, w_low: np.ndarray, w_high: np.ndarray, fine: bool = False):
-    """Bounds in w of the balance nearest to no slip, for rollers that are driven or braked.
+def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bounds, np.ndarray, np.ndarray]:
+    """Bound the balance with the smallest slip, for rollers that are driven or braked.
 
-    w_low, w_high : the whole range, (m,); fine : by the fine contact law
+    Parameters
+    ----------
+    whole : whole range of w
+    fine : True for the fine contact law
 
-    Returns w_low and w_high narrowed to that balance, where there is none (m,), and whether it was missed by so
-    little there that the fine law may have one (m,).
+    Returns
+    -------
+    Bounds : of the balance
+    (m,) array : True where there is no balance
+    (m,) array : True where the coarse law misses a balance by so little that the fine law may have one
     """
-    way = np.sign(roller.motor_force)  # driving needs slip < 0
-    normal = roller.floored(roller.normal_forces(np.zeros((2, way.size))))
+    w_low, w_high = whole
+    way = np.sign(roller.motor_force)  # driving needs a slip < 0
+    normal = roller.floored(roller.without_friction())
 
     def excess(w, pick):
-        """Torque beyond the one asked for, > 0 once friction suffices; the normal forces follow."""
+        """Return the torque beyond the required one, > 0 where friction suffices; the normal forces follow."""
         for _ in range(2 if fine else 1):
             f = roller.contact(roller.shift(w, pick), normal[:, pick], fine, pick)
             normal[:, pick] = roller.floored(roller.normal_forces(f[0] / normal[:, pick], pick), pick)
         return -way[pick] * roller.torque(f, pick)
 
     low, high = w_low.copy(), w_high.copy()
-    slips = np.concatenate([[0.0, 0.0], np.logspace(FIRST, LAST, POINTS)])  # twice 0 for the normal forces
+    slips = np.concatenate([[0.0, 0.0], np.logspace(FIRST, LAST, POINTS)])  # 0 twice, for the normal forces
     points = np.clip(way * (slips / np.hypot(1.0, slips))[:, None], w_low, w_high)  # (points, m)
     open_, beyond = np.flatnonzero(way != 0), np.zeros(way.size, bool)
     best, place = np.full(way.size, -np.inf), np.zeros(way.size, int)
@@ -52,32 +59,36 @@ def first_balance(roller: Roller, w_low: np.ndarray, w_high: np.ndarray, fine: b
         _narrow(low, high, way, found, points[k - 1, found], w[found], at_rest=k == 1)
         open_ = np.setdiff1d(open_, found)
         if open_.size == 0:
-            return low, high, beyond, beyond.copy()
+            return Bounds(low, high), beyond, beyond.copy()
     summit = np.stack([points[np.clip(place[open_] + step, 1, POINTS + 1), open_] for step in (-1, 0, 1)])
     beyond[open_] = ~_climb(excess, open_, summit, way, low, high)
-    return low, high, beyond, beyond & (best > -NEAR * roller.torque_scale)
+    return Bounds(low, high), beyond, beyond & (best > -NEAR * roller.torque_scale)
 
 
-def balance_again(loads, law, rows: np.ndarray, w_low: np.ndarray, w_high: np.ndarray):
-    """Balances found by the fine law alone, for rollers where the coarse one misleads.
+def balance_again(roller: Roller, whole: Bounds) -> tuple[Solution, Bounds, np.ndarray]:
+    """Find balances by the fine law alone, for rollers where the coarse law misleads.
 
-    w_low, w_high : the whole range, (m,)
+    Parameters
+    ----------
+    whole : whole range of w
 
-    Returns what `newton_polish` does, bounds of w that reach from no slip to beyond the balance, and where there is
-    none (m,).
+    Returns
+    -------
+    Solution : the balances
+    Bounds : from no slip to beyond the balance
+    (m,) array : True where there is no balance
     """
-    roller = Roller(loads, law, rows)
-    low, high, beyond, _ = first_balance(roller, w_low, w_high, fine=True)
-    w, normal = bracketed(roller, low.copy(), high.copy(), fine=True, sweeps=SWEEPS, tolerance=1e-6)
-    # the normal forces lagged behind the search, so that the balance may lie a little beside its bounds
+    (low, high), beyond, _ = first_balance(roller, whole, fine=True)
+    w, normal = bracketed(roller, Bounds(low.copy(), high.copy()), fine=True, sweeps=SWEEPS, tolerance=1e-6)
+    # the normal forces lagged behind the search, so that the balance may lie slightly outside its bounds
     room = 0.5 * (high - low)
-    low, high = np.maximum(low - room, w_low), np.minimum(high + room, w_high)
-    found = newton_polish(roller, w, normal, low, high)
-    return *found, np.minimum(low, 0.0), np.maximum(high, 0.0), beyond
+    wider = Bounds(np.maximum(low - room, whole.low), np.minimum(high + room, whole.high))
+    found = newton_polish(roller, w, normal, wider)
+    return found, Bounds(np.minimum(wider.low, 0.0), np.maximum(wider.high, 0.0)), beyond
 
 
 def _narrow(low, high, way, rows, before, after, at_rest: bool) -> None:
-    """The balance of `rows` lies between the slips `before` and `after`; at rest it lies on the other side of none."""
+    """Narrow the bounds of `rows` to the slips `before` and `after`; `at_rest` the balance has the opposite slip."""
     drives = way[rows] < 0
     if at_rest:
         low[rows] = np.where(drives, 0.0, low[rows])
@@ -88,7 +99,7 @@ def _narrow(low, high, way, rows, before, after, at_rest: bool) -> None:
 
 
 def _climb(excess, rows, summit, way, low, high) -> np.ndarray:
-    """Golden-section search for a slip that suffices, about the highest point seen; True where there is one."""
+    """Search a slip that suffices around the highest point by golden sections; return True where there is one, (m,)."""
     left, right = summit[0].copy(), summit[2].copy()
     inner = [left + GOLDEN * (right - left), right - GOLDEN * (right - left)]
     value = [excess(w, rows) for w in inner]

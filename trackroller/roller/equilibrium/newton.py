@@ -1,25 +1,79 @@
-"""Roots of the balances of a roller: bracketing in the slip with a coarse contact law, then Newton on all unknowns."""
+"""Roots of the balances of a roller: bracketing in the slip with a coarse law, then Newton's method on all unknowns."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from trackroller.roller.equilibrium.roller import Roller
 
-SMALL = 0.01  # rolling radius over patch
+SMALL = 0.01  # rolling radius over the size of the patch, below which the digits of the forces are checked
 EPS = 2.0**-53
-# Models that iterate are not asked again for what lies below this share of what they reach. Those in closed form cost
-# little, and rollers at the ends of the parameters need their last digits.
+# Changes below the share SETTLED of the goal are not followed further. Models in closed form (goal up to CLOSED) cost
+# little, and rollers at the ends of the parameter ranges need their last digits: they are followed to the end.
 SETTLED, CLOSED = 0.1, 1e-11
 
 
-def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance: float):
-    """Root of the torque balance in w by the Illinois rule, the normal forces following along.
+class Bounds(NamedTuple):
+    """Lowest and highest slip w of a search, each (m,)."""
 
-    The torque falls with w. Returns w (m,) and normal forces (2, m).
+    low: np.ndarray
+    high: np.ndarray
+
+    def take(self, rows: np.ndarray) -> Bounds:
+        """Return the bounds of `rows`, as new arrays."""
+        return Bounds(self.low[rows], self.high[rows])
+
+    def copy(self) -> Bounds:
+        """Return new arrays, which a search may narrow."""
+        return Bounds(self.low.copy(), self.high.copy())
+
+
+@dataclass
+class Solution:
+    """Solutions of m rollers: residual (m,), slip w (m,), normal forces (2, m) [N], contact forces (3, 2, m)."""
+
+    residual: np.ndarray
+    w: np.ndarray
+    normal: np.ndarray
+    forces: np.ndarray
+
+    def take(self, rows: np.ndarray) -> Solution:
+        """Return the solutions `rows`."""
+        return Solution(self.residual[rows], self.w[rows], self.normal[:, rows], self.forces[:, :, rows])
+
+    def put(self, rows: np.ndarray, found: Solution) -> None:
+        """Overwrite the solutions `rows`."""
+        self.residual[rows], self.w[rows] = found.residual, found.w
+        self.normal[:, rows], self.forces[:, :, rows] = found.normal, found.forces
+
+    def put_better(self, rows: np.ndarray, found: Solution, converged: float) -> None:
+        """Overwrite solutions by those with a smaller residual or with a residual up to `converged`."""
+        take = ~((found.residual > self.residual[rows]) & (found.residual > converged))
+        self.put(rows[take], found.take(take))
+
+
+def bracketed(
+    roller: Roller, bounds: Bounds, fine: bool, sweeps: int, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Find the root of the torque balance in w by the Illinois rule, with normal forces that follow.
+
+    The torque falls with w. The search narrows the arrays of `bounds`.
+
+    Parameters
+    ----------
+    fine : True for the fine contact law
+    sweeps : largest number of steps
+    tolerance : change of w and width of the bounds at which the search ends
+
+    Returns
+    -------
+    w (m,) and normal forces (2, m) [N]
     """
-    m = roller.rows.size
-    normal = roller.floored(roller.normal_forces(np.zeros((2, m))))
+    m, (w_low, w_high) = roller.rows.size, bounds
+    normal = roller.floored(roller.without_friction())
     t_low, t_high = np.full(m, np.nan), np.full(m, np.nan)
     w, side = np.clip(np.zeros(m), w_low, w_high), np.zeros(m)
     active = np.arange(m)
@@ -39,7 +93,7 @@ def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance:
         new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
         moved = np.abs(new - w[active])
         w[active] = new
-        # where the balance holds, what is left is for Newton's method
+        # a row whose balance holds needs no further step here; Newton's method refines it
         unmet = np.abs(t) > (settled(roller) if fine else 0.0) * roller.torque_scale[active]
         active = active[(moved > tolerance) & (hi - lo > tolerance) & unmet]
         if active.size == 0:
@@ -48,12 +102,12 @@ def bracketed(roller: Roller, w_low, w_high, fine: bool, sweeps: int, tolerance:
 
 
 def settled(roller: Roller) -> float:
-    """Relative change of forces that is not followed further."""
+    """Return the relative change of forces below which a row is not followed further."""
     return SETTLED * roller.goal if roller.goal > CLOSED else 0.0
 
 
 def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.ndarray:
-    """Contact forces (3, 2, m) of `rows` at the slip w, to which their normal forces follow, thrice if `fine`."""
+    """Return the contact forces (3, 2, m) of `rows` at slip w; the normal forces follow, in three steps if `fine`."""
     f = np.empty((3, 2, rows.size))
     go = np.arange(rows.size)
     for _ in range(3 if fine else 1):
@@ -69,7 +123,7 @@ def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.nd
 
 
 def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
-    """Derivatives of the balances with respect to (F_N1, F_N2, w), shape (m, 3, 3), coarse law, differences."""
+    """Return the derivatives of the balances by (F_N1, F_N2, w), (m, 3, 3), as differences of the coarse law."""
     h = roller.step
     shift = roller.shift(w, pick)
     base = roller.contact(shift, normal, False, pick)
@@ -87,14 +141,24 @@ def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
     return jac
 
 
-def newton_polish(roller: Roller, w, normal, w_low, w_high, enough: float = 0.0, steps: int = 14):
-    """Newton-Broyden polish of all three unknowns with the fine law; returns residual (m,) with w, normal, forces.
+def newton_polish(
+    roller: Roller, w: np.ndarray, normal: np.ndarray, bounds: Bounds, enough: float = 0.0, steps: int = 14
+) -> Solution:
+    """Refine all three unknowns by Newton's method with Broyden's updates and the fine law.
 
-    It ends at a residual of `enough`; without, where rounding and the noise of the law end it.
+    Parameters
+    ----------
+    w, normal : start, (m,) and (2, m) [N]
+    bounds : w stays between these
+    enough : residual at which a row ends; 0 goes on until rounding or the noise of the law ends it
+    steps : largest number of steps
+
+    Returns
+    -------
+    Solution : the best state that each row met
     """
     m = w.size
-    best = np.full(m, np.inf)
-    w_best, n_best, f_best = w.copy(), normal.copy(), np.full((3, 2, m), np.nan)
+    best = Solution(np.full(m, np.inf), w.copy(), normal.copy(), np.full((3, 2, m), np.nan))
     active = np.arange(m)
     jac = np.empty((m, 3, 3))
     step_old, r_old = np.zeros((m, 3)), np.zeros((m, 3))
@@ -104,43 +168,55 @@ def newton_polish(roller: Roller, w, normal, w_low, w_high, enough: float = 0.0,
         f = roller.contact(roller.shift(w_a, active), n_a, True, active)
         r = roller.residuals(n_a, f, active).T
         size = np.max(np.abs(r) / scale[active], axis=1)
-        better = size < best[active]
-        hit = active[better]
-        best[hit], w_best[hit] = size[better], w_a[better]
-        n_best[:, hit], f_best[:, :, hit] = n_a[:, better], f[:, :, better]
-        stalled = (size > 0.3 * best[active]) & ~better if k > 8 else np.zeros(active.size, bool)
+        better = size < best.residual[active]
+        best.put(active[better], Solution(size, w_a, n_a, f).take(better))
+        leading = best.residual[active]
+        stalled = (size > 0.3 * leading) & ~better if k > 8 else np.zeros(active.size, bool)
         worth = (size > max(1e-15, enough)) & np.isfinite(size)
-        go = worth & ~stalled & ~((best[active] < roller.goal) & ~better)
+        go = worth & ~stalled & ~((leading < roller.goal) & ~better)
         active, r = active[go], r[go]
         if active.size == 0:
             break
         if k in (0, 6):
             jac[active] = _jacobian(roller, w[active], normal[:, active], active)
-        else:  # Broyden's update: the old step made this residual
-            s = step_old[active]
-            y = r - r_old[active]
-            miss = y - np.einsum("mij,mj->mi", jac[active], s)
-            with np.errstate(divide="ignore", invalid="ignore"):  # no step, no news: the row ends as singular
-                jac[active] += miss[:, :, None] * s[:, None, :] / np.sum(s * s, axis=1)[:, None, None]
-        step = _solve3(jac[active], -r)
-        room = np.stack([0.9 * normal[0, active], 0.9 * normal[1, active]], axis=1)
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            damp = np.min(np.where(step[:, :2] < 0, room / -step[:, :2], np.inf), axis=1)
-            gap = np.where(step[:, 2] > 0, w_high[active] - w[active], w[active] - w_low[active])
-            damp = np.minimum(np.minimum(damp, 0.9 * gap / np.abs(step[:, 2])), 1.0)
-        sound = np.all(np.isfinite(step), axis=1) & np.isfinite(damp)  # a singular system ends the row
-        step = np.where(sound[:, None], step * damp[:, None], 0.0)
+        else:
+            jac[active] += _broyden(jac[active], step_old[active], r - r_old[active])
+        step, sound = _damped(_solve3(jac[active], -r), normal[:, active], w[active], bounds.take(active))
         step_old[active], r_old[active] = step, r
         normal[:, active] += step[:, :2].T
         w[active] += step[:, 2]
         active = active[sound]
         if active.size == 0:
             break
-    return best, w_best, n_best, f_best
+    return best
+
+
+def _broyden(jac: np.ndarray, step: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Return Broyden's update (m, 3, 3) after a step (m, 3) that changed the residuals by `change` (m, 3).
+
+    A zero step gives the update nothing to learn from: it is NaN, and the row ends as singular.
+    """
+    miss = change - np.einsum("mij,mj->mi", jac, step)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return miss[:, :, None] * step[:, None, :] / np.sum(step * step, axis=1)[:, None, None]
+
+
+def _damped(step: np.ndarray, normal: np.ndarray, w: np.ndarray, bounds: Bounds) -> tuple[np.ndarray, np.ndarray]:
+    """Shorten steps (m, 3) so that normal forces stay positive and w within its bounds; mark finite steps (m,).
+
+    Steps of singular systems become zero.
+    """
+    room = 0.9 * normal.T
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        damp = np.min(np.where(step[:, :2] < 0, room / -step[:, :2], np.inf), axis=1)
+        gap = np.where(step[:, 2] > 0, bounds.high - w, w - bounds.low)
+        damp = np.minimum(np.minimum(damp, 0.9 * gap / np.abs(step[:, 2])), 1.0)
+    sound = np.all(np.isfinite(step), axis=1) & np.isfinite(damp)
+    return np.where(sound[:, None], step * damp[:, None], 0.0), sound
 
 
 def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Batch of 3x3 systems by Cramer's rule on scaled rows and columns; a singular one gives NaN, no exception."""
+    """Solve m systems of three equations by Cramer's rule on scaled rows and columns; singular systems give NaN."""
     with np.errstate(all="ignore"):
         a, b = a / (rows := np.max(np.abs(a), axis=2))[:, :, None], b / rows
         columns = np.max(np.abs(a), axis=1)
@@ -153,19 +229,21 @@ def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(x), x, np.nan)
 
 
-def digits_of_forces(roller: Roller, w, normal, f, residual) -> np.ndarray:
-    """Uncertainty of the transmitted force over what friction can give, of rollers small against their patches; (m,).
+def digits_of_forces(roller: Roller, found: Solution) -> np.ndarray:
+    """Return the uncertainty of the transmitted force over the largest friction force, (m,).
 
-    There the drilling torque outweighs the force a thousandfold and more, and a small imbalance of the torque no
-    longer tells that the force is known: it moves it by dF_A/dtorque, taken over a short and the shortest step of the
-    slip, times the imbalance or its rounding. 0 for rollers larger than `SMALL` of their patch.
+    It is computed for rollers smaller than `SMALL` of their patch and is 0 for the others. On such small rollers the
+    drilling torque exceeds the torque of the force a thousandfold and more, so that a small imbalance of the torque
+    does not bound the error of the force. The error is dF_A/dtorque times the imbalance or its rounding error; the
+    derivative is taken over two steps of the slip, a short one and the shortest one.
     """
+    w, normal, f = found.w, found.normal, found.forces
     size = np.hypot(roller.shape.lateral, roller.shape.rolling) * np.cbrt(np.max(normal, axis=0))
-    small = np.flatnonzero((roller.radius < SMALL * size) & np.isfinite(residual))
+    small = np.flatnonzero((roller.radius < SMALL * size) & np.isfinite(found.residual))
     unsure = np.zeros(w.size)
     if small.size == 0:
         return unsure
-    taken, turned = f[1].sum(axis=0)[small], roller.torque(f)[small]
+    force, torque = f[1].sum(axis=0)[small], roller.torque(f)[small]
     inward = np.where(w[small] > 0, -1.0, 1.0)
     moved = [
         roller.contact(roller.shift(w[small] + inward * step, small), normal[:, small], True, small)
@@ -174,8 +252,8 @@ def digits_of_forces(roller: Roller, w, normal, f, residual) -> np.ndarray:
     given = roller.friction[small] * normal[:, small].sum(axis=0)
     noise = 4.0 * EPS * roller.torque_scale[small]
     share = np.zeros(small.size)
-    for g in moved:  # what changes by rounding alone tells nothing
-        change = np.maximum(np.abs(g[1].sum(axis=0) - taken) - 16.0 * EPS * given, 0.0)
-        share = np.fmax(share, change / np.maximum(np.abs(roller.torque(g, small) - turned), noise))
-    unsure[small] = share * np.maximum(np.abs(turned), noise) / given
+    for g in moved:  # changes within rounding do not count
+        change = np.maximum(np.abs(g[1].sum(axis=0) - force) - 16.0 * EPS * given, 0.0)
+        share = np.fmax(share, change / np.maximum(np.abs(roller.torque(g, small) - torque), noise))
+    unsure[small] = share * np.maximum(np.abs(torque), noise) / given
     return unsure

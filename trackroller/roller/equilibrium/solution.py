@@ -2,8 +2,8 @@
 
 Unknowns F_N1, F_N2 and r_Delta0; equations (7), (9) and the balance of the drive torque, (10) and (31):
 -(M_R1 - M_R2) sin(alpha) - (F_A1 + F_A2) r_A = F_Motor r_A. The slip enters through w in (-1, 1),
-r_Delta0 = c w / sqrt(1 - w^2), in which the torque is nearly linear. A bracketing pass with a coarse contact
-law finds the root, Newton's method on all three equations polishes it.
+r_Delta0 = c w / sqrt(1 - w^2), in which the torque is nearly linear. A search with a coarse contact law brackets the
+root; Newton's method on all three equations refines it with the fine law.
 """
 
 from __future__ import annotations
@@ -14,27 +14,36 @@ import numpy as np
 
 from trackroller.contact.common import Resultants
 from trackroller.contact.sliding import tractions_full_slip
+from trackroller.parameters import REGIMES
 from trackroller.roller.equilibrium.branch import follow_friction, self_locking
 from trackroller.roller.equilibrium.falling import balance_again, first_balance
-from trackroller.roller.equilibrium.newton import bracketed, digits_of_forces, newton_polish, settled
+from trackroller.roller.equilibrium.newton import Bounds, Solution, bracketed, digits_of_forces, newton_polish, settled
 from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
 
-__all__ = ["FAILED", "FULL_SLIP", "LIFT_OFF", "ROLLING", "ContactLaw", "Equilibrium", "Loads", "solve_equilibrium"]
-ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
-# largest residual of what is called a solution; where friction falls steeply a patch has many states of stick and slip,
-# its forces jump between them, and the balance may lie within such a jump
+ROLLING, FULL_SLIP, LIFT_OFF, FAILED = (REGIMES.index(name) for name in ("rolling", "full_slip", "lift_off", "failed"))
+# Largest residual of a solution. Where friction falls steeply, a patch has many states of adhesion and slip; its forces
+# jump between these states, and the balance may lie within such a jump.
 SOLVED, SOLVED_FALLING = 1e-6, 1e-2
+LEAST_FRICTION = 1e-100  # smaller friction coefficients count as zero; their forces would underflow
+LIMIT_FRICTION = 1e-12  # friction coefficient that stands for the limit mu -> 0
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Solution for n rollers: `regime` (n,), shift (n,) [mm], normal_force (n, 2) [N] and the resultants.
+    """Solution for n rollers; undefined values are NaN.
 
-    `forces` has the fields of `Resultants`, each of shape (n, 2). `residual` is the largest relative
-    imbalance: forces over the applied loads, torque over what friction and motor can give; for rollers small against
-    their patches no less than the uncertainty of the transmitted force over what friction can give. `jamming` marks
-    rollers whose friction alone carries the lateral load; a lifted one, if it did so without axial force. Undefined
-    is NaN.
+    Attributes
+    ----------
+    regime : number in `parameters.REGIMES`, (n,)
+    converged : True where the residual is below the limit of the contact model, (n,)
+    residual : largest relative imbalance, (n,): forces over the applied loads, torque over the largest torque of
+        friction and motor. On rollers small against their patches it is no less than the uncertainty of the
+        transmitted force over the largest friction force.
+    jamming : True where friction alone carries the lateral load, (n,); for a roller that has lifted off, True if
+        friction would do so without axial force
+    shift : rolling radius shift r_Delta0, (n,) [mm]
+    normal_force : (n, 2) [N]
+    forces : resultants of both contacts, arrays (n, 2)
     """
 
     regime: np.ndarray
@@ -46,177 +55,190 @@ class Equilibrium:
     forces: Resultants
 
 
-def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
-    """Normal forces, slip and friction resultants of n rollers.
-
-    Parameters
-    ----------
-    loads : applied loads, friction and geometry, arrays of shape (n,)
-    law : contact model; with `fine=False` it may be cheap and rough
-
-    Regimes: `FULL_SLIP` where even complete slip in the rolling direction (r_Delta0 = -r_A driving: the roller
-    spins without travel; r_Delta0 -> inf braking: it is locked) cannot balance the motor force; `LIFT_OFF` where
-    a contact would carry no more than 1e-8 of |F_rad| + |F_ax|, or pull. ASSUME: without friction the slip is that
-    of the limit mu -> 0 if F_Motor = 0, and every motor force means full slip.
-    """
-    # friction whose forces would run out of the range of numbers is none
-    loads = replace(loads, friction=np.where(loads.friction < 1e-100, 0.0, loads.friction))
-    n = loads.radial_force.size
-    regime = np.full(n, FAILED, dtype=np.int8)
-    residual, shift, jamming = np.full(n, np.nan), np.full(n, np.nan), np.zeros(n, bool)
-    normal, forces = np.full((2, n), np.nan), np.full((3, 2, n), np.nan)
-    everything = np.arange(n)
-    if n == 0:
-        return Equilibrium(regime, jamming, residual, jamming, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
-    everything = everything[np.isfinite(loads.shape.lateral)]
-    limit = np.abs(loads.motor_force) > 0
-    slides = everything[(loads.friction[everything] == 0) & limit[everything]]
-    rolls = np.setdiff1d(everything, slides)
-    if rolls.size:
-        beyond = _solve_rolling(loads, law, rolls, regime, residual, jamming, shift, normal, forces)
-        slides = np.concatenate([slides, beyond])
-    if slides.size:
-        _solve_full_slip(loads, law, slides, regime, residual, shift, normal, forces)
-    lifted = (regime == LIFT_OFF) | (regime == FAILED)
-    shift[lifted] = np.nan
-    residual[regime == LIFT_OFF] = np.nan
-    normal[:, lifted], forces[:, :, lifted] = np.nan, np.nan
-    converged = np.where(regime == LIFT_OFF, True, residual <= loads.converged)
-    return Equilibrium(regime, converged, residual, jamming, shift, normal.T, Resultants(*forces.transpose(0, 2, 1)))
-
-
 @dataclass
-class _Found:
-    """What is known of m rolling candidates: residual (m,), slip w (m,), normal (2, m) and contact forces (3, 2, m)."""
+class _Answer:
+    """What is known of n rollers: regime, residual, jamming, shift (n,), normal forces (2, n), forces (3, 2, n)."""
 
-    best: np.ndarray
-    w: np.ndarray
+    regime: np.ndarray
+    residual: np.ndarray
+    jamming: np.ndarray
+    shift: np.ndarray
     normal: np.ndarray
     forces: np.ndarray
 
-    def put(self, rows, found) -> None:
-        self.best[rows], self.w[rows], self.normal[:, rows], self.forces[:, :, rows] = found
+    @classmethod
+    def of(cls, n: int) -> _Answer:
+        """Return n rollers without a solution."""
+        nan = np.full((7, n), np.nan)
+        regime = np.full(n, FAILED, dtype=np.int8)
+        return cls(regime, nan[0].copy(), np.zeros(n, bool), nan[1].copy(), nan[:2].copy(), nan[:6].reshape(3, 2, n))
 
-    def put_better(self, rows, found, converged: float) -> None:
-        """Keeps what has the smaller residual; among solutions the later one."""
-        best = self.best[rows]
-        take = ~((found[0] > best) & (found[0] > converged))
-        self.put(rows[take], [v[..., take] for v in found])
+    def equilibrium(self, limit: float) -> Equilibrium:
+        """Return the equilibrium; residuals up to `limit` count as converged."""
+        lifted = (self.regime == LIFT_OFF) | (self.regime == FAILED)
+        self.shift[lifted] = np.nan
+        self.residual[self.regime == LIFT_OFF] = np.nan
+        self.normal[:, lifted], self.forces[:, :, lifted] = np.nan, np.nan
+        converged = np.where(self.regime == LIFT_OFF, True, self.residual <= limit)
+        forces = Resultants(*self.forces.transpose(0, 2, 1))
+        return Equilibrium(self.regime, converged, self.residual, self.jamming, self.shift, self.normal.T, forces)
 
 
-def _solve_rolling(loads, law, rows, regime, residual, jamming, shift, normal, forces) -> np.ndarray:
-    """Fills the rolling rows; returns those whose torque cannot be transmitted."""
-    friction = np.where(loads.friction[rows] > 0, loads.friction[rows], 1e-12)
-    full = np.ones_like(loads.friction)
-    full[rows] = friction
-    rolled = replace(loads, friction=full)
-    roller = Roller(rolled, law, rows)
-    whole = roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP)
-    low, high, beyond, unsure = _transmissible(rolled, law, roller, *whole)
+def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
+    """Solve for the normal forces, the slip and the friction resultants of n rollers.
+
+    Parameters
+    ----------
+    loads : applied loads, friction and geometry, arrays (n,)
+    law : contact law; with `fine=False` it may be cheap and rough
+
+    Returns
+    -------
+    Equilibrium
+
+    Notes
+    -----
+    `FULL_SLIP`: even complete slip in the rolling direction cannot balance the motor force. Complete slip is
+    r_Delta0 = -r_A when driving (the roller spins without travel) and r_Delta0 -> inf when braking (the roller is
+    locked). `LIFT_OFF`: a contact would carry no more than 1e-8 of |F_rad| + |F_ax|, or pull.
+    ASSUME: without friction the slip is that of the limit mu -> 0 if F_Motor = 0, and every motor force causes full
+    slip.
+    """
+    loads = replace(loads, friction=np.where(loads.friction < LEAST_FRICTION, 0.0, loads.friction))
+    answer = _Answer.of(loads.radial_force.size)
+    rows = np.flatnonzero(np.isfinite(loads.shape.lateral))
+    slides = rows[(loads.friction[rows] == 0) & (loads.motor_force[rows] != 0)]
+    rolls = np.setdiff1d(rows, slides)
+    if rolls.size:
+        slides = np.concatenate([slides, _solve_rolling(loads, law, rolls, answer)])
+    if slides.size:
+        _solve_full_slip(loads, law, slides, answer)
+    return answer.equilibrium(loads.converged)
+
+
+def _solve_rolling(loads: Loads, law: ContactLaw, rows: np.ndarray, answer: _Answer) -> np.ndarray:
+    """Fill the rolling rows of `answer`; return the rows whose friction cannot transmit the drive torque."""
+    friction = np.ones_like(loads.friction)
+    friction[rows] = np.where(loads.friction[rows] > 0, loads.friction[rows], LIMIT_FRICTION)
+    eased = replace(loads, friction=friction)
+    roller = Roller(eased, law, rows)
+    whole = Bounds(roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP))
+    bounds, beyond, unsure = _transmissible(roller, whole)
     go = np.flatnonzero(~beyond)
     if go.size == 0:
         return rows
-    k, low, high = rows[go], low[go], high[go]
-    whole = whole[0][go], whole[1][go]
-    found, slides = _balance(rolled, law, k, low, high, whole, unsure[go])
+    roller, bounds = Roller(eased, law, rows[go]), bounds.take(go)
+    found, slides = _balance(roller, bounds, whole.take(go), unsure[go])
     beyond[go] = slides
-    roller = Roller(rolled, law, k)
-    lift = _settle_branch(rolled, law, roller, found, low, high, slides)
-    best, w, n, f = found.best, found.w, found.normal, found.forces
-    # without a solution, what holds without friction decides
-    solved = best <= (SOLVED_FALLING if loads.falling else SOLVED)
-    lift |= ~solved & ~slides & np.any(roller.normal_forces(np.zeros((2, go.size))) <= 0, axis=0)
-    regime[k] = np.where(lift, LIFT_OFF, np.where(solved, ROLLING, FAILED))
-    jamming[k] = roller.grips(n, f) & (loads.friction[k] > 0) & ~slides
-    up = np.flatnonzero(lift & (loads.friction[k] > 0))
-    if up.size:
-        jamming[k[up]] = self_locking(rolled, law, k[up], low[up], high[up])
-    residual[k] = np.fmax(best, digits_of_forces(roller, w, n, f, best))
-    shift[k], normal[:, k] = roller.shift(w), n
-    forces[:, :, k] = np.where(loads.friction[k] > 0, f, 0.0)
+    lift = _settle_branch(roller, found, bounds, slides)
+    _record(answer, roller, found, bounds, lift=lift, slides=slides, rubs=loads.friction[rows[go]] > 0)
     return rows[beyond]
 
 
-def _transmissible(rolled, law, roller, w_low, w_high):
-    """Bounds of the slip (m,), whose torque no slip can transmit (m,), and for which the rough law cannot tell (m,)."""
-    if rolled.falling:
-        low, high, beyond, unsure = first_balance(roller, w_low, w_high)
-        return low, high, beyond & ~unsure, unsure
-    # locked, the friction along the track is complete and there is no other, as in full slip
-    complete = roller.friction * np.sum(roller.normal_forces(np.zeros((2, roller.rows.size))), axis=0)
+def _record(answer: _Answer, roller: Roller, found: Solution, bounds: Bounds, *, lift, slides, rubs) -> None:
+    """Write regime, forces and residual of rolling candidates; `rubs` marks rollers with friction, (m,)."""
+    rows = roller.rows
+    solved = found.residual <= (SOLVED_FALLING if roller.loads.falling else SOLVED)
+    # a roller without a solution has lifted off if it does so without friction
+    lift |= ~solved & ~slides & np.any(roller.without_friction() <= 0, axis=0)
+    answer.regime[rows] = np.where(lift, LIFT_OFF, np.where(solved, ROLLING, FAILED))
+    answer.jamming[rows] = roller.grips(found.normal, found.forces) & rubs & ~slides
+    up = np.flatnonzero(lift & rubs)
+    if up.size:
+        answer.jamming[rows[up]] = self_locking(Roller(roller.loads, roller.law, rows[up]), bounds.take(up))
+    answer.residual[rows] = np.fmax(found.residual, digits_of_forces(roller, found))
+    answer.shift[rows], answer.normal[:, rows] = roller.shift(found.w), found.normal
+    answer.forces[:, :, rows] = np.where(rubs, found.forces, 0.0)
+
+
+def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, np.ndarray]:
+    """Return bounds of the slip, where no slip transmits the torque (m,), and where the coarse law cannot decide (m,).
+
+    `whole` is the range of w from complete slip when driving to complete slip when braking.
+    """
+    if roller.loads.falling:
+        bounds, beyond, unsure = first_balance(roller, whole)
+        return bounds, beyond & ~unsure, unsure
+    # a locked roller has the complete friction along the track and no other, as in full slip
+    complete = roller.friction * np.sum(roller.without_friction(), axis=0)
     beyond = roller.motor_force > complete
     drives = np.flatnonzero(roller.motor_force < 0)
-    spins = Roller(rolled, law, roller.rows[drives])
-    torque = spins.torque(_forces_at(spins, w_low[drives]))
-    # a law without an answer for this patch leaves what friction can give at most
+    spins = Roller(roller.loads, roller.law, roller.rows[drives])
+    torque = spins.torque(_forces_at(spins, whole.low[drives]))
+    # where the law gives no answer for this patch, the complete friction decides
     beyond[drives] = np.where(np.isnan(torque), -spins.motor_force > complete[drives], torque < 0)
-    return w_low, w_high, beyond, np.zeros(beyond.size, bool)
+    return whole, beyond, np.zeros(beyond.size, bool)
 
 
-def _balance(loads, law, rows, low, high, whole, unsure) -> tuple[_Found, np.ndarray]:
-    """Roots between `low` and `high`, and which rollers turn out to transmit too little (m,).
+def _balance(roller: Roller, bounds: Bounds, whole: Bounds, unsure: np.ndarray) -> tuple[Solution, np.ndarray]:
+    """Find the roots within `bounds`; return them, and which rollers turn out to transmit too little, (m,).
 
-    Those missed at first are searched with the fine law; where friction falls, over the `whole` range, and `low` and
-    `high` are put where that search ended.
+    Roots that the coarse law misses are searched again with the fine law. Where friction falls with the slip speed,
+    this search covers the `whole` range, and `bounds` are overwritten by the bounds that it ends with.
     """
-    roller = Roller(loads, law, rows)
-    w, n = bracketed(roller, low.copy(), high.copy(), fine=False, sweeps=25, tolerance=1e-3)
-    found = _Found(*newton_polish(roller, w, n, low, high, settled(roller)))
+    loads, law, rows = roller.loads, roller.law, roller.rows
+    w, n = bracketed(roller, bounds.copy(), fine=False, sweeps=25, tolerance=1e-3)
+    found = newton_polish(roller, w, n, bounds, settled(roller))
     slides = np.zeros(rows.size, bool)
-    bad = np.flatnonzero(~(found.best <= loads.converged) | unsure)
+    bad = np.flatnonzero(~(found.residual <= loads.converged) | unsure)
     if bad.size and loads.falling:
-        *again, low[bad], high[bad], none = balance_again(loads, law, rows[bad], *(v[bad] for v in whole))
-        found.best[bad[unsure[bad] | none]] = np.inf
+        again, ends, none = balance_again(Roller(loads, law, rows[bad]), whole.take(bad))
+        bounds.low[bad], bounds.high[bad] = ends
+        found.residual[bad[unsure[bad] | none]] = np.inf
         found.put_better(bad, again, loads.converged)
         slides[bad[none]] = True
-    elif bad.size:  # slow and sure
-        roller = Roller(loads, law, rows[bad])
-        w, n = bracketed(roller, low[bad].copy(), high[bad].copy(), fine=True, sweeps=80, tolerance=1e-15)
-        found.put(bad, newton_polish(roller, w, n, low[bad], high[bad], settled(roller)))
+    elif bad.size:  # slow, but it finds every root
+        part, ends = Roller(loads, law, rows[bad]), bounds.take(bad)
+        w, n = bracketed(part, ends.copy(), fine=True, sweeps=80, tolerance=1e-15)
+        found.put(bad, newton_polish(part, w, n, ends, settled(part)))
     return found, slides
 
 
-def _settle_branch(loads, law, roller, found: _Found, low, high, slides) -> np.ndarray:
-    """Near self-locking puts the branch that loading reaches in place of what failed; True where it lifts off (m,)."""
+def _settle_branch(roller: Roller, found: Solution, bounds: Bounds, slides: np.ndarray) -> np.ndarray:
+    """Replace failed solutions near self-locking by the branch that loading reaches; return True for lift-off, (m,)."""
+    loads = roller.loads
     lift = roller.lifts(found.normal) & ~slides
     wedged = roller.wedged(found.normal, found.forces)
-    bad = np.flatnonzero(~((found.best <= loads.converged) & wedged) & ~lift & ~slides)
+    bad = np.flatnonzero(~((found.residual <= loads.converged) & wedged) & ~lift & ~slides)
     if loads.falling:
-        # far from self-locking there is one branch only; and what lies within a jump of the forces lies on it
+        # Far from self-locking there is one branch only. A residual inside the jump of a falling friction law counts
+        # as solved.
         near = roller.friction >= 0.5 * np.tan(loads.contact_angle[roller.rows])
-        bad = bad[near[bad] & ~((found.best[bad] <= SOLVED_FALLING) & wedged[bad])]
+        bad = bad[near[bad] & ~((found.residual[bad] <= SOLVED_FALLING) & wedged[bad])]
     if bad.size:
-        *again, lift[bad] = follow_friction(loads, law, roller.rows[bad], low[bad], high[bad])
+        again, lift[bad] = follow_friction(Roller(loads, roller.law, roller.rows[bad]), bounds.take(bad))
+        take = np.ones(bad.size, bool)
         if loads.falling:
-            best = np.where(found.best[bad] > loads.converged, found.best[bad], np.inf)
-            take = ~(again[0] > best)
-            found.put(bad[take], [v[..., take] for v in again])
-        else:
-            found.put(bad, again)
+            best = found.residual[bad]
+            take = ~(again.residual > np.where(best > loads.converged, best, np.inf))
+        found.put(bad[take], again.take(take))
     return lift
 
 
-def _forces_at(roller: Roller, w) -> np.ndarray:
-    """Contact forces (3, 2, m) at a given slip, the normal forces having followed."""
-    normal = roller.floored(roller.normal_forces(np.zeros((2, w.size))))
+def _forces_at(roller: Roller, w: np.ndarray) -> np.ndarray:
+    """Return the contact forces (3, 2, m) at a given slip; the normal forces follow the friction in three steps."""
+    normal = roller.floored(roller.without_friction())
     for _ in range(3):
         f = roller.contact(roller.shift(w), normal, True)
         normal = roller.floored(roller.normal_forces(f[0] / normal))
     return roller.contact(roller.shift(w), normal, True)
 
 
-def _solve_full_slip(loads, law, rows, regime, residual, shift, normal, forces) -> None:
-    # ASSUME: in complete slip the speed is beyond what the friction law tells of
+def _solve_full_slip(loads: Loads, law: ContactLaw, rows: np.ndarray, answer: _Answer) -> None:
+    """Fill the rows of `answer` that slip completely along the track.
+
+    ASSUME: the slip speed is beyond the range of the friction law, so that friction has its value at high speed.
+    """
     loads = replace(loads, friction=loads.friction * loads.at_high_speed)
     roller = Roller(loads, law, rows)
-    n = roller.normal_forces(np.zeros((2, rows.size)))
-    lift = roller.lifts(n)
-    regime[rows] = np.where(lift, LIFT_OFF, FULL_SLIP)
-    direction = -np.sign(loads.motor_force[rows])
+    n = roller.without_friction()
+    answer.regime[rows] = np.where(roller.lifts(n), LIFT_OFF, FULL_SLIP)
+    direction = -np.sign(roller.motor_force)
     for i in (0, 1):
-        s = roller.shape.at(np.maximum(n[i], 0.0))
-        r = tractions_full_slip(s, roller.friction, direction)
-        forces[:, i, rows] = np.stack([r.lateral_force, r.driving_force, r.spin_moment])
-    normal[:, rows] = n
-    residual[rows] = np.max(np.abs(roller.residuals(n, forces[:, :, rows])[:2]), axis=0) / roller.load
-    shift[rows] = np.nan
+        ellipse = roller.shape.at(np.maximum(n[i], 0.0))
+        r = tractions_full_slip(ellipse, roller.friction, direction)
+        answer.forces[:, i, rows] = np.stack([r.lateral_force, r.driving_force, r.spin_moment])
+    answer.normal[:, rows] = n
+    unbalanced = roller.residuals(n, answer.forces[:, :, rows])[:2]
+    answer.residual[rows] = np.max(np.abs(unbalanced), axis=0) / roller.load
+    answer.shift[rows] = np.nan

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.point_files import files_beside
+from trackroller.roller.point_files import files_beside
 from trackroller.damage.fatigue import PROBABILITIES
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text

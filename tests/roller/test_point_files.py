@@ -6,7 +6,7 @@ import pytest
 from test_cli import trackroller
 
 import trackroller as tr
-from trackroller.contact.point_files import files_beside, read_points
+from trackroller.roller.point_files import files_beside, read_points
 
 ROWS = [[0.25 * k, (36.0 - (0.25 * k) ** 2) ** 0.5] for k in range(-18, 19)]
 

@@ -1,4 +1,4 @@
-"""Points of a cross-section from a text file beside the case or study that names it."""
+"""Read the points of a cross-section from a text file beside the case or study that names the file."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from typing import Any
 
 from trackroller.errors import InputError
 
-HEADINGS = 5  # lines before the first point that need not be numbers
+HEADINGS = 5  # largest number of heading lines before the first point
 _COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")  # a number with a decimal comma
 _beside: ContextVar[Path | None] = ContextVar("beside", default=None)
 
 
 @contextmanager
 def files_beside(path: Path | str | None) -> Iterator[None]:
-    """While a case or study file is read: files that it names are looked for in its folder first."""
+    """Look for files in the folder of the case or study file `path` first, while that file is read."""
     token = _beside.set(None if path is None else Path(path).parent)
     try:
         yield
@@ -27,11 +27,25 @@ def files_beside(path: Path | str | None) -> Iterator[None]:
 
 
 def read_points(name: Any, field: str) -> list[list[float]]:
-    """Rows of two numbers from a text file (comma, semicolon, tab or blanks), lines of headings allowed.
+    """Read rows of two numbers from a text file.
 
-    Decimal commas are understood where something else parts the columns. The file lies beside the case or study file
-    that names it or below the working directory: absolute paths and '..' are refused, so that a study file from
-    somebody else reads nothing of yours.
+    Columns are separated by commas, semicolons, tabs or blanks; heading lines are allowed. Decimal commas are
+    understood where another character separates the columns. The file lies beside the case or study file that names it,
+    or below the working directory. Absolute paths and '..' are refused, so that a study file from somebody else cannot
+    read private files.
+
+    Parameters
+    ----------
+    name : relative path of the file
+    field : `guide_profile.file` or `roller_profile.file`, for error messages
+
+    Returns
+    -------
+    list of [x, z] [mm]
+
+    Raises
+    ------
+    InputError : a path that is not allowed, no such file, or a line without two numbers
     """
     path = _found(name, field)
     rows: list[list[float]] = []
@@ -62,6 +76,7 @@ def read_points(name: Any, field: str) -> list[list[float]]:
 
 
 def _found(name: Any, field: str) -> Path:
+    """Return the path of an existing file in one of the allowed folders."""
     folders = [folder for folder in (_beside.get(), Path.cwd()) if folder is not None]
     where = " or ".join(dict.fromkeys(f"below {folder.resolve()}" for folder in folders))
     remedy = f"Put the file {where} and give its path from there."
@@ -76,7 +91,7 @@ def _found(name: Any, field: str) -> Path:
 
 
 def _cells(line: str) -> list[str]:
-    """Columns of a line; 1,5;2,5 and blanks or tabs in place of the semicolon have decimal commas."""
+    """Return the columns of a line, decimal commas replaced where semicolons, tabs or blanks separate the columns."""
     columns = [cell.strip() for cell in line.split(";")] if ";" in line else line.split()
     if len(columns) > 1 and (";" in line or all(_COMMA.fullmatch(cell) for cell in columns[:2])):
         return [cell.replace(",", ".") if _COMMA.fullmatch(cell) else cell for cell in columns]
