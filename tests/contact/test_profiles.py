@@ -149,7 +149,7 @@ def test_edges_cut_and_round_the_material():
         ({"arc": -7, "frame": "section"}, "only with points"),
         ({"arc": -7, "edge": {"iner": 1}}, "inner"),
         ({"arc": -7, "edge": {"inner": -1}}, "> 0"),
-        ({"arc": -7, "edge": {"inner": 1}, "width": 9}, "one of both"),
+        ({"arc": -7, "edge": {"inner": 1}, "width": 9}, "one of the two"),
         ({"arcs": [{"radius": -7, "to": 1}]}, "to"),
         ({"arcs": [{"radius": -7, "to": 1}, {"radius": 3, "to": 0.5}, {"radius": 2}]}, "beyond"),
         ({"points": [[0, 0], [1, 1]]}, "rows"),
