@@ -1,15 +1,48 @@
-"""A folder with the workflow in it, as a clone has it."""
+"""A folder with a configuration of its own, and Snakemake started there with the workflow where it lies."""
 
-import shutil
+from __future__ import annotations
+
+import subprocess
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+SNAKEMAKE = str(Path(sys.executable).parent / "snakemake")
+STUDY = """
+name: tiny
+description: a small study
+factors:
+  axial_force: {{linspace: [0, 60, {levels}]}}
+  friction_coefficient: {{values: [0.1, 0.2]}}
+outputs: [{outputs}]
+chunk_size: {size}
+"""
 
 
-def lay_workflow(folder: Path) -> Path:
-    """Copies Snakefile, rules and profiles to `folder`, with a configuration that names tiny.yaml; returns it."""
-    for name in ("workflow", "profiles", "config"):
-        shutil.copytree(ROOT / name, folder / name)
-    shutil.copy(ROOT / "Snakefile", folder)
+def lay_study(folder: Path, levels: int = 6, outputs: str = "forces", size: int = 4) -> Path:
+    """Write `tiny.yaml` and a configuration that names it into a folder, and return the folder."""
+    (folder / "tiny.yaml").write_text(STUDY.format(levels=levels, outputs=outputs, size=size))
+    (folder / "config").mkdir(exist_ok=True)
     (folder / "config" / "config.yaml").write_text("study: tiny.yaml\nresults: results\n")
     return folder
+
+
+def command(*words: str, snakefile: Path = ROOT / "Snakefile") -> list[str]:
+    """Return the words that start Snakemake on two cores, and name each rule that it runs."""
+    return [SNAKEMAKE, "-s", str(snakefile), "--quiet", "host", "--cores", "2", "--nocolor", *words]
+
+
+def snakemake(folder: Path, *words: str, code: int = 0, snakefile: Path = ROOT / "Snakefile") -> str:
+    """Run Snakemake in a folder, require an exit code, and return what it printed."""
+    words = tuple(command(*words, snakefile=snakefile))
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=240)
+    told = done.stdout + done.stderr
+    assert done.returncode == code, told
+    return told
+
+
+def started(told: str) -> list[str]:
+    """Return the names of the rules that were run, sorted."""
+    return sorted(
+        line.split("rule ")[1].rstrip(":") for line in told.splitlines() if line.startswith(("rule ", "localrule "))
+    )

@@ -121,7 +121,7 @@ def test_results_carry_their_expected_error():
 
 
 def test_tolerances_hold_on_a_fresh_sample():
-    """The small sister of validation/benchmarks/tolerance.py: at most one in fifty cases beyond, for forces and peaks."""
+    """At most one case in fifty exceeds its tolerance, for forces and peaks; benchmarks/tolerance.py has more."""
     cases = sample(40, seed=4711)
     reference, _ = reference_solution(cases, "sliding", OUTPUTS)
     for tolerance in (2e-2, 3e-3):

@@ -5,57 +5,24 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 import time
-from pathlib import Path
 
 import pytest
 import xarray as xr
-from workflow_place import lay_workflow
-
-STUDY = """
-name: tiny
-description: a small study
-factors:
-  axial_force: {{linspace: [0, 60, {levels}]}}
-  friction_coefficient: {{values: [0.1, 0.2]}}
-outputs: [{outputs}]
-chunk_size: {size}
-"""
+from workflow_place import ROOT, command, lay_study, snakemake, started
 
 
 @pytest.fixture
 def place(tmp_path):
-    """A folder with the workflow in it, as a clone has it."""
-    lay_workflow(tmp_path)
-    return tmp_path
-
-
-def write_study(place, levels=6, outputs="forces", size=4):
-    (place / "tiny.yaml").write_text(STUDY.format(levels=levels, outputs=outputs, size=size))
-
-
-def command(*words):
-    return [str(Path(sys.executable).parent / "snakemake"), "--cores", "2", "--nocolor", *words]
-
-
-def snakemake(place, *words, code=0):
-    done = subprocess.run(command(*words), cwd=place, capture_output=True, text=True, timeout=240)
-    told = done.stdout + done.stderr
-    assert done.returncode == code, told
-    return told
-
-
-def started(told):
-    """Names of the rules that were run."""
-    return sorted(
-        line.split("rule ")[1].rstrip(":") for line in told.splitlines() if line.startswith(("rule ", "localrule "))
-    )
+    """A folder with a study; the workflow itself stays where it is."""
+    return lay_study(tmp_path)
 
 
 def test_study_to_report_then_nothing_and_a_changed_study_only_what_depends_on_it(place):
-    write_study(place)
-    assert started(snakemake(place)).count("solve") == 3
+    told = snakemake(place)
+    assert started(told).count("solve") == 3
+    assert "12 of 12 cases solved (100 %)" in told
+    assert "Report: results/tiny/report.html, made in" in told
     out = place / "results" / "tiny"
     for name in ("design.nc", "study.nc", "sensitivity.nc", "report.html"):
         assert (out / name).is_file()
@@ -65,7 +32,7 @@ def test_study_to_report_then_nothing_and_a_changed_study_only_what_depends_on_i
     (place / "tiny.yaml").write_text((place / "tiny.yaml").read_text().replace("a small study", "other words"))
     again = started(snakemake(place, "-n"))
     assert "solve" not in again and "gather" in again and "report" in again
-    write_study(place, levels=11)  # keeps 0, 12, ... 60 and adds the levels between
+    lay_study(place, levels=11)  # keeps 0, 12, ... 60 and adds the levels between
     assert started(snakemake(place, "results/tiny/study.nc")).count("solve") == 3, "10 new cases, 3 chunks"
     with xr.open_dataset(out / "study.nc") as ds:
         assert ds.sizes["axial_force"] == 11 and int(ds["converged"].sum()) == 22
@@ -76,16 +43,17 @@ def test_study_to_report_then_nothing_and_a_changed_study_only_what_depends_on_i
     [
         (["--config", "stduy=x.yaml"], "study"),
         (["--config", "study=nowhere.yaml"], "nowhere.yaml"),
+        (["--config", "study=[1]"], "study"),
+        (["--config", "results=3"], "results"),
     ],
 )
 def test_wrong_configuration_is_told_without_a_traceback(place, words, named):
-    write_study(place)
     told = snakemake(place, "-n", *words, code=1)
     assert named in told and "Traceback" not in told
 
 
 def test_killed_workflow_goes_on_without_unlocking_and_solves_no_finished_chunk_again(place):
-    write_study(place, levels=200, outputs="forces, peak_stress", size=60)
+    lay_study(place, levels=200, outputs="forces, peak_stress", size=60)
     target = "results/tiny/study.nc"
     process = subprocess.Popen(
         command(target), cwd=place, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
@@ -106,7 +74,66 @@ def test_killed_workflow_goes_on_without_unlocking_and_solves_no_finished_chunk_
         assert ds.sizes["axial_force"] == 200 and int(ds["regime"].max()) < 3
 
 
+def test_an_empty_folder_gets_the_default_study(tmp_path):
+    told = snakemake(tmp_path, "-n")
+    assert {"design", "solve", "gather", "sensitivity", "figures", "report"} == set(started(told)) - {"all", "study"}
+    assert (tmp_path / "results" / "default" / "plan.json").is_file()
+    assert "loads" in snakemake(tmp_path, "-n", "--config", "study=config/studies/loads.yaml")
+
+
+FOREIGN = """
+configfile: "config/config.yaml"
+
+module roller:
+    snakefile: "{root}/{snakefile}"
+    {config}
+
+use rule * from roller as roller_*
+
+rule mine:
+    default_target: True
+    input: "results/tiny/study.nc"
+    output: "mine.txt"
+    shell: "echo {{config[samples]}} > {{output}}"
+"""
+
+
+@pytest.mark.parametrize(
+    ("snakefile", "config", "own", "words"),
+    [
+        ("Snakefile", "", "samples: 3\n", ["--config", "study=tiny.yaml"]),
+        ("workflow/Snakefile", 'config: config["roller"]', "samples: 3\nroller: {study: tiny.yaml}\n", []),
+    ],
+)
+def test_another_workflow_imports_this_one(place, snakefile, config, own, words):
+    (place / "config" / "config.yaml").write_text(own)
+    (place / "Snakefile").write_text(FOREIGN.format(root=ROOT, snakefile=snakefile, config=config))
+    told = started(snakemake(place, *words, snakefile=place / "Snakefile"))
+    assert told == ["mine", "roller_design", "roller_gather"] + 3 * ["roller_solve"]
+    assert (place / "mine.txt").read_text() == "3\n"
+    with xr.open_dataset(place / "results" / "tiny" / "study.nc") as ds:
+        assert int(ds["converged"].sum()) == 12
+
+
+def test_a_wrong_key_for_an_imported_workflow_is_refused(place):
+    (place / "config" / "config.yaml").write_text("samples: 3\nroller: {stduy: tiny.yaml}\n")
+    (place / "Snakefile").write_text(
+        FOREIGN.format(root=ROOT, snakefile="Snakefile", config='config: config["roller"]')
+    )
+    assert "stduy" in snakemake(place, "-n", code=1, snakefile=place / "Snakefile")
+
+
 @pytest.mark.parametrize("target", [(), ("contact_models",)])
 def test_the_comparison_of_contact_models_is_a_study_like_any_other(place, target):
-    told = snakemake(place, "-n", *target, "--config", "study=validation/config/contact_models.yaml")
-    assert started(told) == ["contact_models"] if target else {"figures", "report"} <= set(started(told))
+    if target:
+        told = snakemake(place, "-n", *target, snakefile=ROOT / "validation" / "Snakefile")
+        assert started(told) == ["contact_models"]
+    else:
+        study = ROOT / "validation" / "config" / "contact_models.yaml"
+        assert {"figures", "report"} <= set(started(snakemake(place, "-n", "--config", f"study={study}")))
+
+
+def test_a_users_run_holds_no_rule_of_the_validation(place):
+    rules = set(snakemake(place, "--list-rules").split())
+    assert not rules & {"extremes", "tradeoff", "paper", "contact_models", "peers"}
+    assert {"design", "solve", "gather", "sensitivity", "figures", "report"} <= rules

@@ -1,62 +1,88 @@
-"""What the Snakefile and its scripts call."""
+"""Functions that the Snakefile and its scripts call."""
 
 from __future__ import annotations
 
 import contextlib
+import json
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.report.build import analyse_study, draw_study, report_study
+from trackroller.materials.file import find_user_file
 from trackroller.study.config import Study, load_study
-from trackroller.study.files import WorkError
+from trackroller.study.design.build import table_path
+from trackroller.study.files import StudyFolder, WorkError
 from trackroller.study.plan import Plan, read_plan, study_folder, working_plan
 
-__all__ = [
-    "analyse_study",
-    "draw_study",
-    "log_to",
-    "report_study",
-    "sources",
-    "study_inputs",
-    "workflow_plan",
-    "workflow_study",
-]
 CONFIG_KEYS = ("study", "results")
-log = logging.getLogger("trackroller")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
 
 
-def workflow_study(config: Mapping[str, Any]) -> Study:
-    """The study that the workflow's configuration names; raises `InputError` for a wrong configuration."""
-    for key in config:
-        if key not in CONFIG_KEYS:
-            raise unknown_name("--config key", str(key), CONFIG_KEYS)
-    if not isinstance(config.get("study"), str):
-        raise InputError(
-            "study",
-            config.get("study"),
-            "the path of a study file",
-            "Write it in config/config.yaml or give --config study=config/studies/NAME.yaml.",
-        )
-    return load_study(config["study"])
+def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = True) -> dict[str, str]:
+    """Return the paths of the study file and of the results folder that a configuration names.
 
+    Parameters
+    ----------
+    config : mapping
+        The configuration that Snakemake read, with the keys `study` and `results`.
+    source : pathlib.Path
+        Folder of the workflow. A study file that does not exist in the working directory is looked for here.
+    strict : bool
+        Refuse unknown keys. An importing workflow that gives no `config:` shares its own keys, so they are ignored.
 
-def workflow_plan(config: Mapping[str, Any], main: bool, tell: Any = None) -> Plan:
-    """Return the plan of the workflow's study.
-
-    The main process plans, and keeps other processes from changing the plan until it ends. Its jobs read the plan.
+    Returns
+    -------
+    dict
+        The keys `study` and `results`, both text.
 
     Raises
     ------
     InputError
-        If the configuration or the study is wrong.
+        For an unknown key, or a value that is no path.
+    """
+    for key in config if strict else ():
+        if key not in CONFIG_KEYS:
+            raise unknown_name("--config key", str(key), CONFIG_KEYS)
+    study, results = config.get("study"), config.get("results", "results")
+    advice = "Write it in config/config.yaml or give --config study=config/studies/NAME.yaml."
+    if not isinstance(study, str):
+        raise InputError("study", study, "the path of a study file", advice)
+    if not isinstance(results, str) or not results:
+        raise InputError("results", results, "the path of a folder", advice.replace("study=", "results=", 1))
+    if not Path(study).exists() and (source / study).is_file():
+        study = str(source / study)
+    return {"study": study, "results": results}
+
+
+def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], None] | None = None) -> Plan:
+    """Return the plan of the workflow's study.
+
+    The main process plans, and keeps other processes from changing the plan until it ends. Its jobs read the plan.
+
+    Parameters
+    ----------
+    config : mapping
+        What `workflow_config` returned.
+    main : bool
+        True in Snakemake's main process, False in its jobs.
+    tell : callable, optional
+        Receives one line for each event that the user should read.
+
+    Returns
+    -------
+    Plan
+        Chunks of the study and the folder of its results.
+
+    Raises
+    ------
+    InputError
+        If the study is wrong.
     WorkError
         If the study was edited after the main process had planned it.
     """
-    study, results = workflow_study(config), str(config.get("results", "results"))
+    study, results = load_study(config["study"]), config["results"]
     if main:
         return _held.enter_context(working_plan(study, results, tell=tell))
     plan = read_plan(study, study_folder(study.name, results))
@@ -69,10 +95,7 @@ def workflow_plan(config: Mapping[str, Any], main: bool, tell: Any = None) -> Pl
 
 
 def study_inputs(study: Study) -> list[str]:
-    """Files a study's cases depend on: study file, table, materials of the user."""
-    from trackroller.materials.file import find_user_file
-    from trackroller.study.design.build import table_path
-
+    """Return the files a study's cases depend on: study file, table of cases, and the user's materials."""
     found = [str(study.path)] if study.path is not None else []
     if study.config.table is not None:
         found.append(table_path(study))
@@ -80,24 +103,24 @@ def study_inputs(study: Study) -> list[str]:
     return found + ([str(user)] if user is not None else [])
 
 
-def sources(*parts: str) -> list[str]:
-    """Source files of parts of the package, so that results are redrawn when their code changes."""
-    root = Path(__file__).resolve().parents[1]
-    found: list[Path] = []
-    for part in parts:
-        path = (root.parent if part.startswith("validation") else root) / part
-        found += (
-            sorted(p for p in path.rglob("*") if p.suffix in (".py", ".html", ".css", ".j2"))
-            if path.is_dir()
-            else [path]
-            if path.is_file()
-            else []
-        )
-    return [str(p) for p in found]
+def progress(folder: StudyFolder) -> str:
+    """Return one line that says how many cases of a study are solved."""
+    plan = json.loads(folder.plan_file.read_text(encoding="utf-8"))
+    total = plan["distinct"]
+    done = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
+    return f"{folder.root.name}: {done:,} of {total:,} cases solved ({100 * done // max(total, 1)} %)"
+
+
+def finished(folder: StudyFolder, seconds: float) -> str:
+    """Return the last line of a run: where the report is and how long the run took."""
+    report = folder.root / "report.html"
+    minutes, rest = divmod(round(seconds), 60)
+    took = f"{minutes} min {rest} s" if minutes else f"{rest} s"
+    return f"Report: {report}, made in {took}" if report.is_file() else f"Done in {took}; there is no report yet."
 
 
 def log_to(path: str) -> None:
-    """Send this process's log lines to a rule's log file, and warnings with them."""
+    """Send the log lines and warnings of this process to a rule's log file."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s", force=True)
     logging.captureWarnings(True)

@@ -1,5 +1,6 @@
-"""Takes results/paper over into docs/paper.md: `python -m validation.adopt.paper [results/paper]`, after `snakemake paper`.
+"""Take results/paper over into docs/paper.md: `python -m validation.adopt.paper [results/paper]`.
 
+Run `snakemake -s validation/Snakefile --cores all paper` first.
 With `--check` it only compares the page with its data and ends with 1 if it is not up to date.
 """
 

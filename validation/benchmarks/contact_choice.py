@@ -2,8 +2,8 @@
 
     python -m validation.benchmarks.contact_choice sample --cases 800 --seed 1 --output designs.npz     0.1 s a case
     python -m validation.benchmarks.contact_choice sample --cases 500 --seed 2101 --exact standard --output exact.npz
-    python -m validation.benchmarks.contact_choice map exact.npz designs.npz    writes trackroller/data/contact_choice.npz
-    python -m validation.benchmarks.contact_choice check fresh.npz              its coverage on another sample, stored beside it
+    python -m validation.benchmarks.contact_choice map exact.npz designs.npz    writes the map
+    python -m validation.benchmarks.contact_choice check fresh.npz    its coverage on another sample, kept there
 
 A random sample of designs over friction, angles, radii, curves, loads, materials and drive, wider than what anybody
 builds, is solved with all three models. At `preview` the exact theory is the table that `auto` compares with, which

@@ -1,7 +1,7 @@
-"""What sparing saves: CPU time with every shortcut off over that with shortcuts on, scene by scene.
+"""Measure how much CPU time the shortcuts save, scene by scene: time without shortcuts over time with them.
 
-`python -m validation.benchmarks.shortcuts [--cases 400]` prints a table; both runs alternate in one process, the smaller of
-three times of each counts, and the largest relative difference of the numbers is told beside the saving.
+`python -m validation.benchmarks.shortcuts [--cases 400]` prints a table. Both runs alternate in one process, and the
+smallest of three times counts. The table also shows the largest relative difference of the numbers.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ PATCHES = ((0.05, 0.0), (0.15, 0.0), (0.15, 0.5), (0.5, 0.0), (0.5, 0.5))
 
 def compare(study_file: Path, out: Path) -> None:
     """Solve the study, then figures, words and report as of any study, with pictures of the patch, into `out`."""
-    from trackroller.cli.workflow import analyse_study, draw_study, report_study
+    from trackroller.report.build import analyse_study, draw_study, report_study
     from trackroller.roller.case import Case
     from trackroller.study.config import load_study
     from trackroller.study.run import run_study

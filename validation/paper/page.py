@@ -130,15 +130,15 @@ def verdict(found: dict[str, Any]) -> list[Block]:
         (
             "Grooves wider than the rolling curvature (k_x > k_y)",
             "does not hold",
-            f"the long axis is laid across: spin moments {_pair(spin, 0)} % too large in one random design, the peak of "
-            f"another {100 * (heavier - 1):.0f} % too low",
+            f"the long axis is laid across: spin moments {_pair(spin, 0)} % too large in one random design, the peak "
+            f"of another {100 * (heavier - 1):.0f} % too low",
             f"{life_factor(heavier, 1):.1f} times shorter",
         ),
         (
             "Lateral forces and moments of full sliding",
             "hold for large spin and little drive only",
             f"F_T {_pair(off, 0)} % off CONTACT in the driven case; see [contact-models.md](contact-models.md)",
-            f"{_longer(max(map(max, driven['kalker']['peak_stress'])), max(map(max, driven['sliding']['peak_stress'])))}",
+            _longer(*(max(map(max, driven[model]["peak_stress"])) for model in ("kalker", "sliding"))),
         ),
         (
             "Friction energy of full sliding",

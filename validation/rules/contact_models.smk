@@ -1,11 +1,11 @@
 # The contact models side by side: snakemake -s validation/Snakefile --cores all contact_models
-COMPARED = f"{config.get('results', 'results')}/contact_models"
+COMPARED = f"{RESULTS}/contact_models"
 
 
 rule contact_models:
     input:
-        study="validation/config/contact_models.yaml",
-        code=sources("study", "analysis", "report", "roller", "contact", "halfspace", "damage", "materials", "numerics", "parameters.py", "validation/contact_models"),
+        study=HERE / "config" / "contact_models.yaml",
+        code=digest_file(f"{COMPARED}/code", "validation.contact_models.product"),
     output:
         report=f"{COMPARED}/report.html",
         figures=directory(f"{COMPARED}/figures"),

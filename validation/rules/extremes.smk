@@ -1,5 +1,5 @@
 # A catalogue of edge scenes, run and drawn as a map: snakemake -s validation/Snakefile --cores all extremes
-EXTREMES = f"{config.get('results', 'results')}/extremes"
+EXTREMES = f"{RESULTS}/extremes"
 
 
 rule extremes:
@@ -10,13 +10,14 @@ rule extremes:
 
 rule extremes_run:
     input:
-        code=sources("roller", "contact", "halfspace", "damage", "materials", "numerics", "parameters.py", "validation/extremes"),
+        code=digest_file(f"{EXTREMES}/code", "validation.extremes.run"),
     output:
         f"{EXTREMES}/extremes.json",
     log:
         f"{EXTREMES}/logs/run.log",
     conda:
         "../../workflow/envs/trackroller.yaml"
+    threads: 4  # Snakemake takes fewer where there are fewer; solve() shares its rows among them
     script:
         "../scripts/extremes_run.py"
 
@@ -24,7 +25,11 @@ rule extremes_run:
 rule extremes_show:
     input:
         record=f"{EXTREMES}/extremes.json",
-        code=sources("report/figures/style.py", "validation/extremes", "report/pages.py"),
+        code=digest_file(
+            f"{EXTREMES}/code",
+            "validation.extremes.page",
+            "validation.extremes.figures",
+        ),
     output:
         figures=directory(f"{EXTREMES}/figures"),
         page=f"{EXTREMES}/extremes.html",

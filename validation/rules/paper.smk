@@ -1,10 +1,10 @@
 # Every table and figure of the published example: snakemake -s validation/Snakefile --cores all paper
-PAPER = f"{config.get('results', 'results')}/paper"
+PAPER = f"{RESULTS}/paper"
 
 
 rule paper:
     input:
-        code=sources("roller", "contact", "halfspace", "damage", "materials", "numerics", "parameters.py", "report/figures", "validation/paper", "report/pages.py"),
+        code=digest_file(f"{PAPER}/code", "validation.paper.page"),
     output:
         data=f"{PAPER}/paper.json",
         figures=directory(f"{PAPER}/figures"),

@@ -1,8 +1,8 @@
 # Error against cost of stages and contact models: snakemake -s validation/Snakefile --cores all tradeoff
 from validation.tradeoff.parts import load_sizes
 
-TRADEOFF = f"{config.get('results', 'results')}/tradeoff"
-TRADEOFF_SIZES = "validation/validation/config/tradeoff.yaml"
+TRADEOFF = f"{RESULTS}/tradeoff"
+TRADEOFF_SIZES = HERE / "config" / "tradeoff.yaml"
 
 
 rule tradeoff:
@@ -14,7 +14,7 @@ rule tradeoff:
 rule tradeoff_part:
     input:
         sizes=TRADEOFF_SIZES,
-        code=sources("roller", "contact", "halfspace", "damage", "materials", "numerics", "parameters.py", "validation/tradeoff"),
+        code=digest_file(f"{TRADEOFF}/code", "validation.tradeoff.parts"),
     output:
         f"{TRADEOFF}/parts/{{part}}.nc",
     log:
@@ -48,7 +48,7 @@ rule tradeoff_gather:
 rule tradeoff_show:
     input:
         measured=f"{TRADEOFF}/tradeoff.nc",
-        code=sources("report/figures/style.py", "validation/tradeoff", "report/pages.py"),
+        code=digest_file(f"{TRADEOFF}/code", "validation.tradeoff.page"),
     output:
         summary=f"{TRADEOFF}/tradeoff.json",
         figures=directory(f"{TRADEOFF}/figures"),

@@ -1,8 +1,5 @@
 """Solve, draw and tell the comparison of the contact models."""
 
-import sys
-
-sys.path.insert(0, str(snakemake.scriptdir + "/../.."))
 from pathlib import Path
 
 from trackroller.cli.workflow import log_to

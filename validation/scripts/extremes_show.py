@@ -1,8 +1,5 @@
 """Draw the extremes and write their page."""
 
-import sys
-
-sys.path.insert(0, str(snakemake.scriptdir + "/../.."))
 from pathlib import Path
 
 from trackroller.cli.workflow import log_to

@@ -1,8 +1,5 @@
 """The published example computed anew: numbers, figures and page."""
 
-import sys
-
-sys.path.insert(0, str(snakemake.scriptdir + "/../.."))
 from pathlib import Path
 
 from trackroller.cli.workflow import log_to

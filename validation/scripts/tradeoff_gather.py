@@ -1,8 +1,5 @@
 """Gather the parts of the trade-off."""
 
-import sys
-
-sys.path.insert(0, str(snakemake.scriptdir + "/../.."))
 from trackroller.cli.workflow import log_to
 from validation.tradeoff.parts import write_gathered
 

@@ -1,8 +1,5 @@
 """Measure one part of the trade-off."""
 
-import sys
-
-sys.path.insert(0, str(snakemake.scriptdir + "/../.."))
 from trackroller.cli.workflow import log_to
 from validation.tradeoff.parts import write_part
 

@@ -1,9 +1,10 @@
+# What the results mean: indices, figures and one report to send.
 
 
 rule sensitivity:
     input:
         study=f"{RESULTS}/study.nc",
-        code=sources("damage", "numerics", "study", "analysis"),
+        code=digest_file(f"{RESULTS}/code", "trackroller.analysis.sensitivity"),
     output:
         f"{RESULTS}/sensitivity.nc",
     log:
@@ -18,7 +19,11 @@ rule figures:
     input:
         study=f"{RESULTS}/study.nc",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=sources("damage", "numerics", "study", "analysis", "report"),
+        code=digest_file(
+            f"{RESULTS}/code",
+            "trackroller.report.figures.study",
+            "trackroller.report.figures.sensitivity",
+        ),
     output:
         directory(f"{RESULTS}/figures"),
     log:
@@ -34,7 +39,7 @@ rule report:
         study=f"{RESULTS}/study.nc",
         figures=f"{RESULTS}/figures",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=sources("damage", "numerics", "study", "analysis", "report"),
+        code=digest_file(f"{RESULTS}/code", "trackroller.report.page"),
     output:
         f"{RESULTS}/report.html",
     log:

@@ -1,4 +1,5 @@
-# Write the design, solve the cases in chunks, gather the results into one file. Planning writes the case lists plan/*.npz.
+# Write the design, solve the cases in chunks, gather the results into one file. Planning writes the case lists
+# plan/*.npz.
 # The output of the rule solve is an empty mark: Snakemake deletes the outputs of a job that it repeats, and the solved
 # cases in chunks/ must survive that.
 localrules:
@@ -8,8 +9,11 @@ localrules:
 rule design:
     input:
         study_inputs(PLAN.study),
+        code=digest_file(f"{RESULTS}/code", "trackroller.study.design.build"),
     output:
         f"{RESULTS}/design.nc",
+    params:
+        config=CONFIG,
     log:
         f"{RESULTS}/logs/design.log",
     conda:
@@ -37,8 +41,11 @@ rule gather:
         study=study_inputs(PLAN.study),
         design=rules.design.output,
         chunks=expand(f"{RESULTS}/plan/{{chunk}}.solved", chunk=PLAN.chunks),
+        code=digest_file(f"{RESULTS}/code", "trackroller.study.gather"),
     output:
         f"{RESULTS}/study.nc",
+    params:
+        config=CONFIG,
     log:
         f"{RESULTS}/logs/gather.log",
     conda:

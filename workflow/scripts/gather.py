@@ -6,4 +6,4 @@ from trackroller.cli.workflow import log_to, workflow_plan
 from trackroller.study.gather import gather
 
 log_to(snakemake.log[0])
-gather(workflow_plan(snakemake.config, main=False), tell=logging.getLogger("trackroller").info)
+gather(workflow_plan(snakemake.params.config, main=False), tell=logging.getLogger("trackroller").info)

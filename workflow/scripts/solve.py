@@ -1,12 +1,15 @@
 """Solve a chunk of cases."""
 
 import logging
+import sys
 from pathlib import Path
 
-from trackroller.cli.workflow import log_to
+from trackroller.cli.workflow import log_to, progress
 from trackroller.study.files import StudyFolder
 from trackroller.study.solve import solve_chunk
 
 log_to(snakemake.log[0])
-summary = solve_chunk(StudyFolder(Path(snakemake.output[0]).parent.parent), snakemake.wildcards.chunk)
+folder = StudyFolder(Path(snakemake.output[0]).parent.parent)
+summary = solve_chunk(folder, snakemake.wildcards.chunk)
 logging.getLogger("trackroller").info(summary)
+print(progress(folder), file=sys.stderr)

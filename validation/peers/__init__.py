@@ -1,0 +1,1 @@
+"""Reference numbers of other programs beside those of this package."""
