@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
-from test_cli import trackroller
+from cli.test_cli import trackroller
 
 import trackroller as tr
 from trackroller.roller.case import to_table
@@ -38,6 +38,54 @@ def test_hints_name_what_is_known_to_fail():
     assert "steep_friction" in said({}, bits=STEEP, contact_model="kalker")
     assert "too slender" in said(SLENDER, contact_model="fastsim")
     assert "slender" not in said({}, contact_model="fastsim") + said(SLENDER, contact_model="kalker")
+
+
+def reasons_of(**options) -> list[str]:
+    """Reasons of cases on concave guides, whose contacts lie before and beyond the axis of the curve."""
+    radii = (-8.0, -7.0, -6.0, -5.5, -5.19, -5.0, -4.5)
+    told = [said({"axis_distance": 9.0, "guide_curve_radius": radius}, **options) for radius in radii]
+    return ["axis of the inner curve" in words for words in told]
+
+
+def test_the_axis_of_a_curve_is_named_only_where_the_contact_lies_beyond_it():
+    """r_Curve + r_C,G cos(alpha) changes its sign at r_Curve = -5.196 mm; a curve of -8 mm is not the reason."""
+    curve = {"slip_terms": "curve", "contact_model": "kalker"}
+    assert reasons_of(**curve) == [False, False, False, False, True, True, True]
+    assert not any(reasons_of(contact_model="kalker"))
+    assert "axis" not in said({}, **curve) and "axis" not in said({"guide_curve_radius": float("inf")}, **curve)
+    solved = tr.solve([{"axis_distance": 9.0, "guide_curve_radius": -8.0}], "forces", **curve)
+    assert solved.regime.values.tolist() == [0], "the row that is not blamed on the axis has a solution"
+
+
+def test_each_hint_needs_its_own_condition():
+    """A hint is given for the row, the contact model in use and the options whose condition holds, and no other."""
+    points = {"roller_profile": {"points": POINTS, "frame": "contact"}}
+    assert "smooth" not in said(points, normal="hertz")
+    assert "slender" not in said(SLENDER, contact_model="fastsim", normal="halfspace")
+    assert "slender" not in said(SLENDER, contact_model="sliding") + said(SLENDER, contact_model="kalker_table")
+    assert "steep" not in said(SLENDER, contact_model="fastsim", bits=STEEP << 1)
+    both = said(SLENDER, contact_model="fastsim", bits=STEEP)
+    assert "steep_friction" in both and "slender" in both
+    beyond = {"axis_distance": 9.0, "guide_curve_radius": -5.0}
+    only = said(beyond, contact_model="fastsim", slip_terms="curve", bits=STEEP)
+    assert "axis of the inner curve" in only and "steep" not in only
+
+
+def test_auto_is_judged_by_the_model_that_it_chose():
+    ds = xr.Dataset(
+        {
+            name: ("case", np.array(values))
+            for name, values in {
+                "regime": [3, 3],
+                "converged": [0, 0],
+                "residual": [1e-3, 1e-3],
+                "validity": [0, 0],
+                "contact_model_used": [1, 2],
+            }.items()
+        }
+    )
+    told = with_reasons(ds, to_table([tr.Case(**SLENDER)] * 2), Options(contact_model="auto"))["reason"].values
+    assert "slender" in told[0] and "slender" not in told[1]
 
 
 def test_a_row_that_misses_its_tolerance_has_a_reason_and_others_have_none():

@@ -117,10 +117,10 @@ def test_the_table_of_the_exact_theory_is_a_model_with_a_name():
 
 def test_where_the_table_does_not_serve_the_exact_theory_is_named():
     law = {"kind": "linear", "speed": 300.0, "lowest": 0.8}
-    mixed = tr.solve(
-        [tr.Case(), tr.Case(friction_law=law)], outputs="forces", contact_model="kalker_table", accuracy="preview"
-    )
-    assert mixed.contact_model_used.values.tolist() == [3, 2]
+    falling = tr.solve([tr.Case(), tr.Case(friction_law=law)], "forces", contact_model="kalker", accuracy="preview")
+    assert falling.contact_model_used.values.tolist() == [3, 2]
+    with pytest.raises(tr.InputError, match=r"^friction_law = .*kalker_table.*Take contact_model: kalker"):
+        tr.solve(tr.Case(friction_law=law), "forces", contact_model="kalker_table")
     assert used("kalker", accuracy="preview", slip_terms="profile")[1] == "kalker"
     assert used("kalker", accuracy="preview", slip_terms="curve")[1] == "kalker_table"
 

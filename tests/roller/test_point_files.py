@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from test_cli import trackroller
+from cli.test_cli import trackroller
 
 import trackroller as tr
 from trackroller.roller.point_files import files_beside, read_points

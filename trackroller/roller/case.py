@@ -1,30 +1,48 @@
-"""One roller in one situation (`Case`), and many of them as arrays (`CaseTable`)."""
+"""One roller in one situation (`Case`), and how cases of any form become arrays (`to_table`)."""
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
 from trackroller.contact import friction_laws, profiles
 from trackroller.errors import InputError, unknown_name
+from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.geometry import curvatures, rolling_radius
+from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.point_files import read_points
+from trackroller.roller.table import CaseTable, MaterialArrays
 
-if TYPE_CHECKING:
-    from trackroller.materials import Material, MaterialDatabase
+__all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "mapping_text", "to_table"]
 
 FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 
 
 def mapping_text(name: str, value: Any) -> str:
-    """Canonical JSON of an entry that is a mapping (or its JSON), '' for none; raises `InputError`."""
+    """Return the canonical JSON of a field that is a mapping.
+
+    Parameters
+    ----------
+    name : str
+        One of `MAPPING_FIELDS`.
+    value : mapping, str or None
+        The mapping, or its JSON text.
+
+    Returns
+    -------
+    str
+        JSON with sorted keys; "" for None.
+
+    Raises
+    ------
+    InputError
+        If the value is no mapping, or not one that the field allows.
+    """
     if value is None or (isinstance(value, str) and not value.strip()):
         return ""
     if isinstance(value, str):
@@ -52,33 +70,73 @@ def _number(name: str, value: Any) -> float:
         raise InputError(name, value, parameter.allowed()) from None
 
 
-class Default(float):
+class _Default(float):
     """The value of a number that was not given."""
 
 
 def _own_friction(law: Any) -> float:
-    """Friction at rest of a case that gives none: that of a table, else the default."""
-    if not law:
-        return PARAMETERS["friction_coefficient"].default
-    from trackroller.contact.friction_laws import at_rest
-
-    own = at_rest(law)
+    """Friction at rest of a case that gives none: the first value of a table, otherwise the default."""
+    own = friction_laws.at_rest(law) if law else None
     return PARAMETERS["friction_coefficient"].default if own is None else own
 
 
 @dataclass(frozen=True)
 class Case:
-    """One locating-bearing track roller on its guideway; the defaults are the paper's driven example.
+    """One locating-bearing track roller on its guideway.
 
-    Units and signs are those of `trackroller.parameters.PARAMETERS`. A material is a name of the database
-    or a mapping with its values. `friction_coefficient=None` takes the typical value of the material
-    pair ('upper' or 'lower' take the bounds); not given, it is 0.3, or that at rest of a `friction_law` given as a
-    table. `friction_law` lets friction depend on the slip speed (see
-    `trackroller.contact.friction_laws.canonical`), `guide_profile` and `roller_profile` are drawn or measured
-    cross-sections for `normal="halfspace"` (see `trackroller.contact.profiles.canonical`).
+    The defaults are the driven example of the publication. A plain mapping with the same keys is accepted wherever a
+    `Case` is.
 
-    Raises `InputError` for a value outside its range and for
-    surfaces that conform or interlock.
+    Parameters
+    ----------
+    axis_distance : float
+        A_T, distance of the roller's axis to the centre of the guide contour, > 0 [mm].
+    guide_profile_radius : float
+        r_C,G, radius of the convex guide contour, > 0 [mm].
+    roller_profile_radius : float
+        r_C,TR, radius of the roller's contour [mm]: < 0 for a concave groove, > 0 for a convex roller, inf if straight.
+    guide_curve_radius : float
+        r_Curve, curve of the track [mm]: > 0 convex towards the roller, < 0 concave, inf if straight.
+    contact_angle : float
+        alpha, inclination of the contact normals, between 0 and 90 [deg].
+    radial_force : float
+        F_rad < 0, which presses the roller on the guide [N].
+    axial_force : float
+        F_ax along +x_R [N].
+    motor_force : float
+        F_Motor [N]: < 0 driving, 0 free rolling, > 0 braking.
+    friction_coefficient : float, str or None
+        Coulomb coefficient of both contacts at rest, 0 to 2 [1]. None or "typical" takes the typical value of the pair
+        of materials from the friction database, "upper" and "lower" its bounds. If it is not given, it is 0.3, or the
+        first value of a `friction_law` given as a table.
+    velocity : float
+        v, mean travel speed, > 0 [m/min]. It matters to friction power, to life in hours and to friction laws.
+    guide_overrollings_per_hour : float or None
+        n_G, overrollings of a point of the guide, > 0 [1/h]. Without it, the guide's life in hours is NaN.
+    roller_material, guide_material : str, mapping or Material
+        Name in the material database, or the values of a material.
+    friction_law : mapping or None
+        Friction as a function of the slip speed; see `trackroller.contact.friction_laws.canonical`.
+    guide_profile, roller_profile : mapping or None
+        Drawn or measured cross-sections, for the option `normal="halfspace"`; see
+        `trackroller.contact.profiles.canonical`.
+
+    Raises
+    ------
+    InputError
+        If a value lies outside its range, or if the surfaces conform or interlock. The message names the field, its
+        value, what is allowed and what to do.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> case = tr.Case(motor_force=0, friction_coefficient=0.1, guide_curve_radius=float("inf"))
+    >>> case.contact_angle
+    30.0
+    >>> tr.Case(contact_angle=95)
+    Traceback (most recent call last):
+    trackroller.errors.InputError: contact_angle = 95 is not usable: contact angle [deg] must be a number, > 0 deg, \
+< 90 deg, finite
     """
 
     axis_distance: float = PARAMETERS["axis_distance"].default
@@ -89,7 +147,7 @@ class Case:
     radial_force: float = PARAMETERS["radial_force"].default
     axial_force: float = PARAMETERS["axial_force"].default
     motor_force: float = PARAMETERS["motor_force"].default
-    friction_coefficient: float | str | None = Default(PARAMETERS["friction_coefficient"].default)
+    friction_coefficient: float | str | None = _Default(PARAMETERS["friction_coefficient"].default)
     velocity: float = PARAMETERS["velocity"].default
     guide_overrollings_per_hour: float | None = None
     roller_material: Any = "1.7225-normalised"
@@ -100,7 +158,7 @@ class Case:
 
     def __post_init__(self) -> None:
         columns: dict[str, np.ndarray] = {}
-        if isinstance(self.friction_coefficient, Default):
+        if isinstance(self.friction_coefficient, _Default):
             object.__setattr__(self, "friction_coefficient", _own_friction(self.friction_law))
         for name, parameter in PARAMETERS.items():
             value = getattr(self, name)
@@ -115,7 +173,9 @@ class Case:
             object.__setattr__(self, name, None if math.isnan(number) else number)
             columns[name] = np.array([number])
         for name in MATERIAL_FIELDS:
-            _check_material_kind(name, getattr(self, name))
+            if not isinstance(value := getattr(self, name), (str, Mapping, Material)) or value == "":
+                allowed = "a material is a name of the database or a mapping with its values"
+                raise InputError(name, value, allowed, "`trackroller materials list` shows the names.")
         for name in MAPPING_FIELDS:
             text = mapping_text(name, getattr(self, name))
             object.__setattr__(self, name, json.loads(text) if text else None)
@@ -125,7 +185,13 @@ class Case:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Case:
-        """Case from a mapping with the same keys; unknown keys are refused with the nearest right one."""
+        """Return the case of a mapping with the same keys.
+
+        Raises
+        ------
+        InputError
+            For an unknown key, with the nearest right one, and for whatever `Case` refuses.
+        """
         if not isinstance(values, Mapping):
             raise InputError("case", values, "a case is a mapping of parameter names to values")
         for key in values:
@@ -134,130 +200,12 @@ class Case:
         return cls(**{str(k): v for k, v in values.items()})
 
     def as_dict(self) -> dict[str, Any]:
-        """The case as a plain mapping, one entry a field."""
-        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
-
-
-def _check_material_kind(name: str, value: Any) -> None:
-    from trackroller.materials import Material
-
-    if not isinstance(value, (str, Mapping, Material)) or value == "":
-        raise InputError(
-            name,
-            value,
-            "a material is a name of the database or a mapping with its values",
-            "`trackroller materials list` shows the names.",
-        )
-
-
-def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
-    """The first physical contradiction among the geometry of cases, or None.
-
-    Checks that the rolling radius is positive and that both relative curvatures are positive: else the
-    surfaces conform or interlock and there is no point contact.
-    """
-    get = {
-        name: np.atleast_1d(np.asarray(columns[name], dtype=float))
-        for name in (
-            "axis_distance",
-            "guide_profile_radius",
-            "roller_profile_radius",
-            "guide_curve_radius",
-            "contact_angle",
-        )
-    }
-    get = dict(zip(get, np.broadcast_arrays(*get.values()), strict=True))
-    alpha = np.deg2rad(get["contact_angle"])
-    radius = rolling_radius(get["axis_distance"], get["guide_profile_radius"], alpha)
-    bad = np.flatnonzero(~(radius > 0))
-    if bad.size:
-        i = bad[0]
-        limit = get["guide_profile_radius"][i] * np.cos(alpha[i])
-        return InputError(
-            "axis_distance",
-            float(get["axis_distance"][i]),
-            f"the rolling radius A_T - r_C,G cos(alpha) = {radius[i]:.6g} mm must be > 0",
-            f"Use an axis_distance above {limit:.6g} mm.",
-        )
-    k_x, k_y = curvatures(
-        get["roller_profile_radius"], get["guide_profile_radius"], get["guide_curve_radius"], radius, alpha
-    )
-    bad = np.flatnonzero(~(k_x > 0))
-    if bad.size:
-        i = bad[0]
-        groove = get["guide_profile_radius"][i]
-        return InputError(
-            "roller_profile_radius",
-            float(get["roller_profile_radius"][i]),
-            f"the surfaces conform or interlock: 1/r_C,TR + 1/r_C,G = {k_x[i]:.6g} 1/mm must be > 0",
-            f"Use a groove wider than the guide (roller_profile_radius below {-groove:.6g} mm)"
-            " or a convex roller (> 0).",
-        )
-    bad = np.flatnonzero(~(k_y > 0))
-    if bad.size:
-        i = bad[0]
-        return InputError(
-            "guide_curve_radius",
-            float(get["guide_curve_radius"][i]),
-            f"the surfaces conform or interlock: cos(alpha)/r_A + cos(alpha)/r_Curve = {k_y[i]:.6g} 1/mm must be > 0",
-            f"Use an inner curve wider than the roller (guide_curve_radius below {-radius[i]:.6g} mm),"
-            " a straight (inf) or an outer curve (> 0).",
-        )
-    return None
-
-
-@dataclass(frozen=True)
-class MaterialArrays:
-    """Material values of one body along the case axis, each of shape (n,)."""
-
-    name: np.ndarray
-    youngs_modulus: np.ndarray
-    poisson_ratio: np.ndarray
-    tensile_strength: np.ndarray
-    fatigue_limit: np.ndarray
-    cycles_at_tensile_strength: np.ndarray
-    cycles_at_fatigue_limit: np.ndarray
-
-    def take(self, index: np.ndarray) -> MaterialArrays:
-        """The rows `index`."""
-        return MaterialArrays(*(getattr(self, f.name)[index] for f in dataclasses.fields(self)))
-
-
-@dataclass(frozen=True)
-class CaseTable:
-    """Cases as arrays of shape (n,), units as in `PARAMETERS`; the friction coefficient is resolved.
-
-    Mappings (friction law, drawn profiles) stand as canonical JSON in arrays of str objects, '' for none.
-    """
-
-    axis_distance: np.ndarray
-    guide_profile_radius: np.ndarray
-    roller_profile_radius: np.ndarray
-    guide_curve_radius: np.ndarray
-    contact_angle: np.ndarray
-    radial_force: np.ndarray
-    axial_force: np.ndarray
-    motor_force: np.ndarray
-    friction_coefficient: np.ndarray
-    velocity: np.ndarray
-    guide_overrollings_per_hour: np.ndarray
-    roller: MaterialArrays
-    guide: MaterialArrays
-    friction_law: np.ndarray
-    guide_profile: np.ndarray
-    roller_profile: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.axis_distance)
-
-    def take(self, index: np.ndarray) -> CaseTable:
-        """The rows `index`."""
-        numbers = {name: getattr(self, name)[index] for name in (*PARAMETERS, *MAPPING_FIELDS)}
-        return CaseTable(**numbers, roller=self.roller.take(index), guide=self.guide.take(index))
+        """Return the case as a plain mapping, one entry for each field."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
 
 def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
-    """Columns of raw values (object arrays for materials) from anything `solve` accepts."""
+    """Columns of raw values, object arrays (n,), and n, from anything that `solve` accepts."""
     if hasattr(cases, "data_vars"):
         return _columns_of_dataset(cases)
     if isinstance(cases, (Case, Mapping)):
@@ -274,7 +222,7 @@ def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
 
 
 def own_frictions(laws: np.ndarray) -> np.ndarray:
-    """Friction coefficients (n,) of cases that give none, from their friction laws (n,)."""
+    """Return the friction coefficients [1] of cases that give none, from their friction laws, both of shape (n,)."""
     known = {repr(law): _own_friction(law) for law in np.ravel(laws)}
     return np.array([known[repr(law)] for law in np.ravel(laws)]).reshape(np.shape(laws))
 
@@ -319,57 +267,48 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
     return numbers
 
 
-def _material_arrays(column: np.ndarray, database: MaterialDatabase) -> tuple[MaterialArrays, list[Material]]:
-    cache: dict[str, Material] = {}
-    materials = []
-    for value in column:
-        key = value if isinstance(value, str) else repr(value)
-        if key not in cache:
-            cache[key] = database.material(value)
-        materials.append(cache[key])
-
-    def values(attribute: str) -> np.ndarray:
-        return np.array([getattr(m, attribute) for m in materials], dtype=float)
-
-    return MaterialArrays(
-        name=np.array([m.name for m in materials], dtype=object),
-        youngs_modulus=values("youngs_modulus"),
-        poisson_ratio=values("poisson_ratio"),
-        tensile_strength=values("tensile_strength"),
-        fatigue_limit=values("fatigue_strength_ratio") * values("tensile_strength"),
-        cycles_at_tensile_strength=values("cycles_at_tensile_strength"),
-        cycles_at_fatigue_limit=values("cycles_at_fatigue_limit"),
-    ), materials
+def _materials(column: np.ndarray, database: MaterialDatabase) -> list[Material]:
+    """Materials of a column, each distinct one looked up once."""
+    keys = [value if isinstance(value, str) else repr(value) for value in column]
+    known = {key: database.material(value) for key, value in dict(zip(keys, column, strict=True)).items()}
+    return [known[key] for key in keys]
 
 
 def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
-    """Validated arrays of the cases, with materials and friction taken from the database.
+    """Return the checked arrays of cases, with materials and friction taken from the database.
 
     Parameters
     ----------
-    cases : `Case`, mapping, list of them, or xarray.Dataset with dimension `case`
-    database : the materials; the built-in and the user's own if not given
+    cases : Case, mapping, list of them, or xarray.Dataset
+        A data set has one variable for each parameter along the dimension `case`; other parameters take their default.
+    database : MaterialDatabase, optional
+        The materials; by default the built-in ones with the user's own over them.
 
-    Raises `InputError` for the first bad value, unknown name or contradicting geometry.
+    Returns
+    -------
+    CaseTable
+        Arrays of shape (n,).
+
+    Raises
+    ------
+    InputError
+        For the first bad value, unknown name or contradicting geometry.
     """
-    from trackroller.materials import load_database
-
     database = load_database() if database is None else database
     columns, n = _as_columns(cases)
     numbers = _checked_numbers(columns, n)
     problem = geometry_problem(numbers) if n else None
     if problem is not None:
         raise problem
-    roller, roller_materials = _material_arrays(columns["roller_material"], database)
-    guide, guide_materials = _material_arrays(columns["guide_material"], database)
+    roller, guide = (_materials(columns[name], database) for name in MATERIAL_FIELDS)
     friction = numbers["friction_coefficient"].copy()
     for i in np.flatnonzero(np.isnan(friction)):
         level = columns["friction_coefficient"][i]
         level = level if isinstance(level, str) else "typical"
-        friction[i] = database.friction(roller_materials[i], guide_materials[i], level=level).value
+        friction[i] = database.friction(roller[i], guide[i], level=level).value
     numbers["friction_coefficient"] = friction
     texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
-    return CaseTable(**numbers, **texts, roller=roller, guide=guide)
+    return CaseTable(**numbers, **texts, roller=MaterialArrays.of(roller), guide=MaterialArrays.of(guide))
 
 
 def _texts(name: str, column: np.ndarray) -> np.ndarray:

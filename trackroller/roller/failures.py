@@ -8,37 +8,65 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.contact.hertz import shape
+from trackroller.contact.linear import LARGEST_RATIO
+from trackroller.contact.slip import turning_of
+from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import FAILED, ROLLING
 from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.options import Options
+from trackroller.roller.table import CaseTable
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.roller.case import CaseTable
-    from trackroller.roller.options import Options
-
 STEEP = validity_bit("steep_friction")
+PROFILES = ("guide_profile", "roller_profile")
 
 
 def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Dataset:
-    """The results, with a text `reason` where a case failed or missed its tolerance ('' for the others)."""
+    """Return results with a text `reason` where a case failed or missed its tolerance.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Results with the dimension `case`, or of a single case.
+    table : CaseTable
+        The n cases.
+    options : Options
+        What they were solved with.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same results; `reason` is "" for solved cases, and missing if all cases are solved.
+    """
     regime, converged = (np.atleast_1d(ds[name].values) for name in ("regime", "converged"))
     failed, loose = regime == FAILED, (regime == ROLLING) & (converged == 0)
     if not (failed | loose).any():
         return ds
     residual, bits = (np.atleast_1d(ds[name].values) for name in ("residual", "validity"))
+    asked = np.full(len(regime), CONTACT_MODELS.index(options.contact_model))
+    used = np.atleast_1d(ds["contact_model_used"].values) if "contact_model_used" in ds else asked
     told = np.full(len(regime), "", dtype=object)
     for i in np.flatnonzero(failed | loose).tolist():
         words = "no convergence" if failed[i] else "it rolls, but its solution misses the tolerance"
-        if np.isfinite(residual[i]):  # one digit, so that cases of a kind are counted together
+        if np.isfinite(residual[i]):  # one digit, so that cases of one kind are counted together
             words += f", residual {residual[i]:.0e}"
-        told[i] = ". ".join([words, *_hints(table, options, i, bool(bits[i] & STEEP))])
+        case = table.take(np.array([i]))
+        told[i] = ". ".join([words, *_hints(case, options, CONTACT_MODELS[used[i]], bool(bits[i] & STEEP))])
     attrs = {"long_name": "why a case failed or misses its tolerance"}
     return ds.assign(reason=(ds["regime"].dims, told if ds["regime"].dims else told[0], attrs))
 
 
-def _hints(table: CaseTable, options: Options, i: int, steep: bool) -> list[str]:
+def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -> list[str]:
+    """Conditions that hold for a table of one case and are known to prevent a solution, with the remedy."""
+    if "curve" in options.slip_terms and _beyond_the_axis(case):
+        return [
+            "With slip_terms: curve the contacts must not lie beyond the axis of the inner curve, "
+            "where guide_curve_radius + guide_profile_radius cos(contact_angle) > 0: leave 'curve' out"
+        ]
     hints = []
     if steep:
         hints.append(
@@ -46,26 +74,26 @@ def _hints(table: CaseTable, options: Options, i: int, steep: bool) -> list[str]
             "the roller may not roll steadily; a friction_law that falls less steeply, or contact_model: "
             "sliding, has a solution more often"
         )
-    rough = [name for name in ("guide_profile", "roller_profile") if _goes_through_points(str(getattr(table, name)[i]))]
+    rough = [name for name in PROFILES if _goes_through_points(str(getattr(case, name)[0]))]
     if rough and options.normal == "halfspace":
         hints.append(
             f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
             "give `smooth`, the standard deviation of the noise in mm, or 'auto'"
         )
-    if options.contact_model == "fastsim" and options.normal == "hertz" and _is_slender(table, i):
+    if contact_model == "fastsim" and options.normal == "hertz" and _is_slender(case):
         hints.append("The patches are too slender for fastsim: contact_model: kalker goes further")
-    if "curve" in options.slip_terms and table.guide_curve_radius[i] < 0:
-        hints.append("With slip_terms: curve the contacts must not lie beyond the axis of an inner curve")
     return hints
 
 
-def _is_slender(table: CaseTable, i: int) -> bool:
-    """Is the ellipse more slender than the coefficients of fastsim reach?"""
-    from trackroller.contact.hertz import shape
-    from trackroller.contact.linear import LARGEST_RATIO
+def _beyond_the_axis(case: CaseTable) -> bool:
+    """Whether the contacts lie beyond the axis of a concave guide, so that no turning of the roller is defined."""
+    cosine = np.cos(contact_geometry(vars(case)).contact_angle)
+    return bool(np.isnan(turning_of(case.guide_curve_radius, case.guide_profile_radius, cosine)[0]))
 
-    one = table.take(np.array([i]))
-    geometry = contact_geometry(vars(one))
+
+def _is_slender(case: CaseTable) -> bool:
+    """Whether the ellipse is more slender than the coefficients of fastsim reach."""
+    geometry = contact_geometry(vars(case))
     ellipse = shape(geometry.curvature_lateral, geometry.curvature_rolling, np.ones(1))
     ratio = float(ellipse.lateral[0] / ellipse.rolling[0])
     return max(ratio, 1.0 / ratio) > 0.99 * LARGEST_RATIO
@@ -73,6 +101,6 @@ def _is_slender(table: CaseTable, i: int) -> bool:
 
 @lru_cache(maxsize=256)
 def _goes_through_points(text: str) -> bool:
-    """Is this a profile of points that is not smoothed?"""
+    """Whether a profile is given by points and not smoothed."""
     told = json.loads(text) if text else {}
     return "points" in told and not told.get("smooth")

@@ -1,6 +1,6 @@
 """Geometry of the roller on its guideway (Wenzel et al. 2022, section 2.2 and eqs (13)-(14)).
 
-Lengths in mm, angles in rad, arrays of shape (n,) throughout.
+Lengths are in mm and angles in rad unless a name says otherwise; arrays have shape (n,).
 """
 
 from __future__ import annotations
@@ -10,23 +10,64 @@ from typing import NamedTuple
 
 import numpy as np
 
+from trackroller.errors import InputError
+
 
 def rolling_radius(axis_distance, guide_profile_radius, contact_angle) -> np.ndarray:
-    """Nominal rolling radius r_A = A_T - r_C,G cos(alpha) [mm], shape (n,)."""
+    """Return the nominal rolling radius r_A = A_T - r_C,G cos(alpha).
+
+    Parameters
+    ----------
+    axis_distance, guide_profile_radius, contact_angle : numpy.ndarray
+        A_T [mm], r_C,G [mm] and alpha [rad], shape (n,).
+
+    Returns
+    -------
+    numpy.ndarray
+        r_A [mm], shape (n,).
+    """
     return np.asarray(axis_distance - guide_profile_radius * np.cos(contact_angle))
 
 
 def curvatures(
     roller_profile_radius, guide_profile_radius, guide_curve_radius, rolling_radius, contact_angle
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Relative curvatures k_x (lateral plane) and k_y (rolling plane) [1/mm], each of shape (n,).
+    """Return the relative curvatures of the surfaces, both > 0 for a point contact.
 
-    k_x = 1/r_C,TR + 1/r_C,G and k_y = cos(alpha)/r_A + cos(alpha)/r_Curve. Both must be > 0 for a
-    point contact; a straight guide or profile has an infinite radius.
+    Parameters
+    ----------
+    roller_profile_radius, guide_profile_radius, guide_curve_radius, rolling_radius : numpy.ndarray
+        r_C,TR, r_C,G, r_Curve and r_A [mm], shape (n,); inf for a straight guide or profile.
+    contact_angle : numpy.ndarray
+        alpha [rad], shape (n,).
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        k_x = 1/r_C,TR + 1/r_C,G in the lateral plane and k_y = cos(alpha)/r_A + cos(alpha)/r_Curve in the rolling
+        plane [1/mm], shape (n,) each.
     """
     k_x = 1.0 / np.asarray(roller_profile_radius) + 1.0 / np.asarray(guide_profile_radius)
     k_y = np.cos(contact_angle) * (1.0 / np.asarray(rolling_radius) + 1.0 / np.asarray(guide_curve_radius))
     return k_x, k_y
+
+
+def lever_arms(axis_distance, guide_profile_radius, contact_angle) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lever arms of normal and lateral force about the roller's centre, eqs (13)-(14).
+
+    Parameters
+    ----------
+    axis_distance, guide_profile_radius, contact_angle : numpy.ndarray
+        A_T [mm], r_C,G [mm] and alpha [rad], shape (n,).
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        h_N = A_T sin(alpha) and h_T = A_T cos(alpha) - r_C,G [mm], shape (n,) each.
+    """
+    h_normal = np.asarray(axis_distance * np.sin(contact_angle))
+    h_tangential = np.asarray(axis_distance * np.cos(contact_angle) - guide_profile_radius)
+    return h_normal, h_tangential
 
 
 class ContactGeometry(NamedTuple):
@@ -39,12 +80,18 @@ class ContactGeometry(NamedTuple):
 
 
 def contact_geometry(columns: Mapping[str, np.ndarray]) -> ContactGeometry:
-    """Compute rolling radius and relative curvatures from the parameters of n cases.
+    """Return rolling radius and relative curvatures from the parameters of n cases.
 
     Parameters
     ----------
-    columns : arrays (n,) by parameter name, with the contact angle in degrees; `vars(table)` of a `CaseTable` is such
-        a mapping
+    columns : mapping of str to numpy.ndarray
+        Radii and axis distance [mm] and the contact angle [deg] by parameter name, shape (n,); `vars(table)` of a
+        `CaseTable` is such a mapping.
+
+    Returns
+    -------
+    ContactGeometry
+        Arrays of shape (n,).
 
     Examples
     --------
@@ -59,8 +106,51 @@ def contact_geometry(columns: Mapping[str, np.ndarray]) -> ContactGeometry:
     return ContactGeometry(alpha, radius, *curvatures(*profiles, radius, alpha))
 
 
-def lever_arms(axis_distance, guide_profile_radius, contact_angle) -> tuple[np.ndarray, np.ndarray]:
-    """Lever arms h_N = A_T sin(alpha) and h_T = A_T cos(alpha) - r_C,G [mm], eqs (13)-(14)."""
-    h_normal = np.asarray(axis_distance * np.sin(contact_angle))
-    h_tangential = np.asarray(axis_distance * np.cos(contact_angle) - guide_profile_radius)
-    return h_normal, h_tangential
+def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
+    """Return the first physical contradiction among the geometry of cases, or None.
+
+    Parameters
+    ----------
+    columns : mapping of str to array_like
+        The radii, the axis distance [mm] and the contact angle [deg] of n cases by their names in `PARAMETERS`; shapes
+        that broadcast to (n,).
+
+    Returns
+    -------
+    InputError or None
+        An error that names the field to change: if the rolling radius is not positive, or if a relative curvature is
+        not positive, so that the surfaces conform or interlock and there is no point contact.
+    """
+    names = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
+    full = np.broadcast_arrays(*(np.atleast_1d(np.asarray(columns[name], dtype=float)) for name in names))
+    get = dict(zip(names, full, strict=True))
+    with np.errstate(divide="ignore"):
+        found = contact_geometry(get)
+    for name, value, told, remedy in (
+        ("axis_distance", found.rolling_radius, *_AXIS),
+        ("roller_profile_radius", found.curvature_lateral, *_GROOVE),
+        ("guide_curve_radius", found.curvature_rolling, *_CURVE),
+    ):
+        bad = np.flatnonzero(~(value > 0))
+        if bad.size:
+            i = bad[0]
+            groove, radius = get["guide_profile_radius"][i], found.rolling_radius[i]
+            limit = groove * np.cos(found.contact_angle[i])
+            words = {"value": value[i], "groove": -groove, "radius": -radius, "limit": limit}
+            return InputError(name, float(get[name][i]), told.format(**words), remedy.format(**words))
+    return None
+
+
+_AXIS = (
+    "the rolling radius A_T - r_C,G cos(alpha) = {value:.6g} mm must be > 0",
+    "Use an axis_distance above {limit:.6g} mm.",
+)
+_GROOVE = (
+    "the surfaces conform or interlock: 1/r_C,TR + 1/r_C,G = {value:.6g} 1/mm must be > 0",
+    "Use a groove wider than the guide (roller_profile_radius below {groove:.6g} mm) or a convex roller (> 0).",
+)
+_CURVE = (
+    "the surfaces conform or interlock: cos(alpha)/r_A + cos(alpha)/r_Curve = {value:.6g} 1/mm must be > 0",
+    "Use an inner curve wider than the roller (guide_curve_radius below {radius:.6g} mm), a straight (inf) or an "
+    "outer curve (> 0).",
+)

@@ -1,4 +1,4 @@
-"""The one entry: from cases and wanted outputs to a labelled data set, running only the stages they need."""
+"""`solve`: from cases to a labelled data set, running only the stages that the outputs need."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 
     from trackroller.materials import MaterialDatabase
 
-# What every solution needs anyway is loaded with this module, so that the first call is as quick as the others.
+# Every solution needs these modules; loading them here makes the first call as quick as the others.
 importlib.import_module("scipy.special")
-importlib.import_module("dask.array")  # xarray asks for it at the first data set
+importlib.import_module("dask.array")  # xarray loads it with its first data set
 cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()
 
 BLOCK = 2048  # cases worked on at once: bounds the memory whatever the size of the batch
-WINDOW = 16 * BLOCK  # cases among which equal mechanics are looked for
+WINDOW = 16 * BLOCK  # cases among which equal mechanics are searched
 
 
 def solve(
@@ -56,38 +56,79 @@ def solve(
     slip_terms: Collection[str] | str = (),
     database: MaterialDatabase | None = None,
 ) -> xr.Dataset:
-    """Contact forces, tractions, stresses and life of track rollers.
+    """Compute contact forces, tractions, stresses and life of track rollers.
 
     Parameters
     ----------
-    cases : `Case` or mapping (result without case dimension), list of them or design data set (dimension `case`)
-    outputs : groups among forces, contact, friction_work, peak_stress, life, tractions, subsurface
-    contact_model : 'sliding' | 'fastsim' | 'kalker' | 'auto', the cheapest of them that meets `contact_tolerance`
-    spin_model : 'concentric' | 'edge' | 'skewed', for sliding only
-    accuracy : 'preview' | 'standard' | 'reference' or a relative tolerance of forces and peak stress, which picks the
-        cheapest measured setting (see `trackroller.roller.accuracy`); attributes of the results tell the expected errors
-    hertz : 'exact' or 'published' (the table of the published program)
-    stress_bodies : 'both', or 'published' (one body with the mean Poisson's ratio)
-    life_rule : 'elementary' | 'haibach' | 'unlimited' below the fatigue limit
-    normal : 'hertz' pressures, or 'halfspace': patch and pressure solved on a grid, for drawn profiles too
-    contact_tolerance : for `auto`: of normal forces and peak stress, and of friction forces over the normal force
-    stop_if : a condition such as 'peak_stress > R_m' on which the search for peak stresses is not worth while; such
-        cases are marked `stopped` and have no peak stress and life (see `trackroller.roller.stop`)
-    shortcuts : spare what symmetry and repetition make superfluous; numbers are the same to rounding
-    slip_terms : what the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: 'profile', the
-        slip of the guide's profile, eq. (20), which sliding has anyway, and 'curve', the turning of the roller with the
-        guide's curve, 1/(r_Curve + r_C,G cos(alpha)) added to 1/r_A in the spin, not for sliding; with any of them
-        `auto` takes kalker. A contact beyond the axis of a concave guide is a failed row with 'curve'
-    database : materials; the built-in and the user's own if not given
+    cases : Case, mapping, list of them, or xarray.Dataset
+        What is solved. A list, and a data set with the dimension `case`, give results along `case`.
+    outputs : str or iterable of str
+        Groups of results; a group is computed only if it is asked for: "forces", "contact", "friction_work",
+        "peak_stress", "life", "tractions", "subsurface".
+    contact_model : str
+        How friction is distributed over a patch: "sliding" (full slip everywhere), "fastsim" (simplified theory),
+        "kalker" (exact theory), "kalker_table" (table of exact solutions), or "auto", the cheapest of sliding, fastsim
+        and kalker that meets `contact_tolerance`. At accuracy "preview", "kalker" uses its table.
+    spin_model : str
+        Position of the spin pole, assumptions 0, 1, 2 of the publication: "concentric", "edge", "skewed". It matters to
+        "sliding" only.
+    accuracy : str, float or Accuracy
+        Discretisation: "preview", "standard", "reference", or a relative tolerance of forces and peak stress in (0, 1),
+        which takes the cheapest settings that were measured to keep it. The attributes of a result state its expected
+        errors. See `trackroller.roller.accuracy`.
+    hertz : str
+        "exact" elliptic integrals, or "published" for the table of the published program.
+    stress_bodies : str
+        "both" bodies with their own Poisson's ratios, or "published" for one body with the mean.
+    life_rule : str
+        S-N curve below the fatigue limit: "elementary", "haibach" or "unlimited".
+    normal : str
+        "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which drawn profiles need.
+    contact_tolerance : float
+        Error that "auto" allows in (0, 1): of normal forces and peak stress, and of friction forces over the normal
+        force.
+    stop_if : str, optional
+        Condition such as "peak_stress > R_m". Where it holds, no peak stress is searched for, and the case is marked
+        `stopped`. See `trackroller.roller.stop`.
+    shortcuts : bool
+        Whether symmetry and repetition among the cases are used. The numbers are the same to rounding.
+    slip_terms : str or collection of str
+        What the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: "profile", the slip of
+        the guide's profile by eq. (20), which sliding always counts, and "curve", the turning of the roller with the
+        curve of the guide. With any of them "auto" takes kalker.
+    database : MaterialDatabase, optional
+        The materials; by default the built-in ones with the user's own over them.
 
     Returns
     -------
-    xarray.Dataset with units, long names and the paper's symbols; NaN where a regime leaves a quantity undefined. Where
-    a case failed or misses its tolerance there is a text `reason`, with what to do about it.
+    xarray.Dataset
+        Results with `units`, `long_name` and the symbol of the publication. The dimensions are `contact` (1, 2), `body`
+        ("roller", "guide") and `case`, which a single case does not have. A quantity that the regime leaves undefined
+        is NaN. `regime`, `converged`, `residual`, `validity` and `contact_model_used` are always there.
 
-    Raises `InputError` for bad input only: a case that cannot be solved is a row with `regime` failed.
+    Raises
+    ------
+    InputError
+        For bad input. A case that cannot be solved raises nothing: its `regime` is failed, and a text `reason` says
+        why and what to do.
+
+    Notes
+    -----
+    A case takes from 1 ms (sliding) to some seconds (kalker at accuracy "reference") of processor time.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> ds = tr.solve(tr.Case(), outputs=("forces", "peak_stress"))
+    >>> ds.normal_force.dims, ds.normal_force.attrs["units"]
+    (('contact',), 'N')
+    >>> float(ds.peak_stress.sel(contact=1, body="roller").round())
+    PEAKVALUE
+    >>> both = tr.solve([tr.Case(friction_coefficient=mu) for mu in (0.0, 0.3)])
+    >>> dict(both.roller_life_hours.sizes)
+    {'case': 2}
     """
-    given = locals()
+    given = locals()  # the options by name; the signature stays explicit for readers and editors
     options = Options(**{name: given[name] for name in OPTIONS if name in given})
     single = isinstance(cases, Case) or (hasattr(cases, "keys") and not hasattr(cases, "data_vars"))
     if hasattr(cases, "data_vars"):
