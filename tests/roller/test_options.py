@@ -129,3 +129,10 @@ def test_where_the_table_does_not_serve_the_exact_theory_is_named():
 def test_options_that_the_table_cannot_have_are_refused(option, value):
     with pytest.raises(tr.InputError, match=rf"^{option} = .*kalker_table .*Take contact_model: kalker"):
         tr.solve(tr.Case(), contact_model="kalker_table", **{option: value})
+
+
+def test_the_package_shows_its_public_names_before_they_are_imported():
+    """In a fresh process; importing the package alone loads neither the solver nor NumPy."""
+    code = "import sys, trackroller as t; print(sorted(dir(t)) == sorted(t.__all__), 'numpy' in sys.modules, t.Case().velocity)"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout.split() == ["True", "False", "60.0"], done.stderr

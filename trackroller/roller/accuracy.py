@@ -1,6 +1,7 @@
 """What an accuracy setting means for each stage, and what error it leaves.
 
-The settings are rungs of measured ladders (`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff` from
+The settings are rungs of measured ladders (`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff`
+from
 `snakemake tradeoff`): one for the quadrature of forces, one for the search of the peak stress, one for the elements of
 each rolling contact model. A preset or a tolerance takes from each the cheapest rung that keeps its promise.
 """
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 import functools
 import json
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -209,10 +211,8 @@ def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: I
 
 def rounded_up(value: float) -> float:
     """The next larger number with two figures."""
-    from math import ceil, floor, log10
-
-    unit = 10.0 ** (floor(log10(value)) - 1)
-    return float(f"{ceil(value / unit - 1e-9) * unit:.3g}")
+    unit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return float(f"{math.ceil(value / unit - 1e-9) * unit:.3g}")
 
 
 _QUANTITY_OF = {

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
+from trackroller import __version__
 from trackroller.errors import InputError
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
 from trackroller.roller import equilibrium as eq
@@ -17,6 +18,8 @@ from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
+from trackroller.roller.choice.choose import choose, in_doubt
+from trackroller.roller.dataset import VARIABLES, build
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use
 from trackroller.roller.stages import case as stages_case
@@ -123,7 +126,7 @@ def solve(
     >>> ds.normal_force.dims, ds.normal_force.attrs["units"]
     (('contact',), 'N')
     >>> float(ds.peak_stress.sel(contact=1, body="roller").round())
-    PEAKVALUE
+    401.0
     >>> both = tr.solve([tr.Case(friction_coefficient=mu) for mu in (0.0, 0.3)])
     >>> dict(both.roller_life_hours.sizes)
     {'case': 2}
@@ -165,7 +168,7 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
 
 
 def _solve_window(table: CaseTable, options: Options) -> Block:
-    """Mechanics of the cases that differ in them; then what each case makes of them."""
+    """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
     rows = number = np.arange(len(table))
     if options.shortcuts and len(table) > 1:
         rows, number = requirements.distinct_mechanics(table)
@@ -176,7 +179,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 
 
 def _solve_block(table: CaseTable, options: Options) -> Block:
-    """Cases that share a contact model, a friction law and profiles are solved together."""
+    """Solve cases together that share a contact model, a friction law and profiles."""
     groups = list(_groups(table, options))
     parts = [_solve_group(table.take(rows), replace(options, contact_model=model)) for model, rows in groups]
     order = np.argsort(np.concatenate([rows for _, rows in groups]))
@@ -185,9 +188,7 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
 
 
 def _without_doubt(table: CaseTable, found: Block, options: Options) -> Block:
-    """The solutions of `auto`, those exactly that say themselves that they may miss the tolerance."""
-    from trackroller.roller.choice.choose import in_doubt
-
+    """Solve cases of `auto` again by the exact theory where their own error estimate exceeds the tolerance."""
     again = in_doubt(table, found, options.contact_tolerance)
     if not again.size:
         return found
@@ -197,11 +198,9 @@ def _without_doubt(table: CaseTable, found: Block, options: Options) -> Block:
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:
-    """Contact model and rows of cases that can be solved in one batch; without friction there are no tractions."""
+    """Yield contact model and rows of cases that can be solved in one batch; frictionless cases stand apart."""
     model = np.full(len(table), options.contact_model, dtype=object)
     if options.contact_model == "auto":
-        from trackroller.roller.choice.choose import choose
-
         model = choose(table, options)
     bare = requirements.is_frictionless(table) & options.shortcuts
     keys = list(zip(model, bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
@@ -236,9 +235,6 @@ def _solve_group(table: CaseTable, options: Options) -> Block:
 
 
 def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
-    from trackroller import __version__
-    from trackroller.roller.dataset import VARIABLES, build
-
     keep = [
         name
         for name in block.values

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, field_validator
 
-from trackroller.roller.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.options import check_pairs
+from trackroller.roller.point_files import files_beside
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.design.factors import LISTS

@@ -15,6 +15,7 @@ from trackroller.contact import table as tables
 from trackroller.contact.common import ContactModel, Elastic, Ellipse, Resultants, Slip, _Rows
 from trackroller.contact.table.model import TableModel
 from trackroller.roller.equilibrium import ROLLING, Equilibrium, solve_equilibrium
+from trackroller.roller.stages import mechanics as stages
 
 if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable
@@ -76,8 +77,6 @@ class Probe(_Rows):
 
 
 def _solve(table: CaseTable, options: Options, model: str) -> tuple[Any, Equilibrium]:
-    from trackroller.roller.stages import mechanics as stages
-
     scene = stages.prepare(table, replace(options, contact_model=model, accuracy="preview", outputs=("forces",)))
     if model == "kalker_table":
         scene = replace(scene, model=NearestInTable(scene.model.elastic))  # type: ignore[attr-defined]

@@ -23,12 +23,12 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.roller.point_files import files_beside
 from trackroller.damage.fatigue import PROBABILITIES
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
+from trackroller.roller.point_files import files_beside
 
 LOAD_FIELDS = (
     "radial_force",
