@@ -107,7 +107,7 @@ def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> 
     -------
     Matrix of shape (m, levels) and the levels. Only combinations with two levels or more are kept.
     """
-    table, others = view.table[rows], [f for f in view.factors if f != factor]
+    table, others = view.table[rows & (view.column(column) > 0)], [f for f in view.factors if f != factor]
     levels = view.levels(factor)
     if not len(table) or len(levels) > MOST_LEVELS:
         return np.empty((0, len(levels))), levels
@@ -116,9 +116,7 @@ def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> 
     key = key.astype(int)
     place = {level: i for i, level in enumerate(levels)}
     matrix = np.full((int(key.max()) + 1, len(levels)), np.nan)
-    values = table[column].to_numpy(dtype=float)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        matrix[key, [place[v] for v in table[factor]]] = np.log10(np.where(values > 0, values, np.nan))
+    matrix[key, [place[v] for v in table[factor]]] = np.log10(table[column].to_numpy(dtype=float))
     return matrix[(~np.isnan(matrix)).sum(axis=1) > 1], levels
 
 

@@ -1,0 +1,224 @@
+"""The truth test of sentences on an analysis: random indices, Pareto sets and design points, recomputed."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from trackroller.analysis.pareto import pareto_mask
+from trackroller.report import sentences as words
+
+NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")
+INDICES = {"saltelli": "ST", "grid": "main_share", "lhs": "first", "morris": "mu_star"}
+
+
+def analysis(rng, method):
+    """A made-up analysis of two outputs with intervals (none on a grid)."""
+    count = int(rng.integers(1, len(NAMES) + 1))
+    index, shape = INDICES[method], (2, count)
+    value = rng.dirichlet(np.full(count, 0.4), 2) * rng.choice([1.0, 0.6])
+    value = value * (30 if method == "morris" else 1)
+    value[rng.random(shape) < 0.05] = np.nan
+    half = np.abs(rng.normal(0, 0.03, shape)) * (30 if method == "morris" else 1)
+    dims = ("output", "factor")
+    ds = xr.Dataset({index: (dims, value)})
+    if method != "grid":
+        ds[f"{index}_low"], ds[f"{index}_high"] = (dims, value - half), (dims, value + 1.4 * half)
+    if method == "saltelli":
+        ds["S1"] = (dims, value * rng.uniform(0, 1, shape))
+        ds["S1_low"], ds["S1_high"] = (dims, ds["S1"].values - half), (dims, ds["S1"].values + half)
+        table = np.triu(rng.normal(0.02, 0.05, (2, count, count)), 1) + np.tril(np.full((count, count), np.nan))
+        pair = ("output", "factor", "factor_2")
+        ds["S2"], ds["S2_low"], ds["S2_high"] = (pair, table), (pair, table - 0.03), (pair, table + 0.03)
+    if method == "morris":
+        ds["sigma"] = (dims, value * rng.uniform(0, 2, shape))
+    ds["take_times"] = ("output", rng.choice([1.0, 1.0, 4.0, 8.0, np.nan], 2))
+    ds["note"] = ("output", np.array(["all rows used"] * 2, dtype=object))
+    ds = ds.assign_coords(
+        factor=np.array([n.replace(" ", "_") for n in NAMES[:count]], dtype=object),
+        factor_name=("factor", np.array(NAMES[:count], dtype=object)),
+        output=np.array(["roller_life_hours", "friction_power"], dtype=object),
+        output_name=("output", np.array(["life of the roller", "friction power"], dtype=object)),
+        output_units=("output", np.array(["h", "W"], dtype=object)),
+        scale=("output", np.array(["log10", "natural"], dtype=object)),
+        sample_size=[64, 128],
+    )
+    ds.attrs["method"] = method
+    return ds
+
+
+def agrees(text, value, low, high, unit):
+    """Is '61 ± 3 %' the value and half its 95 % interval?"""
+    found = re.match(r"(−?[\d.,]+)(?: ± ([\d.]+))?", text)
+    told = float(found[1].replace(",", "").replace("−", "-"))
+    digits = len(found[1].partition(".")[2])
+    assert told == pytest.approx(unit * max(value, 0), abs=0.51 * 10.0**-digits, rel=0.006)
+    if np.isfinite(high - low):
+        half = unit * (high - low) / 2
+        assert float(found[2]) == pytest.approx(
+            half, abs=0.51 * 10.0 ** -len(found[2].partition(".")[2]), rel=0.06
+        ) or (found[2] == "1" and half < 1)
+    else:
+        assert found[2] is None
+
+
+@pytest.mark.parametrize("method", INDICES)
+def test_every_sentence_on_indices_is_true(method):
+    rng = np.random.default_rng(list(INDICES).index(method))
+    kinds = set()
+    for _ in range(120):
+        sens = analysis(rng, method)
+        for output in map(str, sens["output"].values):
+            kinds |= check_indices(sens, output, INDICES[method])
+        check_leads(sens, INDICES[method])
+        said = words.samples(sens, 512)
+        needed = sens["take_times"].values[np.isfinite(sens["take_times"].values)]
+        assert (said is None) == (needed.size == 0)
+        if said is not None:
+            more = needed.max()
+            assert said.text.startswith("Yes" if more <= 1 else "No")
+            assert more <= 1 or f"`samples: {int(512 * more)}`" in said.text
+    assert "index" in kinds
+
+
+def check_indices(sens, output, index):
+    part = sens.sel(output=output)
+    value = part[index].values
+    low, high = (
+        part[f"{index}{e}"].values if f"{index}{e}" in part else np.full_like(value, np.nan) for e in ("_low", "_high")
+    )
+    said, kinds = words.decides(sens, output), set()
+    kinds.add(said.kind)
+    if said.kind == "no_index":
+        assert np.isnan(value).all()
+        return kinds
+    assert len(re.findall(r"index", said.text)) == (0 if index == "mu_star" else 1)  # one index a sentence
+    names = part["factor_name"].values
+    first = int(np.nanargmax(value))
+    if index == "mu_star":
+        assert f"Over its whole range {names[first]} changes" in said.text
+        agrees(said.text.split("most, by ")[1], value[first], low[first], high[first], 1.0)
+        for i, name in enumerate(names):
+            if i != first and f"{name} by " in said.text.split(";")[0]:
+                agrees(said.text.split(f"{name} by ")[1], value[i], low[i], high[i], 1.0)
+        return kinds
+    assert said.text.lower().startswith(names[first])
+    agrees(re.split("accounts for |explains ", said.text)[1], value[first], low[first], high[first], 100.0)
+    more, _, small = said.text.split("index", 1)[1].partition("; ")
+    for i, name in enumerate(names):
+        if i != first and name in more:
+            agrees(more.split(f"{name} ")[1], value[i], low[i], high[i], 100.0)
+        if i != first and name in small:
+            assert (high[i] if np.isfinite(high[i]) else value[i]) < 0.02
+    kinds.add(check_interaction(sens, output))
+    if np.isfinite(float(part["take_times"])) and np.isfinite(high - low).any():
+        wide = words.convergence(sens, output)
+        assert wide.values["half"] == pytest.approx(np.nanmax(high - low) / 2)
+        assert f"of {names[int(np.nanargmax(high - low))]}" in wide.text
+    return kinds
+
+
+def check_interaction(sens, output):
+    said = words.interactions(sens, output)
+    if said.kind == "no_index":
+        return said.kind
+    table, low = sens["S2"].sel(output=output).values, sens["S2_low"].sel(output=output).values
+    i, j = np.unravel_index(np.nanargmax(np.abs(table)), table.shape)
+    found = low[i, j] > 0 and table[i, j] >= 0.01
+    assert (said.kind == "interaction") == found
+    if found:
+        names = sens["factor_name"].values
+        assert f"{names[i]} with {names[j]}" in said.text
+        agrees(said.text.split("makes ")[1], table[i, j], low[i, j], 2 * table[i, j] - low[i, j], 100.0)
+    return said.kind
+
+
+def check_leads(sens, index):
+    said = words.overview(sens)
+    for output in map(str, sens["output"].values):
+        value = sens[index].sel(output=output).values
+        if np.isfinite(value).any():
+            best = sens["factor_name"].values[int(np.nanargmax(value))]
+            clause = next(c for c in said.text.lower().split("; ") if c.startswith(f"{best} decides"))
+            assert str(sens["output_name"].sel(output=output).item()) in clause
+
+
+def test_which_factors_act_alike_everywhere_is_told_by_sigma():
+    rng = np.random.default_rng(9)
+    for _ in range(100):
+        sens = analysis(rng, "morris")
+        said = words.morris(sens, "friction_power")
+        part = sens.sel(output="friction_power")
+        mu, sigma, names = part["mu_star"].values, part["sigma"].values, part["factor_name"].values
+        strong = mu >= 0.1 * np.nanmax(mu)
+        if said.kind == "morris":
+            assert set(said.values["bent"]) == set(names[strong & (sigma > 0.5 * mu)])
+            assert set(said.values["straight"]) == set(names[strong & (sigma <= 0.5 * mu)])
+
+
+def test_every_sentence_on_a_pareto_set_is_true():
+    rng = np.random.default_rng(3)
+    for _ in range(150):
+        n = int(rng.integers(1, 60))
+        life, power = np.round(rng.lognormal(5, 1, n), 1), np.round(rng.lognormal(1, 1, n), 1)
+        best = pareto_mask(np.stack([life, power], 1), ("max", "min"))
+        attrs = {"objectives": "life max, power min", "excluded": "nothing", "model": ""}
+        front = xr.Dataset(
+            {
+                "life": ("row", life, {"units": "h", "long_name": "life"}),
+                "power": ("row", power, {"units": "W", "long_name": "power"}),
+                "optimal": ("row", best.astype(np.int8)),
+            },
+            coords={"row": np.arange(n)},
+            attrs=attrs,
+        )
+        text = words.pareto(front).text
+        tuples = [float(v.replace(",", "")) for v in re.findall(r"([\d,]+(?:\.\d+)?) (?:h|W)\b", text)]
+        if best.sum() == 1:
+            assert text.startswith("One of")
+            continue
+        assert text.startswith(f"{best.sum()} of {n} allowed designs")
+        ends = (int(np.argmax(np.where(best, life, -1))), int(np.argmin(np.where(best, power, np.inf))))
+        exact = [v for i in ends for v in (life[i], power[i])]
+        assert tuples[:4] == pytest.approx(exact, rel=0.006)
+
+
+def test_every_sentence_on_design_points_is_true():
+    rng = np.random.default_rng(4)
+    for _ in range(150):
+        points, inner = int(rng.integers(1, 6)), 40
+        b10 = rng.lognormal(5, 1, points)
+        shares = rng.dirichlet([3, 0.2, 0.2, 0.1], points).T
+        shares = np.round(shares * inner) / inner
+        shares[0] = 1 - shares[1:].sum(axis=0)
+        safe = np.where(shares[1:].sum(axis=0) >= 0.1, 0.0, 0.8 * b10)
+        dims = ("output", "point")
+        table = xr.Dataset(
+            {
+                "b10": (dims, b10[None]),
+                "b10_low": (dims, 0.9 * b10[None]),
+                "b10_high": (dims, 1.1 * b10[None]),
+                "b10_safe": (dims, safe[None]),
+                "probability": (("regime", "point"), shares),
+            },
+            coords={
+                "output": np.array(["roller_life_hours"], dtype=object),
+                "output_name": ("output", np.array(["life of the roller"], dtype=object)),
+                "output_units": ("output", np.array(["h"], dtype=object)),
+                "regime": np.array(["rolling", "full_slip", "lift_off", "failed"], dtype=object),
+                "velocity": ("point", 10.0 + np.arange(points)),
+            },
+            attrs={"outer_factors": "velocity"},
+        )
+        said = words.robustness(table, "roller_life_hours")
+        best = said.values["point"]
+        assert safe[best] == safe.max() and b10[best] == b10[safe == safe.max()].max()
+        assert f"at mean travel speed {10 + best} m/min" in said.text
+        told = float(re.search(r"reach ([\d,.]+) h", said.text)[1].replace(",", ""))
+        assert told == pytest.approx(b10[best], rel=0.006)
+        slip = float(re.search(r"full slip there in ([\d.]+) %", said.text)[1])
+        assert slip == pytest.approx(100 * shares[1, best], abs=0.51)
+        assert ("no B10 is left" in said.text) == (shares[0, best] < 1 and safe[best] == 0)
