@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,13 @@ DEFAULTS: dict[str, dict[str, Any]] = {
     "exponential": {"speed": None, "lowest": 0.4},
     "table": {"speed": None, "friction": None},
 }
+
+
+class Knots(NamedTuple):
+    """A law as compiled code takes it: `factor` (m,) at the slip speeds `speed` (m,); m = 1 is constant friction."""
+
+    speed: np.ndarray
+    factor: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +47,13 @@ class FrictionLaw:
         return np.interp(speed, self.speed, self.factor)
 
     @property
+    def knots(self) -> Knots:
+        """The law for compiled code, slip speeds in mm/s."""
+        return Knots(self.speed, self.factor)
+
+    @property
     def is_constant(self) -> bool:
+        """Whether the factor is 1 at every speed."""
         return bool(np.all(self.factor == 1.0))
 
     @property

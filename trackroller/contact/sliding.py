@@ -14,7 +14,7 @@ import numpy as np
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.sliding_kernels import Law, Patches, Rule, Sums, integrate
+from trackroller.contact.sliding_kernels import Patches, Rule, Sums, integrate
 from trackroller.contact.slip import (
     lateral_slip,
     pole_lateral,
@@ -89,7 +89,7 @@ def integrals(
     )
     patches = Patches(*(np.array(np.broadcast_to(v, n), dtype=float, order="C") for v in given))
     out = Sums(*(np.empty(n) for _ in range(4)))
-    model, table, rule = spin_model_index(spin_model), Law(law.speed, law.factor), Rule(*clustered_rule(nodes))
+    model, table, rule = spin_model_index(spin_model), law.knots, Rule(*clustered_rule(nodes))
     share_rows(lambda first, last: integrate(first, last, patches, model, table, rule, out), n, 32)
     f_t, f_a, m_r, power = (friction * ellipse.max_pressure * part for part in out)
     return Integrals(Resultants(f_t, f_a, m_r), power)

@@ -38,13 +38,6 @@ class Patches(NamedTuple):
     speed: np.ndarray
 
 
-class Law(NamedTuple):
-    """Friction over its value at rest: `factor` (m,) at the slip speeds `speed` (m,) [mm/s]; m = 1 is constant."""
-
-    speed: np.ndarray
-    factor: np.ndarray
-
-
 class Rule(NamedTuple):
     """Nodes and weights of a quadrature on (0, 1)."""
 

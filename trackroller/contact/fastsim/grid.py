@@ -13,16 +13,17 @@ an axis ratio of 50 the flexibilities are those of 50.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractions
 from trackroller.contact.fastsim.patch import FastsimSettings, FastsimSolution, flexibilities
-from trackroller.contact.fastsim.strips import strip_chords, strip_fields, strip_sums
+from trackroller.contact.fastsim.point import Totals, extrapolated
+from trackroller.contact.fastsim.strips import Strips, strip_chords, strip_fields, strip_sums
 from trackroller.contact.friction_laws import constant
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.linear import LARGEST_RATIO
+from trackroller.contact.slip import Creepage
 from trackroller.numerics.threads import share_rows
 
 
@@ -76,35 +77,28 @@ def equivalent_ellipses(patch: GridPatch) -> Islands:
     return Islands(owner, middle, a, ratio * a, force * (hx * hy)[owner], number, chords)
 
 
-def _problem(patch: GridPatch, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings):
-    """Arrays for the kernels up to the friction, and the loaded area of each patch [mm^2]."""
+def _problem(
+    patch: GridPatch, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings, travel_speed
+) -> tuple[Strips, np.ndarray]:
+    """Return the strips for the kernels, and the loaded area of each patch [mm^2]."""
     n, rows, columns = patch.pressure.shape
-    parts = equivalent_ellipses(patch)
-    spin, x = np.array(slip.spin, float), np.ascontiguousarray(patch.x)
-    along = slip.longitudinal[:, None] + spin[:, None] * x
-    if settings.profile_slip:
-        along = along + slip.beyond_tangent(x)
-    mu = np.array(np.broadcast_to(np.asarray(friction, float), n), order="C")
-    own, flexibility = parts.patch, np.full((n, columns, 2), np.nan)
+    parts, x = equivalent_ellipses(patch), np.ascontiguousarray(patch.x)
+    creep = Creepage.of_slip(slip, settings.profile_slip)
+    mu, speed, spin = (
+        np.array(np.broadcast_to(np.asarray(v, float), n), order="C")
+        for v in (friction, settings.travel_speed if travel_speed is None else travel_speed, creep.spin)
+    )
+    own, flexible = parts.patch, np.full((2, n, columns), np.nan)
     if own.size:
-        about = np.stack([slip.longitudinal[own] + spin[own] * parts.x, 0 * parts.x, spin[own]], axis=1)
+        about = Creepage(creep.longitudinal[own] + spin[own] * parts.x, 0.0 * parts.x, spin[own])
         g, nu = (np.broadcast_to(v, n)[own] for v in (elastic.shear_modulus, elastic.poisson_ratio))
-        found, _ = flexibilities(parts.a, parts.b, mu[own] * parts.load, about, g, nu)
-        flexibility = found[parts.of_strip]
-    a, b = patch.semi_axis_lateral, patch.semi_axis_rolling
-    sides = np.stack([2 * a / columns, 2 * b / rows], axis=1)
+        found = flexibilities(parts.a, parts.b, mu[own] * parts.load, about, g, nu)
+        flexible = np.stack([found.x[parts.of_strip], found.y[parts.of_strip]])
+    a, b = patch.semi_axis_lateral, np.array(patch.semi_axis_rolling)
+    hx, hy = 2 * a / columns, 2 * b / rows
     pressure = np.ascontiguousarray(np.nan_to_num(patch.pressure))
-    arrays = (pressure, x, sides, np.array(b), along, spin, flexibility, mu)
-    return arrays, parts.chords.sum(axis=1) * sides[:, 0] * sides[:, 1]
-
-
-def _rows_of(function, rest: tuple, first: int, last: int) -> None:
-    function((first, last), *rest)
-
-
-def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
-    given = settings.travel_speed if travel_speed is None else travel_speed
-    return np.array(np.broadcast_to(np.asarray(given, float), n), order="C")
+    strips = Strips(pressure, x, hx, hy, b, creep.along(x), spin, *flexible, mu, speed)
+    return strips, parts.chords.sum(axis=1) * hx * hy
 
 
 def solve_grid(
@@ -129,19 +123,20 @@ def solve_grid(
     the elements (tests/test_fastsim_grid.py); against the exact theory on the same patches see there as well.
     """
     settings = settings or FastsimSettings()
-    law = settings.law or constant()
-    arrays, area = _problem(patch, slip, friction, elastic, settings)
-    n = len(patch.normal_force)
-    totals, travel = np.zeros((2, n, 6)), _travel(travel_speed, settings, n)
-    for k, steps in enumerate((settings.steps, 2 * settings.steps)):
-        rest = (*arrays, travel, steps, law.speed, law.factor, totals[k])
-        share_rows(partial(_rows_of, strip_sums, rest), n, 4)
-    best = 2.0 * totals[1] - totals[0]  # the steps are of first order
-    best[~np.isfinite(patch.normal_force)] = np.nan
-    limit = arrays[-1] * patch.normal_force
+    law = (settings.law or constant()).knots
+    strips, area = _problem(patch, slip, friction, elastic, settings, travel_speed)
+    n, passes = len(patch.normal_force), []
+    for steps in (settings.steps, 2 * settings.steps):
+        totals = Totals(*(np.zeros(n) for _ in Totals._fields))
+        given = (strips, steps, law, totals)
+        share_rows(lambda first, last, given=given: strip_sums(first, last, *given), n, 4)
+        passes.append(totals)
+    fine, best = passes[1], extrapolated(*passes)
+    f_t, f_a, m_r, work = (np.where(np.isfinite(patch.normal_force), part, np.nan) for part in best[:4])
+    limit = strips.friction * patch.normal_force
     with np.errstate(divide="ignore", invalid="ignore"):
-        stick, lack = totals[1, :, 4] / area, np.where(limit > 0, totals[1, :, 5] / limit, 0.0)
-    return FastsimSolution(Resultants(best[:, 0], best[:, 1], best[:, 2]), best[:, 3], stick, lack)
+        stick, lack = fine.adhesion / area, np.where(limit > 0, fine.lack / limit, 0.0)
+    return FastsimSolution(Resultants(f_t, f_a, m_r), work, stick, lack)
 
 
 def tractions(
@@ -154,12 +149,11 @@ def tractions(
 ) -> SurfaceTractions:
     """Pressure and shear of each element, and the slip at its centre per travel speed; see `solve_grid`."""
     settings = settings or FastsimSettings()
-    law = settings.law or constant()
-    arrays, _ = _problem(patch, slip, friction, elastic, settings)
+    law = (settings.law or constant()).knots
+    strips, _ = _problem(patch, slip, friction, elastic, settings, travel_speed)
     n, rows, columns = patch.pressure.shape
     share, moved = (np.zeros((n, 2, rows, columns)) for _ in range(2))
-    rest = (*arrays, _travel(travel_speed, settings, n), law.speed, law.factor, share, moved)
-    share_rows(partial(_rows_of, strip_fields, rest), n, 4)
-    shear = share * (arrays[-1][:, None, None] * patch.pressure)[:, None]
+    share_rows(lambda first, last: strip_fields(first, last, strips, law, share, moved), n, 4)
+    shear = share * (strips.friction[:, None, None] * patch.pressure)[:, None]
     stick = (patch.pressure > 0) & (moved[:, 0] == 0.0) & (moved[:, 1] == 0.0)
     return SurfaceTractions(patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], moved[:, 0], moved[:, 1], stick)

@@ -16,14 +16,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
-from trackroller.contact.fastsim.point import enter, step
-from trackroller.contact.friction_laws import FrictionLaw, constant
+from trackroller.contact.fastsim.point import Totals, add, enter, extrapolated, step, write
+from trackroller.contact.friction_laws import FrictionLaw, Knots, constant
 from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
 from trackroller.contact.slip import Creepage
 from trackroller.numerics.threads import share_rows
@@ -57,82 +57,83 @@ def _bound(x, y, parabolic):
     return 4.0 / 3.0 * square if parabolic else math.sqrt(square)
 
 
-@njit(cache=True)
-def _patch(a, b, scale, rigid, bend, flexibility, steps, nodes, weights, parabolic, knots, factors, total):
-    """F_T, F_A, M_R, dissipation per distance, share of stick and lack of friction of one patch into `total` (6,).
+class Strips(NamedTuple):
+    """Ellipses and their strips, arrays (n,) unless stated, or one ellipse.
 
-    rigid = (xi, eta, phi): rigid slip w = (eta - phi y, xi + phi x + bend), bend of each strip.
+    a, b [mm]; bound : mu p_max [MPa]; along (n, m) : rolling part of the rigid slip in each strip; lateral, spin : its
+    lateral part is lateral - spin y; flexible_x, flexible_y : flexibilities [mm/MPa]; speed : travel speed [mm/s];
+    parabolic : traction bound of the original algorithm.
     """
-    state = np.zeros(6)
-    for k in range(6):
-        total[k] = 0.0
+
+    a: np.ndarray
+    b: np.ndarray
+    bound: np.ndarray
+    along: np.ndarray
+    lateral: np.ndarray
+    spin: np.ndarray
+    flexible_x: np.ndarray
+    flexible_y: np.ndarray
+    speed: np.ndarray
+    parabolic: bool
+
+
+@njit(cache=True)
+def _one(strips, i):
+    """Return ellipse i of a batch."""
+    a, b, bound, along, lateral, spin, flexible_x, flexible_y, speed, parabolic = strips
+    return Strips(
+        a[i], b[i], bound[i], along[i], lateral[i], spin[i], flexible_x[i], flexible_y[i], speed[i], parabolic
+    )
+
+
+@njit(cache=True)
+def _sums(e, steps, nodes, weights, law):
+    """Add up the totals of one ellipse from its strips at `nodes` over a."""
+    total = Totals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(nodes.size):
         u = nodes[i]
         length = math.sqrt(1.0 - u * u)
-        x, h = a * u, 2.0 * b * length / steps
-        wy = rigid[0] + rigid[2] * x + bend[i]
-        enter(rigid[1] - rigid[2] * b * length, wy, knots, factors, state)
+        x, h, wy = e.a * u, 2.0 * e.b * length / steps, e.along[i]
+        state = enter(e.lateral - e.spin * e.b * length, wy, law)
         for j in range(steps):
-            y = b * length * (1.0 - 2.0 * (j + 1.0) / steps)
-            before_x, before_y = state[0], state[1]
-            g = scale * _bound(u, y / b, parabolic)
-            step(rigid[1] - rigid[2] * (y + 0.5 * h), wy, h, flexibility, g, knots, factors, state)
-            area = weights[i] * a * h
-            mean_x, mean_y, middle = 0.5 * (before_x + state[0]), 0.5 * (before_y + state[1]), y + 0.5 * h
-            total[0] += area * mean_x
-            total[1] += area * mean_y
-            total[2] += area * (x * mean_y - middle * mean_x)
-            total[3] -= area * (mean_x * state[2] + mean_y * state[3])
-            if state[2] == 0.0 and state[3] == 0.0:
-                total[4] += area / (math.pi * a * b)
-            total[5] += area * g * state[5]
+            y = e.b * length * (1.0 - 2.0 * (j + 1.0) / steps)
+            g, middle = e.bound * _bound(u, y / e.b, e.parabolic), y + 0.5 * h
+            new = step(e.lateral - e.spin * middle, wy, h, e.flexible_x, e.flexible_y, g, law, state)
+            total = add(total, state, new, x, middle, weights[i] * e.a * h, g)
+            state = new
+    return total
 
 
 @njit(cache=True, nogil=True)
-def _all_patches(
-    rows, a, b, scale, rigid, bend, flexibility, travel, steps, nodes, weights, parabolic, knots, factors, totals
-):
-    for i in range(rows[0], rows[1]):
-        _patch(
-            a[i],
-            b[i],
-            scale[i],
-            rigid[i],
-            bend[i],
-            flexibility[i],
-            steps,
-            nodes,
-            weights,
-            parabolic,
-            knots / travel[i],
-            factors,
-            totals[i],
-        )
+def _all_sums(first, last, strips, steps, nodes, weights, law, totals):
+    for i in range(first, last):
+        e = _one(strips, i)
+        write(totals, i, _sums(e, steps, nodes, weights, Knots(law.speed / e.speed, law.factor)))
 
 
 @njit(cache=True, nogil=True)
-def _all_fields(rows, a, b, scale, rigid, bend, flexibility, travel, points, parabolic, knots, factors, shear, slip):
-    """Tractions and slip (n, 2, points, points) at element centres, marched from the leading edge of each strip."""
-    for i in range(rows[0], rows[1]):
-        speeds = knots / travel[i]
-        state = np.zeros(6)
+def _all_fields(first, last, strips, law, shear, slip):
+    """March from the leading edge; write tractions and slip (n, 2, points, points) at element centres."""
+    points = shear.shape[2]
+    for i in range(first, last):
+        e = _one(strips, i)
+        knots = Knots(law.speed / e.speed, law.factor)
         for k in range(points):
             u = (2.0 * k + 1.0) / points - 1.0
-            y, x = b[i] * math.sqrt(1.0 - u * u), a[i] * u
-            wy = rigid[i, 0] + rigid[i, 2] * x + bend[i, k]
-            enter(rigid[i, 1] - rigid[i, 2] * y, wy, speeds, factors, state)
+            y, wy = e.b * math.sqrt(1.0 - u * u), e.along[k]
+            state = enter(e.lateral - e.spin * y, wy, knots)
             for j in range(points - 1, -1, -1):
-                target = b[i] * ((2.0 * j + 1.0) / points - 1.0)
-                if target >= y or 1.0 - u * u <= (target / b[i]) ** 2:
+                target = e.b * ((2.0 * j + 1.0) / points - 1.0)
+                if target >= y or 1.0 - u * u <= (target / e.b) ** 2:
                     continue
                 h = (y - target) / SUBSTEPS
                 for _ in range(SUBSTEPS):
                     y -= h
-                    g = scale[i] * _bound(u, y / b[i], parabolic)
-                    wx = rigid[i, 1] - rigid[i, 2] * (y + 0.5 * h)
-                    step(wx, wy, h, flexibility[i], g, speeds, factors, state)
-                shear[i, 0, j, k], shear[i, 1, j, k] = state[0], state[1]
-                slip[i, 0, j, k], slip[i, 1, j, k] = state[2], state[3]
+                    g = e.bound * _bound(u, y / e.b, e.parabolic)
+                    wx = e.lateral - e.spin * (y + 0.5 * h)
+                    state = step(wx, wy, h, e.flexible_x, e.flexible_y, g, knots, state)
+                shear[i, 0, j, k], shear[i, 1, j, k] = state.shear_x, state.shear_y
+                slip[i, 0, j, k], slip[i, 1, j, k] = state.slip_x, state.slip_y
 
 
 @dataclass(frozen=True)
@@ -148,40 +149,54 @@ class FastsimSolution:
     friction_change: np.ndarray
 
 
-def flexibilities(a, b, limit, rigid, shear_modulus, poisson_ratio) -> tuple[np.ndarray, np.ndarray]:
-    """Flexibilities of x and y (n, 2) [mm/MPa], and that of x over the one under lateral creepage alone, (n,) [-].
+class Flexibilities(NamedTuple):
+    """Flexibilities of x and y [mm/MPa], and that of x over the one under lateral creepage alone [1]; (n,)."""
+
+    x: np.ndarray
+    y: np.ndarray
+    over_lateral: np.ndarray
+
+
+def flexibilities(a, b, limit, creep: Creepage, shear_modulus, poisson_ratio) -> Flexibilities:
+    """Return the flexibilities of n ellipses, between those of the linear theory and those of full sliding.
 
     Parameters
     ----------
-    a, b : semi-axes across and along the rolling direction [mm], (n,)
-    limit : mu F_N [N], (n,)
-    rigid : xi, eta [-] and phi [1/mm] about the middle of the ellipse, (n, 3)
-    shear_modulus, poisson_ratio : combined constants [MPa], [-], (n,)
+    a, b : ndarray, shape (n,)
+        Semi-axes across and along the rolling direction [mm].
+    limit : ndarray, shape (n,)
+        mu F_N [N].
+    creep : Creepage
+        Creepages about the middle of the ellipse, arrays (n,).
+    shear_modulus, poisson_ratio : ndarray, shape (n,)
+        Combined constants [MPa], [1].
 
-    Raises `InputError` for axis ratios beyond the linear coefficients.
+    Raises
+    ------
+    InputError
+        For axis ratios beyond the linear coefficients.
     """
-    (xi, eta, phi), g, nu = rigid.T, shear_modulus, poisson_ratio
+    xi, eta, phi, g, nu = creep.longitudinal, creep.lateral, creep.spin, shear_modulus, poisson_ratio
     c = creepage_coefficients(b / a, nu)
     l_1, l_2 = 8.0 * b / (3.0 * g * c.c11), 8.0 * b / (3.0 * g * c.c22)
     l_3 = np.pi * b * np.sqrt(b / a) / (4.0 * g * c.c23)
     across, turn = np.abs(eta), np.sqrt(a * b) * np.abs(phi)
     both = across + turn
     l_x = np.where(both > 0, (across * l_2 + turn * l_3) / np.where(both > 0, both, 1.0), l_2)
-    sticking = np.stack([l_x, l_1], axis=1)
-    # the forces of the linear theory over the largest: a measure of how much slides
+    # forces of the linear theory over the largest force: a measure of how much of the patch slides
     square = a * b * g
     forces = np.hypot(square * c.c11 * xi, square * (c.c22 * eta - np.sqrt(a * b) * c.c23 * phi))
     with np.errstate(divide="ignore", invalid="ignore"):
         slides = 1.0 / (1.0 + (SLIDING_FORCE * limit / forces) ** 2)
         pole = 1.0 / (1.0 + (phi * a) ** 2 / (xi**2 + eta**2))  # 1 far away, 0 in the middle
-    share = np.where(forces > 0, slides, 0.0)[:, None]
+    share = np.where(forces > 0, slides, 0.0)
     far = sliding_flexibility(b / a, nu) * (b / g * (POLE_INSIDE + (1.0 - POLE_INSIDE) * np.nan_to_num(pole)))[:, None]
-    return sticking + share * (far - sticking), l_x / l_2
+    return Flexibilities(l_x + share * (far[:, 0] - l_x), l_1 + share * (far[:, 1] - l_1), l_x / l_2)
 
 
-def _problem(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic):
-    """Arrays a, b, mu p_max, rigid slips (n, 3) and flexibilities (n, 2: x, y) [mm/MPa] of n patches."""
-    a, b, p, xi, eta, phi, mu, g, nu = (
+def _strips(ellipse, creep: Creepage, friction, elastic: Elastic, settings, travel_speed, places) -> Strips:
+    """Return the strips of n ellipses at `places` (m,) over a."""
+    a, b, p, xi, eta, phi, mu, g, nu, speed = (
         np.array(v, float, order="C")
         for v in np.broadcast_arrays(
             ellipse.semi_axis_lateral,
@@ -193,27 +208,13 @@ def _problem(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic):
             friction,
             elastic.shear_modulus,
             elastic.poisson_ratio,
+            settings.travel_speed if travel_speed is None else travel_speed,
         )
     )
-    limit = 2.0 / 3.0 * np.pi * a * b * mu * p
-    flexibility, across = flexibilities(a, b, limit, np.stack([xi, eta, phi], axis=1), g, nu)
-    return a, b, mu * p, np.stack([xi, eta * across, phi], axis=1), flexibility
-
-
-def _bend(profile: Slip | None, a: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Rolling slip that the guide's profile adds in the strips at `places` (m,) over a, shape (n, m)."""
-    if profile is None:
-        return np.zeros((a.size, places.size))
-    return np.ascontiguousarray(profile.beyond_tangent(a[:, None] * places))
-
-
-def _rows_of(function, rest: tuple, first: int, last: int) -> None:
-    function((first, last), *rest)
-
-
-def _travel(travel_speed, settings: FastsimSettings, n: int) -> np.ndarray:
-    given = settings.travel_speed if travel_speed is None else travel_speed
-    return np.array(np.broadcast_to(np.asarray(given, float), n), order="C")
+    whole = Creepage(xi, eta, phi, creep.profile)
+    flexible = flexibilities(a, b, 2.0 / 3.0 * np.pi * a * b * mu * p, whole, g, nu)
+    along, lateral = np.ascontiguousarray(whole.along(a[:, None] * places)), eta * flexible.over_lateral
+    return Strips(a, b, mu * p, along, lateral, phi, flexible.x, flexible.y, speed, settings.parabolic)
 
 
 def solve_patch(
@@ -240,33 +241,23 @@ def solve_patch(
     roller has, up to 16 % in the lateral force.
     """
     settings = settings or FastsimSettings()
-    law = settings.law or constant()
-    a, b, scale, rigid, flexibility = _problem(ellipse, creep, friction, elastic)
+    law = (settings.law or constant()).knots
     nodes, weights = np.polynomial.legendre.leggauss(settings.strips)
-    totals, bend = np.empty((2, a.size, 6)), _bend(creep.profile, a, nodes)
-    travel = _travel(travel_speed, settings, a.size)
-    for k, steps in enumerate((settings.steps, 2 * settings.steps)):
-        rest = (
-            a,
-            b,
-            scale,
-            rigid,
-            bend,
-            flexibility,
-            travel,
-            steps,
-            nodes,
-            weights,
-            settings.parabolic,
-            law.speed,
-            law.factor,
-            totals[k],
-        )
-        share_rows(partial(_rows_of, _all_patches, rest), a.size, 8)
-    force = 2.0 / 3.0 * np.pi * a * b * scale
-    lack = totals[1, :, 5] / np.where(force > 0, force, 1.0)
-    best = 2.0 * totals[1] - totals[0]  # the steps are of first order
-    return FastsimSolution(Resultants(best[:, 0], best[:, 1], best[:, 2]), best[:, 3], totals[1, :, 4], lack)
+    strips = _strips(ellipse, creep, friction, elastic, settings, travel_speed, nodes)
+    passes = []
+    for steps in (settings.steps, 2 * settings.steps):
+        totals = Totals(*(np.empty(strips.a.size) for _ in Totals._fields))
+        given = (strips, steps, nodes, weights, law, totals)
+        share_rows(lambda first, last, given=given: _all_sums(first, last, *given), strips.a.size, 8)
+        passes.append(totals)
+    force = 2.0 / 3.0 * np.pi * strips.a * strips.b * strips.bound
+    fine, best = passes[1], extrapolated(*passes)
+    return FastsimSolution(
+        Resultants(best.lateral, best.driving, best.moment),
+        best.dissipation,
+        fine.adhesion / (np.pi * strips.a * strips.b),
+        fine.lack / np.where(force > 0, force, 1.0),
+    )
 
 
 def resultants(
@@ -287,28 +278,13 @@ def tractions(
 ) -> SurfaceTractions:
     """Pressure (of Hertz), shear and slip at points x points element centres; 0 outside the ellipse."""
     settings = settings or FastsimSettings()
-    law = settings.law or constant()
-    a, b, scale, rigid, flexibility = _problem(ellipse, Creepage.of_slip(slip), friction, elastic)
-    points = settings.points
-    shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
+    law, points = (settings.law or constant()).knots, settings.points
     u = (2.0 * np.arange(points) + 1.0) / points - 1.0
-    bend = _bend(slip if settings.profile_slip else None, a, u)
-    rest = (
-        a,
-        b,
-        scale,
-        rigid,
-        bend,
-        flexibility,
-        _travel(travel_speed, settings, a.size),
-        points,
-        settings.parabolic,
-        law.speed,
-        law.factor,
-        shear,
-        moved,
-    )
-    share_rows(partial(_rows_of, _all_fields, rest), a.size, 4)
+    creep = Creepage.of_slip(slip, settings.profile_slip)
+    strips = _strips(ellipse, creep, friction, elastic, settings, travel_speed, u)
+    a, b = strips.a, strips.b
+    shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
+    share_rows(lambda first, last: _all_fields(first, last, strips, law, shear, moved), a.size, 4)
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - u[:, None] ** 2, 0.0))
     pressure = np.broadcast_to(ellipse.max_pressure, a.shape)[:, None, None] * root
     stick = (root > 0) & (moved[:, 0] == 0.0) & (moved[:, 1] == 0.0)

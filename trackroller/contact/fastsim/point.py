@@ -1,25 +1,51 @@
-"""One point of the simplified theory: what a step along a strip does to its traction, compiled.
+"""One point of the simplified theory: what a step along a strip does to its traction; compiled.
 
-Shared by the strips of ellipses (`fastsim`) and of solved patches (`fastsim_grid`).
+The strips of ellipses (`fastsim.patch`) and of solved patches (`fastsim.strips`) share these functions.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from trackroller.numerics.knots import interval
+from trackroller.numerics.knots import polyline
 
-NEWTON = 30  # most steps of the root of one point; three or four are usual
+NEWTON = 30  # limit of Newton's method for the root of one point; three or four steps are usual
+
+
+class State(NamedTuple):
+    """Traction [MPa] and slip [1] at a point, friction over its value at rest, and what this friction lacks."""
+
+    shear_x: float
+    shear_y: float
+    slip_x: float
+    slip_y: float
+    friction: float
+    lack: float
+
+
+class Totals(NamedTuple):
+    """F_T, F_A [N], M_R [N mm], dissipation per distance [N], adhesion area [mm^2] and lack of friction [N].
+
+    Numbers of one patch, or arrays (n,).
+    """
+
+    lateral: np.ndarray
+    driving: np.ndarray
+    moment: np.ndarray
+    dissipation: np.ndarray
+    adhesion: np.ndarray
+    lack: np.ndarray
 
 
 @njit(cache=True)
 def _shortened(zx, zy, l_x, l_y, g):
-    """(x, y) of length g with (x - z) L along it: the traction that slides under the trial traction z, |z| > g.
+    """Return (x, y) of length g with (x - z) L along it: the traction that slides under the trial traction z, |z| > g.
 
-    x = L z/(L + k), k the root of |x| = g by Newton's method from the mean of L; k >= 0.
+    x = L z/(L + k) with the root k >= 0 of |x| = g, by Newton's method from the mean of L.
     """
     mean = 0.5 * (l_x + l_y)
     k = mean * (math.hypot(zx, zy) / g - 1.0)
@@ -38,48 +64,66 @@ def _shortened(zx, zy, l_x, l_y, g):
 
 
 @njit(cache=True)
-def _relaxed(friction, speed, h, stiffness, knots, factors):
-    """Friction one step further towards that of its slip speed; and how far it was from it.
+def _relaxed(friction, speed, h, stiffness, law):
+    """Return the friction one step further towards that of its slip speed, and how far it was from it.
 
-    Friction that falls at once with the slip of an elastic spring is unstable, so it follows over a length of the
-    order of the elastic displacement times the slope of the law (Vollebregt & Schuttelaars 2012); `stiffness` = L g.
+    Friction that falls at once with the slip of an elastic spring is unstable. It therefore follows over a length of
+    the order of the elastic displacement times the slope of the law (Vollebregt & Schuttelaars 2012);
+    `stiffness` = L g.
     """
-    last = knots.size - 1
-    if speed >= knots[last]:
-        target, slope = factors[last], 0.0
-    else:
-        low = interval(speed, knots, 0, last)
-        slope = (factors[low + 1] - factors[low]) / (knots[low + 1] - knots[low])
-        target = factors[low] + slope * (speed - knots[low])
+    target, slope = polyline(speed, law.speed, law.factor)
     return friction + (target - friction) / (1.0 + 2.0 * stiffness * abs(slope) / h), abs(target - friction)
 
 
 @njit(cache=True)
-def step(wx, wy, h, flexibility, bound, knots, factors, state):
-    """One step h against the rolling direction with rigid slip (wx, wy).
+def step(wx, wy, h, l_x, l_y, bound, law, old):
+    """Return the state one step h further against the rolling direction, with rigid slip (wx, wy) on the way.
 
-    state = tau_x, tau_y, s_x, s_y, friction over its value at rest, and what it lacked: the old, then the new.
+    l_x, l_y : flexibilities [mm/MPa]; bound : mu p at the new point [MPa]; old : state before the step.
     """
-    l_x, l_y = flexibility[0], flexibility[1]
-    zx, zy = state[0] - h * wx / l_x, state[1] - h * wy / l_y
-    g = bound * state[4]
+    zx, zy = old.shear_x - h * wx / l_x, old.shear_y - h * wy / l_y
+    g = bound * old.friction
     if zx * zx + zy * zy <= g * g:
-        state[0], state[1], state[2], state[3] = zx, zy, 0.0, 0.0
+        tx, ty, sx, sy = zx, zy, 0.0, 0.0
     elif g <= 0.0:
-        state[2], state[3] = -l_x * zx / h, -l_y * zy / h
-        state[0] = state[1] = 0.0
+        tx, ty, sx, sy = 0.0, 0.0, -l_x * zx / h, -l_y * zy / h
     else:
         tx, ty = _shortened(zx, zy, l_x, l_y, g)
-        state[0], state[1] = tx, ty
-        state[2], state[3] = l_x * (tx - zx) / h, l_y * (ty - zy) / h
-    state[5] = 0.0
-    if knots.size > 1:
-        speed = math.hypot(state[2], state[3])
-        state[4], state[5] = _relaxed(state[4], speed, h, max(l_x, l_y) * bound, knots, factors)
+        sx, sy = l_x * (tx - zx) / h, l_y * (ty - zy) / h
+    friction, lack = old.friction, 0.0
+    if law.speed.size > 1:
+        friction, lack = _relaxed(friction, math.hypot(sx, sy), h, max(l_x, l_y) * bound, law)
+    return State(tx, ty, sx, sy, friction, lack)
 
 
 @njit(cache=True)
-def enter(wx, wy, knots, factors, state):
-    """The state at the leading edge: no traction, friction of the rigid slip."""
-    state[:] = 0.0
-    state[4] = np.interp(math.hypot(wx, wy), knots, factors)
+def enter(wx, wy, law):
+    """Return the state at the leading edge: no traction, and the friction of the rigid slip."""
+    return State(0.0, 0.0, 0.0, 0.0, polyline(math.hypot(wx, wy), law.speed, law.factor)[0], 0.0)
+
+
+@njit(cache=True)
+def add(total, old, new, x, y, area, bound):
+    """Return the totals with one step from `old` to `new` about the point (x, y), over an area [mm^2]."""
+    mean_x, mean_y = 0.5 * (old.shear_x + new.shear_x), 0.5 * (old.shear_y + new.shear_y)
+    sticks = new.slip_x == 0.0 and new.slip_y == 0.0
+    return Totals(
+        total.lateral + area * mean_x,
+        total.driving + area * mean_y,
+        total.moment + area * (x * mean_y - y * mean_x),
+        total.dissipation - area * (mean_x * new.slip_x + mean_y * new.slip_y),
+        total.adhesion + (area if sticks else 0.0),
+        total.lack + area * bound * new.lack,
+    )
+
+
+@njit(cache=True)
+def write(totals, i, found):
+    """Store the totals of patch i in arrays."""
+    totals.lateral[i], totals.driving[i], totals.moment[i] = found.lateral, found.driving, found.moment
+    totals.dissipation[i], totals.adhesion[i], totals.lack[i] = found.dissipation, found.adhesion, found.lack
+
+
+def extrapolated(coarse: Totals, fine: Totals) -> Totals:
+    """Return the limit of infinitely many steps from n and 2 n steps; the steps are of first order."""
+    return Totals(*(2.0 * f - c for c, f in zip(coarse, fine, strict=True)))

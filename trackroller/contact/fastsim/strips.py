@@ -3,11 +3,35 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from trackroller.contact.fastsim.point import enter, step
+from trackroller.contact.fastsim.point import Totals, add, enter, step, write
+from trackroller.contact.friction_laws import Knots
+
+
+class Strips(NamedTuple):
+    """Solved patches of N x M elements, arrays (n,) unless stated, or one of their strips.
+
+    pressure (n, N, M) [MPa]; x (n, M) : place of the strips [mm]; hx, hy : sides of an element [mm]; half : half the
+    length of the grid [mm]; along (n, M), spin : rigid slip (-spin y, along); flexible_x, flexible_y (n, M) [mm/MPa];
+    friction : coefficient mu; speed : travel speed [mm/s].
+    """
+
+    pressure: np.ndarray
+    x: np.ndarray
+    hx: np.ndarray
+    hy: np.ndarray
+    half: np.ndarray
+    along: np.ndarray
+    spin: np.ndarray
+    flexible_x: np.ndarray
+    flexible_y: np.ndarray
+    friction: np.ndarray
+    speed: np.ndarray
+
 
 LONG = 8  # loaded elements from which the ends of an interval are extrapolated
 SUBSTEPS = 8  # between the centres of elements, for tractions
@@ -82,41 +106,33 @@ def _scale(p, shape, steps):
 
 
 @njit(cache=True)
-def _strip(p, place, along, spin, flexibility, friction, steps, knots, factors, total):
-    """Adds F_T, F_A, M_R, dissipation per distance, sticking area and lack of friction of one strip to `total` (6,).
-
-    place = x of the strip, element sides across and along, half the length of the grid; rigid slip (-spin y, along).
-    """
-    state, shape = np.zeros(6), np.zeros(4)
-    x, hx, hy, half = place[0], place[1], place[2], place[3]
+def _sum(total, p, strip, steps, law):
+    """Return the totals with those of one strip with element pressures p (N,)."""
+    shape = np.zeros(4)
     k = p.size - 1
     while k >= 0:
         if p[k] <= 0.0:
             k -= 1
             continue
         k = _interval(p, k, shape) - 1
-        scale, length = friction * _scale(p, shape, steps), (shape[3] - shape[2]) / steps
-        y, h = (shape[3] + 0.5) * hy - half, length * hy
-        enter(-spin * y, along, knots, factors, state)
+        scale, length = strip.friction * _scale(p, shape, steps), (shape[3] - shape[2]) / steps
+        y, h = (shape[3] + 0.5) * strip.hy - strip.half, length * strip.hy
+        state = enter(-strip.spin * y, strip.along, law)
         for j in range(1, steps + 1):
-            before_x, before_y, middle = state[0], state[1], y - (j - 0.5) * h
+            middle = y - (j - 0.5) * h
             g = scale * _pressure(p, shape, shape[3] - j * length) if j < steps else 0.0
-            step(-spin * middle, along, h, flexibility, g, knots, factors, state)
-            mean_x, mean_y, area = 0.5 * (before_x + state[0]), 0.5 * (before_y + state[1]), hx * h
-            total[0] += area * mean_x
-            total[1] += area * mean_y
-            total[2] += area * (x * mean_y - middle * mean_x)
-            total[3] -= area * (mean_x * state[2] + mean_y * state[3])
-            if state[2] == 0.0 and state[3] == 0.0:
-                total[4] += area
-            total[5] += area * g * state[5]
+            wx = -strip.spin * middle
+            new = step(wx, strip.along, h, strip.flexible_x, strip.flexible_y, g, law, state)
+            total = add(total, state, new, strip.x, middle, strip.hx * h, g)
+            state = new
+    return total
 
 
 @njit(cache=True)
-def _field(p, place, along, spin, flexibility, friction, knots, factors, shear, slip):
-    """Traction over its bound and slip (2, N) at the centres of the loaded elements of one strip."""
-    state, shape = np.zeros(6), np.zeros(4)
-    hy, half = place[2], place[3]
+def _field(p, strip, law, shear, slip):
+    """Write traction over its bound and slip (2, N) at the centres of the loaded elements of one strip."""
+    shape = np.zeros(4)
+    hy, half, spin = strip.hy, strip.half, strip.spin
     k = p.size - 1
     while k >= 0:
         if p[k] <= 0.0:
@@ -125,10 +141,10 @@ def _field(p, place, along, spin, flexibility, friction, knots, factors, shear, 
         last = k
         first = _interval(p, last, shape)
         k = first - 1
-        scale, t = friction * _scale(p, shape, 8 * p.size), shape[3]
-        enter(-spin * ((t + 0.5) * hy - half), along, knots, factors, state)
+        scale, t = strip.friction * _scale(p, shape, 8 * p.size), shape[3]
+        state = enter(-spin * ((t + 0.5) * hy - half), strip.along, law)
         for j in range(last, first - 1, -1):
-            # elements whose centre lies beyond an edge take what is nearest to them
+            # an element whose centre lies beyond an edge takes the traction of the nearest place inside
             inside = min(max(float(j), shape[2] + 0.25), shape[3] - 0.25)
             h = (t - inside) / SUBSTEPS
             g = scale * _pressure(p, shape, inside)
@@ -138,52 +154,50 @@ def _field(p, place, along, spin, flexibility, friction, knots, factors, shear, 
                 t -= h
                 g = scale * _pressure(p, shape, t)
                 wx = -spin * ((t + 0.5 * h + 0.5) * hy - half)
-                step(wx, along, h * hy, flexibility, g, knots, factors, state)
-            for c in range(2):
-                shear[c, j] = state[c] / g if g > 0.0 else 0.0
-                slip[c, j] = state[2 + c]
+                state = step(wx, strip.along, h * hy, strip.flexible_x, strip.flexible_y, g, law, state)
+            shear[0, j] = state.shear_x / g if g > 0.0 else 0.0
+            shear[1, j] = state.shear_y / g if g > 0.0 else 0.0
+            slip[0, j], slip[1, j] = state.slip_x, state.slip_y
+
+
+@njit(cache=True)
+def _one(strips, i, j):
+    """Return strip j of patch i."""
+    pressure, x, hx, hy, half, along, spin, flexible_x, flexible_y, friction, speed = strips
+    return Strips(
+        pressure[i],
+        x[i, j],
+        hx[i],
+        hy[i],
+        half[i],
+        along[i, j],
+        spin[i],
+        flexible_x[i, j],
+        flexible_y[i, j],
+        friction[i],
+        speed[i],
+    )
 
 
 @njit(cache=True, nogil=True)
-def strip_sums(
-    rows, pressure, x, sides, half, along, spin, flexibility, friction, travel, steps, knots, factors, totals
-):
-    for i in range(rows[0], rows[1]):
-        for j in range(x.shape[1]):
-            place = (x[i, j], sides[i, 0], sides[i, 1], half[i])
-            _strip(
-                pressure[i, :, j].copy(),
-                place,
-                along[i, j],
-                spin[i],
-                flexibility[i, j],
-                friction[i],
-                steps,
-                knots / travel[i],
-                factors,
-                totals[i],
-            )
+def strip_sums(first, last, strips, steps, law, totals):
+    """Write the totals of the patches first..last into arrays (n,)."""
+    for i in range(first, last):
+        knots = Knots(law.speed / strips.speed[i], law.factor)
+        total = Totals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        for j in range(strips.x.shape[1]):
+            total = _sum(total, strips.pressure[i, :, j].copy(), _one(strips, i, j), steps, knots)
+        write(totals, i, total)
 
 
 @njit(cache=True, nogil=True)
-def strip_fields(
-    rows, pressure, x, sides, half, along, spin, flexibility, friction, travel, knots, factors, shear, slip
-):
-    for i in range(rows[0], rows[1]):
-        for j in range(x.shape[1]):
-            place = (x[i, j], sides[i, 0], sides[i, 1], half[i])
-            _field(
-                pressure[i, :, j].copy(),
-                place,
-                along[i, j],
-                spin[i],
-                flexibility[i, j],
-                friction[i],
-                knots / travel[i],
-                factors,
-                shear[i, :, :, j],
-                slip[i, :, :, j],
-            )
+def strip_fields(first, last, strips, law, shear, slip):
+    """Write traction over its bound and slip of the patches first..last, (n, 2, N, M)."""
+    for i in range(first, last):
+        knots = Knots(law.speed / strips.speed[i], law.factor)
+        for j in range(strips.x.shape[1]):
+            p = strips.pressure[i, :, j].copy()
+            _field(p, _one(strips, i, j), knots, shear[i, :, :, j], slip[i, :, :, j])
 
 
 @njit(cache=True)
