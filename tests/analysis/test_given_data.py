@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import norm
 
 from trackroller.analysis.delta import delta
+from trackroller.analysis.givendata import firsts
 from trackroller.analysis.pairs import pairs
 from trackroller.report.numbers import level_text, near
 from trackroller.study.design.levels import short
@@ -52,6 +53,15 @@ def test_delta_of_inert_factors_stays_within_chance():
         below += value <= noise
         assert low == 0.0 or value > noise
     assert below >= 27
+
+
+def test_first_order_index_of_ordered_rows_of_a_grid():
+    """Rows in the order of a grid repeat the pattern of the other factors: only the own share may count."""
+    grid = np.indices((4, 50, 5)).reshape(3, -1).T.astype(float)
+    part = np.array([0.2, 3.0, 1.0])
+    y = ((grid - grid.mean(axis=0)) / grid.std(axis=0)) @ part
+    found = firsts(y, grid, np.ones(3, dtype=bool))
+    np.testing.assert_allclose(found["first"], part**2 / (part**2).sum(), atol=0.02)
 
 
 def test_interactions_of_the_ishigami_function_from_a_plain_sample():

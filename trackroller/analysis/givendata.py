@@ -11,7 +11,7 @@ import numpy as np
 from SALib.analyze import rbd_fast
 from scipy.stats import rankdata
 
-from trackroller.analysis.delta import FEW, delta
+from trackroller.analysis.delta import delta
 from trackroller.analysis.indices import Estimates, Z, constant
 
 MIN_ROWS = 30
@@ -114,10 +114,11 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
 
     Notes
     -----
-    Factors with more than ten ordered values: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur.
-    SALib's bootstrap draws half of the rows, so its half width is scaled by sqrt(1/2) (m out of n bootstrap [2]_).
-    Lists and categories: `first_order` of the groups, because RBD-FAST of a list is biased (0.88 for a share of
-    0.96). ``validation/index_estimators.py`` compares both.
+    Continuous factors: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur. SALib's bootstrap draws
+    half of the rows, so its half width is scaled by sqrt(1/2) (m out of n bootstrap [2]_).
+    Categories and columns whose values repeat: `first_order` of the groups, because RBD-FAST orders equal values by
+    their rows. It is biased for a category (0.88 for a share of 0.96), and in a table with the rows of a grid it
+    takes other factors for this one (0.63 for a share of 0.004). ``validation/index_estimators.py`` compares both.
 
     References
     ----------
@@ -133,14 +134,15 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
         return out
     for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
         x = unit[:, j]
-        if ordered[j] and len(np.unique(x)) > FEW:
+        values, group = np.unique(x, return_inverse=True)
+        if ordered[j] and 2 * len(values) > len(x):
             problem = {"num_vars": 1, "names": ["x"], "bounds": [[0.0, 1.0]]}
             harmonics = max(2, min(HARMONICS, len(y) // ROWS_PER_HARMONIC))
             with np.errstate(invalid="ignore"):  # a resample may miss a rare event altogether
                 found = rbd_fast.analyze(problem, x[:, None], y, harmonics, FAST_RESAMPLES, seed=seed)
             value, half = float(found["S1"][0]), 0.5**0.5 * float(found["S1_conf"][0])
         else:
-            value, error = first_order(y, np.unique(x, return_inverse=True)[1], seed)
+            value, error = first_order(y, group, seed)
             half = Z * error
         out["first"][j], out["first_low"][j], out["first_high"][j] = value, value - half, value + half
     return out
