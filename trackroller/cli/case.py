@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from trackroller.roller.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
@@ -18,6 +16,8 @@ from trackroller.study.files import WorkError, write_whole
 
 if TYPE_CHECKING:
     import xarray as xr
+
+SHEET_OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 
 
 def settings_of(words: list[str]) -> dict[str, Any]:
@@ -78,63 +78,30 @@ def write_result(dataset: xr.Dataset, target: Path) -> None:
     write_whole(target, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
 
 
-def _json(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_json(v) for v in value]
-    if isinstance(value, float) and not np.isfinite(value):
-        return None if np.isnan(value) else str(value)
-    return value
+def solve_and_tell(
+    case: Path | None, words: list[str], json: bool, out: Path | None, sheet: Path | None, **more: Any
+) -> int:
+    """Solve a case, write or print what was asked for, and return the exit code: 1 if the case failed."""
+    from trackroller.report.sheet.page import write_sheet  # heavy: rich and jinja2
+    from trackroller.report.sheet.text import as_json, print_facts
 
-
-def print_json(dataset: xr.Dataset) -> None:
-    """Print a result as JSON: values, dims and units by name; NaN is null, infinity a text."""
-    told = {
-        str(name): {
-            "dims": list(variable.dims),
-            "units": variable.attrs.get("units", "1"),
-            "value": _json(variable.values.tolist()),
-        }
-        for name, variable in dataset.variables.items()
-    }
-    told["regime"]["meaning"] = np.array(REGIMES)[dataset["regime"].values].tolist()
-    print(json.dumps(told))
-
-
-def as_text(dataset: xr.Dataset) -> None:
-    """Print a result as a table: contacts and bodies side by side; quantities without a value are named below."""
-    from rich.console import Console
-    from rich.table import Table
-
-    columns = [(), (1,), (2,), (1, "roller"), (1, "guide"), (2, "roller"), (2, "guide")]
-    regime = REGIMES[int(dataset["regime"])]
-    converged = "converged" if int(dataset["converged"]) else "NOT converged"
-    console = Console(width=None if Console().is_terminal else 140)
-    console.print(f"regime: {regime}, {converged}")
-    if "reason" in dataset:
-        console.print(f"reason: {dataset['reason'].item()}", highlight=False, markup=False)
-    undefined = []
-    for dims in ((), ("contact",), ("contact", "body")):
-        names = [
-            n for n, v in dataset.data_vars.items() if v.dims == dims and n not in ("regime", "converged", "reason")
-        ]
-        blank = [n for n in names if np.isnan(dataset[n].values.astype(float)).all()]
-        undefined += [str(n) for n in blank]
-        if len(names) == len(blank):
-            continue
-        table = Table("quantity", "unit", title=", ".join(dims) or None, title_justify="left")
-        heads = [c for c in columns if len(c) == len(dims)]
-        for head in heads:
-            table.add_column(" ".join(str(h) for h in head) if dims else "value", justify="right")
-        for name in names:
-            if name not in blank:
-                values = np.atleast_1d(dataset[name].values.ravel())
-                table.add_row(str(name), str(dataset[name].attrs.get("units", "")), *[f"{v:.6g}" for v in values])
-        console.print(table)
-    if undefined:
-        console.print(f"undefined here: {', '.join(undefined)}")
-    fields = [str(n) for n, v in dataset.data_vars.items() if v.ndim > 2]
-    if fields:
-        console.print(f"fields (write them with -o): {', '.join(fields)}")
+    target, page = (None if path is None else writable(path) for path in (out, sheet))
+    if page is not None:
+        more["outputs"] = SHEET_OUTPUTS
+    dataset = solve_case(case, words, **more)
+    if target is not None:
+        write_result(dataset, target)
+    if page is not None:
+        write_sheet(dataset, page, case.stem if case is not None else "")
+    if json:
+        print(as_json(dataset))
+    elif target is None:
+        print_facts(dataset)
+    if not is_failed(dataset):
+        return 0
+    if json or target is not None:
+        print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
+    return 1
 
 
 def is_failed(dataset: xr.Dataset) -> bool:

@@ -52,23 +52,14 @@ def solve(
     settings: Annotated[list[str] | None, typer.Option("--set", help="key=value, again and again")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+    sheet: Annotated[Path | None, typer.Option("--report", help="write a printable sheet (HTML) as well")] = None,
     no_shortcuts: NoShortcuts = False,
 ) -> None:
     """Solve one case; exit 1 if it fails. Keys: parameters and materials of a case, options of a study file."""
-    from trackroller.cli.case import as_text, is_failed, print_json, solve_case, writable, write_result
+    from trackroller.cli.case import solve_and_tell
 
-    target = None if out is None else writable(out)
-    dataset = solve_case(case, settings or [], **({"shortcuts": False} if no_shortcuts else {}))
-    if target is not None:
-        write_result(dataset, target)
-    if as_json:
-        print_json(dataset)
-    elif out is None:
-        as_text(dataset)
-    if is_failed(dataset):
-        if as_json or out is not None:
-            print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
-        raise typer.Exit(1)
+    more = {"shortcuts": False} if no_shortcuts else {}
+    raise typer.Exit(solve_and_tell(case, settings or [], as_json, out, sheet, **more))
 
 
 @app.command()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.cli.case import print_json, writable, write_result
+from trackroller.cli.case import writable, write_result
 from trackroller.parameters import REGIMES
 from trackroller.study.spectrum.damage import BODIES, summary
 from trackroller.study.spectrum.solve import load_spectrum, solve_spectrum
@@ -23,7 +23,7 @@ def run_spectrum(path: Path, as_json: bool, out: Path | None) -> None:
     if target is not None:
         write_result(dataset, target)
     if as_json:
-        print_json(dataset)
+        print(as_json(dataset))
     elif out is None:
         print_spectrum(dataset)
 

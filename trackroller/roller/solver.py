@@ -12,6 +12,7 @@ from numba.core.registry import cpu_target
 
 from trackroller import __version__
 from trackroller.errors import InputError
+from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
 from trackroller.roller import equilibrium as eq
 from trackroller.roller import requirements
@@ -22,6 +23,7 @@ from trackroller.roller.choice.choose import choose, in_doubt
 from trackroller.roller.dataset import VARIABLES, build
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use
+from trackroller.roller.record import with_inputs
 from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
@@ -139,7 +141,10 @@ def solve(
     table = to_table(cases, database)
     _check_cases(table, options)
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
-    return with_reasons(_assemble(join(windows), options, single), table, options)
+    ds = with_reasons(_assemble(join(windows), options, single), table, options)
+    if not single or hasattr(cases, "data_vars"):
+        return ds
+    return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database or load_database())
 
 
 def _check_cases(table: CaseTable, options: Options) -> None:

@@ -1,0 +1,272 @@
+"""Collect the facts of one solved roller: verdict, inputs, results by contact and body, limits, flags."""
+
+from __future__ import annotations
+
+import json
+import math
+import platform
+import shlex
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import metadata
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.damage import fatigue
+from trackroller.parameters import REGIMES
+from trackroller.report.numbers import life, number, rounded
+from trackroller.report.sheet.flags import Flag, flags_of
+from trackroller.report.sheet.rows import (
+    Row,
+    input_row,
+    is_told,
+    limit_rows,
+    material_rows,
+    material_source,
+    quantity_rows,
+)
+from trackroller.roller.geometry import rolling_radius
+from trackroller.roller.limits import Limits, limits
+from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import MaterialDatabase
+
+BODIES = ("roller", "guide")
+PROBABILITIES = (0.1, 0.5, 0.9)
+ON_SURFACE = 1e-6  # a peak less deep than this share of the patch lies on the surface
+CONTACT_ROWS = (  # variable, words
+    ("normal_force", "normal force F_N"),
+    ("lateral_force", "lateral friction force F_T"),
+    ("driving_force", "friction force along the track F_A"),
+    ("spin_moment", "spin moment M_R"),
+    ("semi_axis_lateral", "semi-axis a, lateral"),
+    ("semi_axis_rolling", "semi-axis b, rolling direction"),
+    ("max_pressure", "largest pressure"),
+    ("max_shear", "largest surface shear"),
+    ("stick_area_fraction", "adhesion (stick) area, share of the patch"),
+    ("friction_power", "friction power"),
+)
+WHOLE_ROWS = (
+    ("slip", "longitudinal creepage"),
+    ("transmitted_force", "force transmitted along the track"),
+    ("drilling_torque", "roller torque about the track normal (drilling torque)"),
+    ("rolling_radius_shift", "rolling radius shift"),
+)
+
+
+@dataclass(frozen=True)
+class BodyFacts:
+    """Stress and life of one body in one contact."""
+
+    body: str
+    peak: float
+    place: str
+    of_strength: float
+    of_fatigue_limit: float
+    cycles: float
+    hours: float
+
+
+@dataclass(frozen=True)
+class ContactFacts:
+    """Forces, patch and bodies of one contact; `carries` is False for a contact that has lifted."""
+
+    number: int
+    carries: bool
+    rows: list[Row]
+    bodies: list[BodyFacts]
+
+
+@dataclass(frozen=True)
+class Facts:
+    """All that a sheet tells of one roller."""
+
+    verdict: str
+    regime: str
+    reason: str
+    inputs: list[Row]
+    materials: list[tuple[str, list[Row], str]]
+    contacts: list[ContactFacts]
+    whole: list[Row]
+    lives: list[Row]
+    limits: list[Row]
+    flags: list[Flag]
+    options: str
+    command: str
+    versions: str
+
+
+def collect(ds: xr.Dataset, database: MaterialDatabase | None = None) -> Facts:
+    """Return the facts of a solved case.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `trackroller.solve` for one case.
+    database : MaterialDatabase, optional
+        Materials for the search of the limits; the built-in ones and the user's own if not given.
+
+    Raises
+    ------
+    InputError
+        If `ds` is not the result of one case.
+    """
+    inputs, materials = inputs_of(ds), materials_of(ds)
+    regime = REGIMES[int(ds["regime"])]
+    model = str(ds.attrs["contact_model"])
+    found = limits(case_of_result(ds), model if model != "auto" else "kalker", database)
+    contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
+    lives = _lives(ds, inputs, materials)
+    return Facts(
+        verdict=_verdict(regime, ds, lives, found, inputs),
+        regime=regime,
+        reason=str(ds["reason"].item()) if "reason" in ds else "",
+        inputs=[input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
+        materials=_materials(materials),
+        contacts=contacts,
+        whole=quantity_rows(ds, WHOLE_ROWS),
+        lives=lives,
+        limits=limit_rows(found, inputs),
+        flags=flags_of(ds, materials),
+        options=_options(ds),
+        command=command_of(ds),
+        versions=", ".join(f"{name} {version}" for name, version in versions().items()),
+    )
+
+
+def _materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
+    """Return head, values and source of each material, once if both bodies are of the same."""
+    roller, guide = (materials[f"{body}_material"] for body in BODIES)
+    told = [("roller and guide", roller)] if roller == guide else [("roller", roller), ("guide", guide)]
+    return [(head, material_rows(values), material_source(values)) for head, values in told]
+
+
+def command_of(ds: xr.Dataset) -> str:
+    """Return the command that solves the case of a result again."""
+    words = ["trackroller", "solve"]
+    for name, value in inputs_of(ds).items():
+        if value is not None and not is_default(name, value):
+            text = (
+                json.dumps(value) if isinstance(value, Mapping) else f"{value:g}" if isinstance(value, float) else value
+            )
+            exact = not isinstance(value, float) or float(text) == value
+            words += ["--set", f"{name}={text if exact else repr(value)}"]
+    for name in ("contact_model", "spin_model", "accuracy", "normal", "life_rule"):
+        if ds.attrs.get(name):
+            words += ["--set", f"{name}={ds.attrs[name]}"]
+    return " ".join(shlex.quote(word) for word in words)
+
+
+def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Mapping[str, Any]]) -> ContactFacts:
+    own = ds.sel(contact=which)
+    rows = quantity_rows(own, CONTACT_ROWS)
+    bodies = []
+    if "peak_stress" in own:
+        bodies = [_body(own.sel(body=body), body, materials[f"{body}_material"]) for body in BODIES]
+    carries = "normal_force" not in own or bool(np.isfinite(float(own["normal_force"])))
+    return ContactFacts(which, carries, rows, [b for b in bodies if math.isfinite(b.peak)])
+
+
+def _body(own: xr.Dataset, body: str, material: Mapping[str, Any]) -> BodyFacts:
+    peak, strength = float(own["peak_stress"]), material["tensile_strength"]
+    x, y, z = (float(own[f"peak_{axis}"]) for axis in "xyz")
+    surface = z <= ON_SURFACE * max(float(own.get("semi_axis_lateral", 1.0)), 1e-9)
+    depth = "on the surface" if surface else f"{number(float(f'{z:.2g}'))} mm below the surface"
+    place = f"{depth}, x = {number(float(f'{x:.2g}'))} mm, y = {number(float(f'{y:.2g}'))} mm"
+    limit = material["fatigue_strength_ratio"] * strength
+    cycles = float(own["life_cycles"]) if "life_cycles" in own else math.nan
+    hours = float(own["life_hours"]) if "life_hours" in own else math.nan
+    return BodyFacts(body, peak, place, peak / strength, peak / limit, cycles, hours)
+
+
+def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Mapping[str, Any]]) -> list[Row]:
+    """Return the life of each body, at 10, 50 and 90 % failure probability where its material has scatter."""
+    rows = []
+    for body in BODIES:
+        if f"{body}_life_hours" not in ds:
+            continue
+        hours, material = float(ds[f"{body}_life_hours"]), materials[f"{body}_material"]
+        if material.get("scatter_in_cycles") or material.get("scatter_in_stress"):
+            for p in PROBABILITIES:
+                text = life(_hours_at(ds, body, inputs, material, p))
+                rows.append(Row(f"{body}, until {100 * p:.0f} % have failed", text, "h"))
+        elif math.isnan(hours):
+            rows.append(
+                Row(
+                    f"{body}, median life",
+                    "not known: give guide_overrollings_per_hour" if body == "guide" else "not defined in this regime",
+                )
+            )
+        else:
+            rows.append(Row(f"{body}, median life (its material has no scatter)", life(hours), "h"))
+    return rows
+
+
+def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Mapping, probability: float) -> float:
+    stress = ds["peak_stress"].sel(body=body).values
+    curve = (
+        material["tensile_strength"],
+        material["fatigue_strength_ratio"] * material["tensile_strength"],
+        material["cycles_at_tensile_strength"],
+        material["cycles_at_fatigue_limit"],
+    )
+    cycles = fatigue.life_cycles(
+        stress,
+        *curve,
+        rule=str(ds.attrs["life_rule"]),
+        failure_probability=probability,
+        scatter_cycles=material.get("scatter_in_cycles"),
+        scatter_stress=material.get("scatter_in_stress"),
+    )
+    if body == "guide":
+        rate = inputs.get("guide_overrollings_per_hour")
+        return float(np.min(fatigue.guide_hours(cycles, math.nan if rate is None else rate)))
+    alpha = math.radians(inputs["contact_angle"])
+    radius = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
+    return float(np.min(fatigue.roller_hours(cycles, inputs["velocity"], radius)))
+
+
+def _verdict(regime: str, ds: xr.Dataset, lives: list[Row], found: Limits, inputs: Mapping[str, Any]) -> str:
+    """Return the one line that an engineer reads first."""
+    if regime == "failed":
+        return f"No solution: {ds['reason'].item()}"
+    if regime == "lift_off":
+        low, high = found.axial_force
+        return (
+            f"A contact lifts off. Both contacts carry load for axial forces from {rounded(low)} to {rounded(high)} N."
+        )
+    parts = ["Rolls." if regime == "rolling" else "Skids: the motor force exceeds what friction transmits."]
+    if "roller_life_hours" in ds and math.isfinite(float(ds["roller_life_hours"])):
+        own = [row for row in lives if row.words.startswith("roller")]
+        told = ", ".join(f"{row.value} h ({_probability(row.words)})" for row in own[:2])
+        parts.append(f"The roller lasts {told}; contact {_weakest(ds)} decides.")
+    axial = inputs["axial_force"]
+    reserve = min(found.axial_force[1] - axial, axial - found.axial_force[0])
+    if math.isfinite(reserve):
+        toward = "more" if found.axial_force[1] - axial <= axial - found.axial_force[0] else "less"
+        parts.append(f"{rounded(reserve, 2)} N {toward} axial force lift a contact.")
+    return " ".join(parts)
+
+
+def _probability(words: str) -> str:
+    return words.partition("until ")[2].partition(" have")[0] or "median"
+
+
+def _weakest(ds: xr.Dataset) -> int:
+    hours = ds["life_hours"].sel(body="roller")
+    return int(ds["contact"].values[int(np.nanargmin(hours.values))])
+
+
+def _options(ds: xr.Dataset) -> str:
+    names = ("contact_model", "spin_model", "accuracy", "normal", "hertz", "stress_bodies", "life_rule", "slip_terms")
+    return ", ".join(f"{name.replace('_', ' ')} {ds.attrs[name]}" for name in names if ds.attrs.get(name))
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of this package and of the libraries that the numbers come from."""
+    found = {name: metadata.version(name) for name in ("numpy", "scipy", "numba", "xarray")}
+    return {"trackroller": metadata.version("trackroller"), "Python": platform.python_version(), **found}

@@ -1,0 +1,106 @@
+"""The sheet of one roller as a page of HTML, to print or to send."""
+
+from __future__ import annotations
+
+import base64
+import re
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import jinja2
+from markupsafe import Markup, escape
+
+from trackroller.report.numbers import life, number, rounded
+from trackroller.report.sheet.drawing import drawing
+from trackroller.report.sheet.facts import collect
+from trackroller.roller.record import inputs_of
+from trackroller.study.files import write_whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import MaterialDatabase
+
+SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress")  # figures of the sheet, as far as drawn
+GREEK = {"alpha": "α", "mu": "μ", "nu": "ν", "sigma": "σ"}
+FULL = 150.0  # percent of a limit at the right end of a bar
+
+
+def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "", database: MaterialDatabase | None = None) -> Path:
+    """Write the sheet of a solved roller.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `trackroller.solve` for one case. Figures need the outputs `tractions` and `subsurface`.
+    path : Path or str
+        The HTML file to write; it stands alone.
+    name : str
+        Head of the sheet.
+    database : MaterialDatabase, optional
+        Materials for the search of the limits; the built-in ones and the user's own if not given.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If `ds` is not the result of one case.
+    """
+    text = render(ds, name, database)
+    write_whole(Path(path), lambda beside: beside.write_text(text, encoding="utf-8"))
+    return Path(path)
+
+
+def render(ds: xr.Dataset, name: str = "", database: MaterialDatabase | None = None) -> str:
+    """Return the sheet as HTML text; see `write_sheet`."""
+    inputs_of(ds)
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("trackroller.report", "templates"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.filters |= {"symbols": symbols, "life": life, "number": number, "rounded": rounded, "bar": bar}
+    drawn = drawing(ds) if "normal_force" in ds else ""
+    page = environment.get_template("sheet.html.j2")
+    return page.render(
+        facts=collect(ds, database), name=name or "Track roller", drawing=drawn, figures=_figures(ds), full=FULL
+    )
+
+
+def symbols(text: str) -> Markup:
+    """Return a text with Greek letters and subscripts where it holds symbols such as F_N, r_C,G or sigma_D."""
+    told = str(escape(text))
+    for name, letter in GREEK.items():
+        told = re.sub(rf"\b{name}(?=\b|_)", letter, told)
+    return Markup(re.sub(r"\b(\w)_([A-Za-z]+(?:,[A-Z]+)?)", r"<i>\1</i><sub>\2</sub>", told))
+
+
+def bar(share: float) -> float:
+    """Return the length of a bar in percent of its full length."""
+    return round(min(100.0 * share, FULL) / FULL * 100.0, 1)
+
+
+def _figures(ds: xr.Dataset) -> list[dict[str, str]]:
+    """Draw the figures that the data set has fields for, as data URIs with captions."""
+    if not {"pressure", "von_mises_xz"} & set(map(str, ds.data_vars)) and not any(v.ndim > 2 for v in ds.values()):
+        return []
+    from trackroller.report.figures.contact import plot_case  # heavy: matplotlib
+
+    with tempfile.TemporaryDirectory() as folder:
+        infos = {info.name: info for info in plot_case(ds, Path(folder))}
+        return [
+            {
+                "caption": infos[name].caption,
+                "source": "data:image/svg+xml;base64,"
+                + base64.b64encode((Path(folder) / f"{name}.svg").read_bytes()).decode("ascii"),
+            }
+            for name in SHOWN
+            if name in infos
+        ]

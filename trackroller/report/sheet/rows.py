@@ -1,0 +1,106 @@
+"""Rows of a sheet: a quantity in words, its value and its unit."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.report.numbers import level_text, number, rounded, unit_text
+from trackroller.roller.record import is_default
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.roller.limits import Limits
+
+
+@dataclass(frozen=True)
+class Row:
+    """A quantity in words with its value, its unit, and whether it is the default of an input."""
+
+    words: str
+    value: str
+    unit: str = ""
+    default: bool = False
+
+
+def is_told(name: str, value: Any) -> bool:
+    """Return whether an input stands on the sheet: mappings and the guide only if they are given."""
+    return value is not None or name not in (*MAPPING_FIELDS, "guide_overrollings_per_hour")
+
+
+def input_row(name: str, value: Any) -> Row:
+    """Return an input with its unit; mark the default."""
+    if name in PARAMETERS:
+        parameter = PARAMETERS[name]
+        shown = "not given" if value is None else number(value) if isinstance(value, float) else str(value)
+        words = f"{parameter.long_name} {parameter.symbol}"
+        return Row(words, shown, unit_text(parameter.unit).replace("–", ""), is_default(name, value))
+    shown = level_text(name, json.dumps(value, sort_keys=True)) if name in MAPPING_FIELDS else _name_of(value)
+    return Row(name.replace("_", " "), shown, "", is_default(name, value))
+
+
+def _name_of(material: Any) -> str:
+    return str(material.get("name", "inline")) if isinstance(material, Mapping) else str(material)
+
+
+def material_rows(values: Mapping[str, Any]) -> list[Row]:
+    """Return the values of a material, with its sources."""
+    ratio, strength = values["fatigue_strength_ratio"], values["tensile_strength"]
+    cycles = values["cycles_at_tensile_strength"], values["cycles_at_fatigue_limit"]
+    exponent = -math.log(cycles[1] / cycles[0]) / math.log(ratio)
+    return [
+        Row("name", str(values["name"])),
+        Row("Young's modulus E", number(values["youngs_modulus"]), "MPa"),
+        Row("Poisson's ratio nu", number(values["poisson_ratio"])),
+        Row("tensile strength R_m", number(strength), "MPa"),
+        Row("fatigue limit sigma_D", number(ratio * strength), "MPa"),
+        Row("cycles at the fatigue limit N_k", number(cycles[1])),
+        Row("exponent of the S-N curve k", rounded(exponent)),
+    ]
+
+
+def material_source(values: Mapping[str, Any]) -> str:
+    """Return where the values of a material come from, and which of them are guesses."""
+    source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
+    guesses = values.get("guesses", ())
+    return f"Source: {source}." + (f" Guesses without a source: {', '.join(guesses)}." if guesses else "")
+
+
+def quantity_rows(ds: xr.Dataset, names: tuple[tuple[str, str], ...]) -> list[Row]:
+    """Return the finite ones of some results, each with its unit."""
+    return [
+        Row(words, number(float(ds[name])), unit_text(ds[name].attrs.get("units", "1")).replace("–", ""))
+        for name, words in names
+        if name in ds and np.isfinite(float(ds[name]))
+    ]
+
+
+def limit_rows(found: Limits, inputs: Mapping[str, Any]) -> list[Row]:
+    """Return the limits of a roller in words."""
+    low, high = found.axial_force
+    drive, brake = found.motor_force
+    rows = [Row("lift-off: both contacts carry load for axial forces", range_text(low, high), "N")]
+    if math.isfinite(drive) or math.isfinite(brake):
+        rows.append(Row("full slip: the roller does not skid for motor forces", range_text(drive, brake), "N"))
+    lock = found.self_locking_friction
+    if math.isnan(lock):
+        words = "not defined: a contact has lifted"
+    else:
+        words = (
+            "none up to 2"
+            if math.isinf(lock)
+            else f"from {rounded(lock)} (now {number(inputs['friction_coefficient'])})"
+        )
+    return [*rows, Row("self-locking by friction", words)]
+
+
+def range_text(low: float, high: float) -> str:
+    """Return a range in three figures."""
+    return f"{rounded(low)} to {rounded(high)}"

@@ -1,0 +1,100 @@
+"""The facts of one roller for the terminal and as JSON."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from trackroller.parameters import REGIMES
+from trackroller.report.sheet.facts import Facts, collect, versions
+from trackroller.report.sheet.flags import flags_of
+from trackroller.roller.record import inputs_of, is_default, materials_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.report.sheet.rows import Row
+
+
+def print_facts(ds: xr.Dataset) -> None:
+    """Print the facts of a solved roller: verdict, inputs with defaults, contacts, life, limits and warnings."""
+    facts = collect(ds)
+    console = Console(width=None if Console().is_terminal else 120, highlight=False, markup=False, soft_wrap=True)
+    console.print(facts.verdict)
+    console.print(f"regime: {facts.regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
+    if facts.reason:
+        console.print(f"reason: {facts.reason}")
+    _print_inputs(console, facts)
+    if any(contact.carries for contact in facts.contacts):
+        _print_contacts(console, facts)
+    for head, rows in (("roller", facts.whole), ("life", facts.lives), ("limits", facts.limits)):
+        for row in rows:
+            console.print(f"{head:<8} {row.words}: {row.value} {row.unit}".rstrip())
+    for flag in facts.flags:
+        console.print(f"warning  {flag.sentence} {flag.remedy}")
+    fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
+    if fields:
+        console.print(f"fields (write them with -o): {', '.join(fields)}")
+
+
+def _print_inputs(console: Console, facts: Facts) -> None:
+    for default, head in ((False, "given"), (True, "default")):
+        told = [_told(row) for row in facts.inputs if row.default is default]
+        if told:
+            console.print(f"{head:<8} {', '.join(told)}")
+    console.print(f"options  {facts.options}")
+
+
+def _told(row: Row) -> str:
+    return f"{row.words} {row.value} {row.unit}".rstrip()
+
+
+def _print_contacts(console: Console, facts: Facts) -> None:
+    table = Table("quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit")
+    for rows in zip(*(contact.rows for contact in facts.contacts), strict=True):
+        table.add_row(rows[0].words, *(row.value for row in rows), rows[0].unit)
+    for bodies in zip(*(contact.bodies for contact in facts.contacts), strict=True):
+        body = bodies[0].body
+        table.add_row(f"peak stress of the {body}", *(f"{b.peak:.5g}" for b in bodies), "MPa")
+        table.add_row("  over its fatigue limit", *(f"{100 * b.of_fatigue_limit:.3g}" for b in bodies), "%")
+        table.add_row("  over its tensile strength", *(f"{100 * b.of_strength:.3g}" for b in bodies), "%")
+    console.print(table)
+
+
+def as_json(ds: xr.Dataset) -> str:
+    """Return a result as JSON: every variable with dims, units and values; NaN is null, infinity a text.
+
+    The result of one case also has its inputs and which of them are defaults, its materials with sources, its flags in
+    words, the options and the versions.
+    """
+    told: dict[str, Any] = {
+        str(name): {
+            "dims": list(variable.dims),
+            "units": variable.attrs.get("units", "1"),
+            "value": _plain(variable.values.tolist()),
+        }
+        for name, variable in ds.variables.items()
+    }
+    told["regime"]["meaning"] = np.array(REGIMES)[ds["regime"].values].tolist()
+    if "case" in ds.attrs:
+        inputs = inputs_of(ds)
+        told["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
+        told["materials"] = materials_of(ds)
+        told["flags"] = [vars(flag) for flag in flags_of(ds, materials_of(ds))]
+        told["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in ("case", "materials")}
+        told["versions"] = versions()
+    return json.dumps(told)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float) and not np.isfinite(value):
+        return None if np.isnan(value) else str(value)
+    return value

@@ -1,0 +1,88 @@
+"""Record the inputs of one solved case in its data set, so that a sheet or a JSON text can tell all of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+from trackroller.errors import InputError
+from trackroller.materials import Material
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.case import Case, to_table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import MaterialDatabase
+
+CASE, MATERIALS = "case", "materials"  # names of the attributes, both JSON
+
+
+def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Dataset:
+    """Return the result of one case with its inputs and materials as JSON attributes.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        The result, without a case dimension.
+    case : Case
+        Its inputs.
+    database : MaterialDatabase
+        The materials it was solved with.
+    """
+    values = {key: _plain(value) for key, value in case.as_dict().items()}
+    bodies = {name: database.material(getattr(case, name)) for name in MATERIAL_FIELDS}
+    materials = {
+        name: body.as_dict() | {"sources": {k: r.source for k, r in body.records.items()}, "guesses": body.placeholders}
+        for name, body in bodies.items()
+    }
+    if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
+        values["friction_coefficient"] = float(to_table(case, database).friction_coefficient[0])
+    return ds.assign_attrs({CASE: json.dumps(values), MATERIALS: json.dumps(materials)})
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Material):
+        return value.as_dict()
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+
+
+def inputs_of(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the inputs of a solved case by name, numbers as floats.
+
+    Raises
+    ------
+    InputError
+        If the data set is not the result of one case.
+    """
+    if CASE not in ds.attrs or "case" in ds.dims:
+        remedy = "Solve one case: tr.solve(tr.Case(...)), or select one with solve(case) anew."
+        raise InputError("dataset", sorted(map(str, ds.dims)), "the result of one case with its inputs", remedy)
+    values = json.loads(ds.attrs[CASE])
+    for name in PARAMETERS:
+        if isinstance(values.get(name), str) and values[name] not in FRICTION_LEVELS:
+            values[name] = float(values[name])
+    return values
+
+
+def case_of_result(ds: xr.Dataset) -> Case:
+    """Return the case that a result was solved for."""
+    return Case.from_dict({key: value for key, value in inputs_of(ds).items() if value is not None})
+
+
+def materials_of(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Return the values of both materials of a solved case, by `roller_material` and `guide_material`."""
+    return json.loads(ds.attrs[MATERIALS])
+
+
+def is_default(name: str, value: Any) -> bool:
+    """Return whether an input has the value that it takes when it is not given."""
+    if name in MAPPING_FIELDS:
+        return value is None
+    default = getattr(Case(), name)
+    if isinstance(default, float) and isinstance(value, (int, float)):
+        return float(value) == float(default)
+    return value == default
