@@ -1,7 +1,63 @@
-"""The report of a study: one HTML file that can be sent."""
+"""The sheet of one roller and the report of a study: `trackroller.report(ds, path)` writes either.
+
+The module itself can be called: `trackroller.report` is both the room of the reports and the function that writes one.
+"""
 
 from __future__ import annotations
 
-from trackroller.report.page import write_report
+import sys
+import tempfile
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
 
-__all__ = ["write_report"]
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def write(ds: xr.Dataset, path: Path | str) -> Path:
+    """Write the sheet of one case or the report of a study as one HTML file.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `trackroller.solve` for one case, or the gathered results of a study (`study.nc`).
+    path : Path or str
+        The file to write. It stands alone and can be sent by mail.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If `ds` is neither the result of one case nor of a study.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> tr.report(tr.solve(tr.Case()), "sheet.html")  # doctest: +SKIP
+    """
+    from trackroller.report.sheet.page import write_sheet  # heavy: jinja2, and matplotlib for the figures
+
+    if "study" not in ds.attrs:
+        return write_sheet(ds, path)
+    from trackroller.report.build import build_report
+    from trackroller.study.files import StudyFolder
+
+    with tempfile.TemporaryDirectory() as place:
+        folder = StudyFolder(Path(place))
+        ds.to_netcdf(folder.gathered)
+        text = build_report(folder).read_text(encoding="utf-8")
+    Path(path).write_text(text, encoding="utf-8")
+    return Path(path)
+
+
+class _CallableModule(ModuleType):
+    def __call__(self, ds: xr.Dataset, path: Path | str) -> Path:
+        return write(ds, path)
+
+
+sys.modules[__name__].__class__ = _CallableModule

@@ -1,0 +1,163 @@
+"""The sheet of one roller: every number is the solver's, defaults are marked, flags name their body."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import shlex
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import trackroller as tr
+from trackroller.cli.main import app
+from trackroller.errors import InputError
+from trackroller.report.sheet.facts import collect
+from trackroller.report.sheet.page import render
+from trackroller.report.sheet.text import as_json
+
+SCATTER = {"like": "PA6", "name": "PA6 with scatter", "scatter_in_cycles": 4.0}
+CASES = {
+    "example": tr.Case(),
+    "plastic": tr.Case(
+        roller_material=SCATTER, radial_force=-20, axial_force=3, motor_force=0, guide_overrollings_per_hour=120
+    ),
+    "lifted": tr.Case(axial_force=300),
+    "skidding": tr.Case(motor_force=-300),
+    "overloaded": tr.Case(radial_force=-3000, axial_force=0, motor_force=0),
+}
+
+
+@pytest.fixture(scope="module")
+def solved():
+    return {name: tr.solve(case) for name, case in CASES.items()}
+
+
+@pytest.fixture(scope="module")
+def facts(solved):
+    return {name: collect(ds) for name, ds in solved.items()}
+
+
+def test_inputs_are_told_with_defaults_marked(facts):
+    rows = {row.words.split()[0]: row for row in facts["plastic"].inputs}
+    assert not rows["radial"].default and not rows["overrollings"].default
+    assert rows["friction"].default and rows["friction"].value == "0.3"
+    assert all(row.default for row in facts["example"].inputs)
+
+
+def test_stress_and_life_are_those_of_the_solver(solved, facts):
+    for name in ("example", "plastic"):
+        for contact in facts[name].contacts:
+            for body in contact.bodies:
+                own = solved[name].sel(contact=contact.number, body=body.body)
+                assert body.peak == float(own.peak_stress) and body.cycles == float(own.life_cycles)
+                assert body.of_strength < body.of_fatigue_limit
+
+
+def test_utilisation_is_stress_over_the_values_of_the_material(solved, facts):
+    database = tr.load_database()
+    steel = database.material("1.7225-normalised")
+    body = facts["example"].contacts[1].bodies[0]
+    assert body.of_strength == pytest.approx(body.peak / steel.tensile_strength)
+    assert body.of_fatigue_limit == pytest.approx(body.peak / steel.fatigue_limit)
+
+
+def test_scatter_gives_lives_at_three_probabilities(solved, facts):
+    """With N_90/N_10 = T_N lives at 10 and 90 % lie a factor sqrt(T_N) around the median."""
+    lives = {row.words: float(row.value) for row in facts["plastic"].lives if "roller" in row.words}
+    median = float(solved["plastic"].roller_life_hours)
+    ten, fifty, ninety = (lives[f"roller, until {p} % have failed"] for p in (10, 50, 90))
+    assert fifty == pytest.approx(median, rel=5e-3)
+    assert ten == pytest.approx(median / 2, rel=5e-3) and ninety == pytest.approx(2 * median, rel=5e-3)
+
+
+def test_the_verdict_names_what_decides(solved, facts):
+    assert facts["example"].verdict.startswith("Rolls. The roller lasts 3.78 h (median); contact 2 decides.")
+    weakest = int(solved["example"].contact.values[solved["example"].life_hours.sel(body="roller").values.argmin()])
+    assert weakest == 2
+    assert facts["skidding"].verdict.startswith("Skids")
+
+
+def test_a_lift_off_answers_with_the_axial_force_that_holds(facts):
+    bound = re.search(r"to ([\d.]+) N", facts["lifted"].verdict)
+    assert bound is not None
+    at = float(bound[1])
+    assert int(tr.solve(tr.Case(axial_force=0.98 * at), "forces").regime) == 0
+    assert int(tr.solve(tr.Case(axial_force=1.02 * at), "forces").regime) == 2
+
+
+def test_flags_name_the_body_they_hold_for(facts):
+    plastic = {flag.name: flag.sentence for flag in facts["plastic"].flags}
+    assert "fatigue limit of the guide" in plastic["deep_life"]  # a steel guide under a plastic roller
+    assert "static" in {flag.name for flag in facts["overloaded"].flags}
+    assert all(flag.remedy for fact in facts.values() for flag in fact.flags)
+
+
+def test_the_command_repeats_the_case(solved, facts):
+    for name in ("example", "plastic"):
+        words = shlex.split(facts[name].command)
+        assert words[:2] == ["trackroller", "solve"]
+        done = CliRunner().invoke(app, [*words[1:], "--json"])
+        assert done.exit_code == 0, done.output
+        again = json.loads(done.output)
+        np.testing.assert_array_equal(again["normal_force"]["value"], solved[name].normal_force.values)
+        np.testing.assert_array_equal(again["peak_stress"]["value"], solved[name].peak_stress.values)
+
+
+def test_json_tells_inputs_materials_flags_and_versions(solved):
+    told = json.loads(as_json(solved["plastic"]))
+    assert told["inputs"]["radial_force"] == {"value": -20.0, "default": False}
+    assert told["inputs"]["contact_angle"]["default"] is True
+    assert told["materials"]["guide_material"]["sources"]["tensile_strength"]
+    assert told["regime"]["meaning"] == "rolling" and told["versions"]["numpy"] == np.__version__
+    assert {flag["name"] for flag in told["flags"]} == {flag.name for flag in collect(solved["plastic"]).flags}
+
+
+def test_the_page_stands_alone_and_escapes_names(solved):
+    bad = tr.Case(roller_material={"like": "PA6", "name": "<script>alert(1)</script>"}, radial_force=-20, axial_force=0)
+    page = render(tr.solve(bad), name="<b>A & B</b>")
+    assert "<script" not in page and "<b>A" not in page
+    assert html.escape("<b>A & B</b>", quote=False) in page
+    assert "default-src 'none'" in page
+    assert not re.search(r"(?:src|href)=[\"'](?!data:)", page)
+
+
+def test_every_regime_has_a_page(solved):
+    for ds in solved.values():
+        page = render(ds)
+        assert (
+            "Distance to the limits" in page and "nan" not in re.sub(r"<style.*?</style>", "", page, flags=re.S).lower()
+        )
+
+
+def test_a_report_is_written_for_one_case_only(tmp_path, solved):
+    assert tr.report(solved["example"], tmp_path / "sheet.html").is_file()
+    with pytest.raises(InputError, match="one case"):
+        tr.report(tr.solve([tr.Case(), tr.Case()], "forces"), tmp_path / "two.html")
+
+
+def test_the_command_line_writes_sheet_and_text(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my-roller.yaml").write_text("axial_force: 12\n")
+    done = CliRunner().invoke(app, ["solve", "my-roller.yaml", "--report", "sheet.html"])
+    assert done.exit_code == 0, done.output
+    page = (tmp_path / "sheet.html").read_text(encoding="utf-8")
+    assert "my-roller" in page and page.count("<figure>") == 3
+    assert "given    axial force F_ax 12 N" in done.output and "friction coefficient mu 0.3" in done.output
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="needs chromium")
+def test_the_sheet_prints_on_one_page(tmp_path):
+    ds = tr.solve(
+        CASES["plastic"], ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
+    )
+    (tmp_path / "sheet.html").write_text(render(ds), encoding="utf-8")
+    flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-pdf-header-footer"]
+    target = tmp_path / "sheet.pdf"
+    command = ["chromium", *flags, f"--print-to-pdf={target}", f"--user-data-dir={tmp_path}/profile"]
+    subprocess.run([*command, (tmp_path / "sheet.html").as_uri()], check=True, capture_output=True, timeout=120)
+    assert len(re.findall(rb"/Type\s*/Page\b", target.read_bytes())) == 1
