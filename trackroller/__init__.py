@@ -31,6 +31,7 @@ __all__ = [
     "load_study",
     "max_shear",
     "principal_stresses",
+    "report",
     "solve",
     "stress_from_tractions",
     "stress_on_grid",
@@ -38,6 +39,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from trackroller import report
     from trackroller.errors import InputError
     from trackroller.halfspace.stress import (
         max_shear,
@@ -54,6 +56,8 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used."""
+    if name == "report":
+        return importlib.import_module("trackroller.report")  # the module itself can be called
     if name in _WHERE:
         return getattr(importlib.import_module(_WHERE[name]), name)
     raise AttributeError(f"module 'trackroller' has no attribute {name!r}")

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.roller.point_files import files_beside
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_yaml, read_mapping
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
+from trackroller.roller.point_files import files_beside
 from trackroller.study.files import WorkError, write_whole
 
 if TYPE_CHECKING:
