@@ -5,29 +5,45 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 STUDY ?= config/studies/default.yaml
 CORES ?= all
+SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile validation/rules
+PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
-.PHONY: env study test lint test-slurm test-long clean-results
+.PHONY: env study validate test test-quick lint test-slurm test-long clean-results
 
 env: $(STAMP)
 
 $(STAMP): requirements.lock pyproject.toml
+	@echo "Setting up $(VENV): this happens once and takes some minutes."
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --disable-pip-version-check -q -r requirements.lock
 	$(BIN)/python -m pip install --disable-pip-version-check -q --no-deps --no-build-isolation -e .
-	$(BIN)/python -c "import trackroller as tr; tr.solve(tr.Case(), outputs=('friction_work', 'life', 'tractions', 'subsurface'))"  # compiles once
+	@echo "Compiling the solver: about a minute, once."
+	$(BIN)/python -c "import trackroller as tr; tr.solve(tr.Case(), outputs=('friction_work', 'life', 'tractions', 'subsurface'))"
 	touch $@
 
+# ends with the path of the report and how long it took; progress in cases instead of lists of files
 study: $(STAMP)
-	$(BIN)/snakemake --cores $(CORES) --config study=$(STUDY)
+	$(BIN)/snakemake --quiet rules progress host --cores $(CORES) --config study=$(STUDY)
 
+# the evidence: edge cases, trade-off, the paper, contact models side by side, other programs
+validate: $(STAMP)
+	$(BIN)/snakemake -s validation/Snakefile --quiet rules host --cores $(CORES)
+
+# -ra lists what was skipped and why
 test: $(STAMP)
-	$(BIN)/python -m pytest -q -n 2 --dist loadfile
+	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile
+
+test-quick: $(STAMP)
+	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile $(wildcard $(PHYSICS))
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/mypy
-	$(BIN)/snakefmt --check Snakefile workflow/rules validation/Snakefile validation/rules
+	$(BIN)/snakefmt --check $(SNAKEFILES)
 	$(BIN)/snakemake --lint
+	$(BIN)/snakemake -s validation/Snakefile --lint
+	$(BIN)/python -m validation.house
 
 # needs Debian's slurmctld slurmd slurm-client munge on this machine; starts and stops its own
 test-slurm: $(STAMP)

@@ -12,15 +12,23 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from workflow_place import lay_workflow
+from workflow_place import ROOT, lay_study
 
-STUDY = """
-name: tiny
-factors:
-  axial_force: {linspace: [0, 60, 100]}
-  friction_coefficient: {values: [0.1, 0.2]}
-outputs: [forces, peak_stress]
-chunk_size: 50
+# Python runs a `sitecustomize` at start. Here it lets the first job wait inside the solver, with the chunk locked,
+# until somebody removes the file "hold"; so a worker can be killed at work, however fast the machine is.
+HOLD = """
+import os, sys, time
+if os.environ.get("SLURM_JOB_ID") and any(word.endswith("solve.py") for word in sys.argv or sys.orig_argv):
+    from pathlib import Path
+    from trackroller.roller import solver
+    place, real = Path(os.environ["HOLD"]), solver.solve
+    def solve(*args, **kwargs):
+        if (place / "hold").exists():
+            (place / f"working-{os.environ['SLURM_JOB_ID']}").touch()
+        while (place / "hold").exists():
+            time.sleep(0.1)
+        return real(*args, **kwargs)
+    solver.solve = solve
 """
 pytestmark = pytest.mark.slurm
 
@@ -44,17 +52,19 @@ def slurm(tmp_path_factory):
 
 @pytest.fixture
 def place(tmp_path):
-    """A folder with the workflow in it."""
-    lay_workflow(tmp_path)
-    (tmp_path / "tiny.yaml").write_text(STUDY)
-    return tmp_path
+    """A folder with a study, and the solver that waits."""
+    (tmp_path / "hook").mkdir()
+    (tmp_path / "hook" / "sitecustomize.py").write_text(HOLD)
+    return lay_study(tmp_path, levels=100, outputs="forces, peak_stress", size=50)
 
 
 def submit(place, env, results):
     words = [
         "snakemake",
+        "-s",
+        str(ROOT / "Snakefile"),
         "--profile",
-        "profiles/slurm",
+        str(ROOT / "profiles" / "slurm"),
         "--nocolor",
         "--default-resources",
         "mem_mb=500",
@@ -83,30 +93,49 @@ def finish(process, seconds=240):
     return process.returncode, told
 
 
+def wait_for(place, seconds=120):
+    """The number of a Slurm job that is at work inside the solver."""
+    for _ in range(10 * seconds):
+        if working := sorted(place.glob("working-*")):
+            return working[0].name.removeprefix("working-")
+        time.sleep(0.1)
+    pytest.fail("no job reached the solver")
+
+
 def numbers(place, results):
     return xr.load_dataset(place / results / "tiny" / "study.nc").drop_attrs()
 
 
 def test_cluster_gives_the_numbers_of_a_local_run_though_a_worker_is_killed(slurm, place):
     subprocess.run(
-        ["snakemake", "--cores", "2", "--config", "results=local", "--", "local/tiny/study.nc"],
+        [
+            "snakemake",
+            "-s",
+            str(ROOT / "Snakefile"),
+            "--cores",
+            "2",
+            "--config",
+            "results=local",
+            "--",
+            "local/tiny/study.nc",
+        ],
         cwd=place,
         env=slurm,
         check=True,
         capture_output=True,
         timeout=240,
     )
-    process = submit(place, slurm, "results")
-    victim = None
-    for _ in range(600):
-        jobs = subprocess.run(["squeue", "-h", "-t", "R", "-o", "%i"], env=slurm, capture_output=True, text=True).stdout
-        if jobs.split() and list((place / "results" / "tiny" / "store").glob("*.lock")):
-            victim = jobs.split()[0]
-            subprocess.run(["scancel", "--signal=KILL", "--full", victim], env=slurm, check=True)
-            break
-        time.sleep(0.1)
-    assert victim is not None
-    finish(process)
+    hold = place / "hold"
+    hold.touch()
+    path = os.pathsep.join([str(place / "hook"), str(ROOT)])
+    process = submit(place, slurm | {"HOLD": str(place), "PYTHONPATH": path}, "results")
+    try:
+        victim = wait_for(place)
+        subprocess.run(["scancel", "--signal=KILL", "--full", victim], env=slurm, check=True)
+    finally:
+        hold.unlink()
+    _, told = finish(process)
+    assert "Error in rule solve" in told, told
     code, told = finish(submit(place, slurm, "results"))
     assert code == 0, told
     assert "unlock" not in told

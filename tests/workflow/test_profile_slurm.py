@@ -1,0 +1,53 @@
+"""The Slurm profile starts both Snakefiles for real: the local rule runs, the next job goes to `sbatch`, a stub here."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+from workflow_place import ROOT, SNAKEMAKE, lay_study
+
+SBATCH = """#!/bin/sh
+echo "$@" >> "{told}"
+echo "sbatch: error: no cluster here" >&2
+exit 1
+"""
+
+
+@pytest.fixture
+def stub(tmp_path):
+    """Environment with a cluster that takes no job, and the file in which it keeps what it was asked for."""
+    tools, told = tmp_path / "bin", tmp_path / "submitted.txt"
+    tools.mkdir()
+    for name, text in {"sbatch": SBATCH.format(told=told), "squeue": "#!/bin/sh\n", "sacct": "#!/bin/sh\n"}.items():
+        (tools / name).write_text(text)
+        (tools / name).chmod(0o755)
+    return os.environ | {"PATH": f"{tools}:{Path(SNAKEMAKE).parent}:{os.environ['PATH']}"}, told
+
+
+def run(folder, env, snakefile, *targets):
+    words = [SNAKEMAKE, "-s", str(ROOT / snakefile), "--profile", str(ROOT / "profiles" / "slurm"), "--nocolor", "--"]
+    return subprocess.run([*words, *targets], cwd=folder, env=env, capture_output=True, text=True, timeout=240)
+
+
+@pytest.mark.parametrize(
+    ("snakefile", "local", "submitted"),
+    [
+        ("Snakefile", "results/tiny/design.nc", "results/tiny/study.nc"),
+        ("validation/Snakefile", "results/peers/peers.json", "results/extremes/extremes.json"),
+    ],
+    ids=["study", "validation"],
+)
+def test_a_local_rule_runs_and_the_next_job_is_submitted(tmp_path, stub, snakefile, local, submitted):
+    env, told = stub
+    lay_study(tmp_path)
+    done = run(tmp_path, env, snakefile, local)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (tmp_path / local).is_file() and not told.exists()
+    done = run(tmp_path, env, snakefile, submitted)
+    assert done.returncode == 1 and "no cluster here" in done.stdout + done.stderr
+    asked = told.read_text()
+    for word in ("--mem 1000", "-t 60", "--cpus-per-task=1"):
+        assert word in asked, asked
