@@ -1,4 +1,4 @@
-"""The Slurm profile starts both Snakefiles for real: the local rule runs, the next job goes to `sbatch`, a stub here."""
+"""The Slurm profile starts both Snakefiles: a local rule runs, the next job goes to `sbatch`, here a stub."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ def stub(tmp_path):
     """Environment with a cluster that takes no job, and the file in which it keeps what it was asked for."""
     tools, told = tmp_path / "bin", tmp_path / "submitted.txt"
     tools.mkdir()
-    for name, text in {"sbatch": SBATCH.format(told=told), "squeue": "#!/bin/sh\n", "sacct": "#!/bin/sh\n"}.items():
+    texts = {"sbatch": SBATCH.format(told=told), "sinfo": "#!/bin/sh\necho 'main*'\n", "squeue": "#!/bin/sh\n"}
+    for name, text in texts.items():
         (tools / name).write_text(text)
         (tools / name).chmod(0o755)
     return os.environ | {"PATH": f"{tools}:{Path(SNAKEMAKE).parent}:{os.environ['PATH']}"}, told
@@ -33,14 +34,14 @@ def run(folder, env, snakefile, *targets):
 
 
 @pytest.mark.parametrize(
-    ("snakefile", "local", "submitted"),
+    ("snakefile", "local", "submitted", "threads"),
     [
-        ("Snakefile", "results/tiny/design.nc", "results/tiny/study.nc"),
-        ("validation/Snakefile", "results/peers/peers.json", "results/extremes/extremes.json"),
+        ("Snakefile", "results/tiny/design.nc", "results/tiny/study.nc", 1),
+        ("validation/Snakefile", "results/peers/peers.json", "results/extremes/extremes.json", 2),
     ],
     ids=["study", "validation"],
 )
-def test_a_local_rule_runs_and_the_next_job_is_submitted(tmp_path, stub, snakefile, local, submitted):
+def test_a_local_rule_runs_and_the_next_job_is_submitted(tmp_path, stub, snakefile, local, submitted, threads):
     env, told = stub
     lay_study(tmp_path)
     done = run(tmp_path, env, snakefile, local)
@@ -49,5 +50,5 @@ def test_a_local_rule_runs_and_the_next_job_is_submitted(tmp_path, stub, snakefi
     done = run(tmp_path, env, snakefile, submitted)
     assert done.returncode == 1 and "no cluster here" in done.stdout + done.stderr
     asked = told.read_text()
-    for word in ("--mem 1000", "-t 60", "--cpus-per-task=1"):
+    for word in ("--mem 1000", "-t 60", f"--cpus-per-task={threads}"):
         assert word in asked, asked

@@ -17,7 +17,7 @@ rule extremes_run:
         f"{EXTREMES}/logs/run.log",
     conda:
         "../../workflow/envs/trackroller.yaml"
-    threads: 4  # Snakemake takes fewer where there are fewer; solve() shares its rows among them
+    threads: 2  # the solver shares its rows among them; a fixed number, which a cluster needs
     script:
         "../scripts/extremes_run.py"
 
