@@ -1,9 +1,8 @@
 """What an accuracy setting means for each stage, and what error it leaves.
 
-The settings are rungs of measured ladders (`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff`
-from
-`snakemake tradeoff`): one for the quadrature of forces, one for the search of the peak stress, one for the elements of
-each rolling contact model. A preset or a tolerance takes from each the cheapest rung that keeps its promise.
+The settings are rungs of measured ladders (`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff`).
+There is one ladder for the quadrature of forces, one for the search of the peak stress, and one for the elements of
+each rolling contact model. A preset or a tolerance takes from each ladder the cheapest rung that keeps its promise.
 """
 
 from __future__ import annotations

@@ -10,74 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact import friction_laws, profiles
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.fields import FIELDS, Default, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
-from trackroller.roller.point_files import read_points
 from trackroller.roller.table import CaseTable, MaterialArrays
 
-__all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "mapping_text", "to_table"]
-
-FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
-
-
-def mapping_text(name: str, value: Any) -> str:
-    """Return the canonical JSON of a field that is a mapping.
-
-    Parameters
-    ----------
-    name : str
-        One of `MAPPING_FIELDS`.
-    value : mapping, str or None
-        The mapping, or its JSON text.
-
-    Returns
-    -------
-    str
-        JSON with sorted keys; "" for None.
-
-    Raises
-    ------
-    InputError
-        If the value is no mapping, or not one that the field allows.
-    """
-    if value is None or (isinstance(value, str) and not value.strip()):
-        return ""
-    if isinstance(value, str):
-        try:
-            value = json.loads(value)
-        except ValueError:
-            raise InputError(name, value, "a mapping, or one written as JSON") from None
-    if not isinstance(value, Mapping):
-        raise InputError(name, value, "a mapping, or not given")
-    told = (
-        friction_laws.canonical(value, name) if name == "friction_law" else profiles.canonical(value, name, read_points)
-    )
-    return json.dumps(told, sort_keys=True) if told else ""
-
-
-def _number(name: str, value: Any) -> float:
-    parameter = PARAMETERS[name]
-    if value is None and parameter.allow_missing:
-        return math.nan
-    if isinstance(value, bool):
-        raise InputError(name, value, parameter.allowed())
-    try:
-        return float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise InputError(name, value, parameter.allowed()) from None
-
-
-class _Default(float):
-    """The value of a number that was not given."""
-
-
-def _own_friction(law: Any) -> float:
-    """Friction at rest of a case that gives none: the first value of a table, otherwise the default."""
-    own = friction_laws.at_rest(law) if law else None
-    return PARAMETERS["friction_coefficient"].default if own is None else own
+__all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "to_table"]
 
 
 @dataclass(frozen=True)
@@ -147,7 +87,7 @@ class Case:
     radial_force: float = PARAMETERS["radial_force"].default
     axial_force: float = PARAMETERS["axial_force"].default
     motor_force: float = PARAMETERS["motor_force"].default
-    friction_coefficient: float | str | None = _Default(PARAMETERS["friction_coefficient"].default)
+    friction_coefficient: float | str | None = Default(PARAMETERS["friction_coefficient"].default)
     velocity: float = PARAMETERS["velocity"].default
     guide_overrollings_per_hour: float | None = None
     roller_material: Any = "1.7225-normalised"
@@ -158,8 +98,8 @@ class Case:
 
     def __post_init__(self) -> None:
         columns: dict[str, np.ndarray] = {}
-        if isinstance(self.friction_coefficient, _Default):
-            object.__setattr__(self, "friction_coefficient", _own_friction(self.friction_law))
+        if isinstance(self.friction_coefficient, Default):
+            object.__setattr__(self, "friction_coefficient", own_friction(self.friction_law))
         for name, parameter in PARAMETERS.items():
             value = getattr(self, name)
             if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
@@ -167,11 +107,11 @@ class Case:
                 continue
             if value is not None and isinstance(value, float) and math.isnan(value):
                 raise InputError(name, value, parameter.allowed())
-            number = _number(name, value)
-            if not parameter.accepts(number):
+            given = number(name, value)
+            if not parameter.accepts(given):
                 raise InputError(name, value, parameter.allowed())
-            object.__setattr__(self, name, None if math.isnan(number) else number)
-            columns[name] = np.array([number])
+            object.__setattr__(self, name, None if math.isnan(given) else given)
+            columns[name] = np.array([given])
         for name in MATERIAL_FIELDS:
             if not isinstance(value := getattr(self, name), (str, Mapping, Material)) or value == "":
                 allowed = "a material is a name of the database or a mapping with its values"
@@ -221,12 +161,6 @@ def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
     return columns, len(rows)
 
 
-def own_frictions(laws: np.ndarray) -> np.ndarray:
-    """Return the friction coefficients [1] of cases that give none, from their friction laws, both of shape (n,)."""
-    known = {repr(law): _own_friction(law) for law in np.ravel(laws)}
-    return np.array([known[repr(law)] for law in np.ravel(laws)]).reshape(np.shape(laws))
-
-
 def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
     n = design.sizes.get("case", 1)
     columns = {}
@@ -259,7 +193,7 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
         except (TypeError, ValueError):
             words = FRICTION_LEVELS if name == "friction_coefficient" else ()
             numbers[name] = np.array(
-                [math.nan if isinstance(v, str) and v in words else _number(name, v) for v in raw], dtype=float
+                [math.nan if isinstance(v, str) and v in words else number(name, v) for v in raw], dtype=float
             ).reshape(n)
         bad = np.flatnonzero(~parameter.accepts(numbers[name]))
         if bad.size:

@@ -1,4 +1,4 @@
-"""Results as labelled, unit-carrying xarray data sets; the one table of result variables."""
+"""Label results as xarray data sets with units, and declare every result variable once (`VARIABLES`)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Variable:
-    """One result: output group, dimensions behind `case`, CF unit, symbol of the paper and meaning."""
+    """A result variable.
+
+    Parameters
+    ----------
+    name, group : str
+        Name in a data set, and the group of `outputs` that brings the variable.
+    dims : tuple of str
+        Dimensions after `case`.
+    units, symbol, long_name : str
+        Unit as the CF conventions write it, symbol of the publication, and name for figures and reports.
+    """
 
     name: str
     group: str
@@ -33,23 +43,32 @@ _XZ, _YZ = ("contact", "body", "section_z", "section_x"), ("contact", "body", "s
 _ALL = (
     Variable("normal_force", "forces", _C, "N", "F_N", "normal force"),
     Variable("lateral_force", "forces", _C, "N", "F_T", "lateral friction force on the roller"),
-    Variable("driving_force", "forces", _C, "N", "F_A", "friction force on the roller along the track"),
-    Variable("spin_moment", "forces", _C, "N mm", "M_R", "friction moment about the contact normal"),
+    Variable("driving_force", "forces", _C, "N", "F_A", "longitudinal friction force on the roller"),
+    Variable("spin_moment", "forces", _C, "N mm", "M_R", "spin moment about the contact normal"),
     Variable("rolling_radius_shift", "forces", (), "mm", "r_Delta0", "deviation of the rolling radius"),
-    Variable("slip", "forces", (), "1", "xi", "longitudinal slip r_Delta0/r_A, > 0 braking"),
-    Variable("drilling_torque", "forces", (), "N mm", "(M_R1 - M_R2) sin(alpha)", "torque of the drilling friction"),
+    Variable("slip", "forces", (), "1", "xi", "longitudinal creepage r_Delta0/r_A, > 0 braking"),
+    Variable(
+        "drilling_torque",
+        "forces",
+        (),
+        "N mm",
+        "(M_R1 - M_R2) sin(alpha)",
+        "roller torque about the track normal (drilling torque)",
+    ),
     Variable("tilting_moment", "forces", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)"),
     Variable("yaw_moment", "forces", (), "N mm", "M_zR", "moment about the radial direction, eq. (12)"),
     Variable("transmitted_force", "forces", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track"),
-    Variable("semi_axis_lateral", "contact", _C, "mm", "a", "lateral semi-axis of the ellipse, half width of a patch"),
-    Variable("semi_axis_rolling", "contact", _C, "mm", "b", "semi-axis in the rolling direction, half length"),
+    Variable("semi_axis_lateral", "contact", _C, "mm", "a", "lateral semi-axis, or half width of a patch"),
+    Variable("semi_axis_rolling", "contact", _C, "mm", "b", "semi-axis in the rolling direction, or half length"),
     Variable("patch_area", "contact", _C, "mm2", "A", "area of the contact patch"),
     Variable("pressure_centre", "contact", _C, "mm", "x_p", "lateral position of the resultant of the pressure"),
     Variable("max_pressure", "contact", _C, "MPa", "p_max", "largest contact pressure"),
     Variable("max_shear", "contact", _C, "MPa", "tau_max", "largest surface shear traction"),
     Variable("spin_pole_lateral", "contact", _C, "mm", "x_spin", "lateral position of the spin pole"),
     Variable("spin_pole_rolling", "contact", _C, "mm", "y_spin", "position of the spin pole in the rolling direction"),
-    Variable("stick_area_fraction", "contact", _C, "1", "A_stick/A", "share of the patch that sticks"),
+    Variable(
+        "stick_area_fraction", "contact", _C, "1", "A_stick/A", "adhesion (stick) area over the area of the patch"
+    ),
     Variable("friction_power", "friction_work", _C, "W", "P_f", "friction power at the travel speed"),
     Variable("friction_energy_per_distance", "friction_work", _C, "J m-1", "W_f", "friction energy per distance"),
     Variable(
@@ -79,7 +98,7 @@ _ALL = (
         _CB,
         "1",
         "k delta(sigma)/sigma",
-        "estimated relative error of the life: Woehler exponent times that of the peak stress",
+        "estimated relative error of the life: S-N exponent times that of the peak stress",
     ),
     Variable("life_hours", "life", _CB, "h", "L_h", "life in hours of travel"),
     Variable("roller_life_hours", "life", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
@@ -89,8 +108,10 @@ _ALL = (
     Variable("pressure", "tractions", _PATCH, "MPa", "p", "contact pressure"),
     Variable("shear_lateral", "tractions", _PATCH, "MPa", "tau_x", "lateral shear on the roller"),
     Variable("shear_rolling", "tractions", _PATCH, "MPa", "tau_y", "shear on the roller in the rolling direction"),
-    Variable("slip_lateral", "tractions", _PATCH, "1", "v_x/v", "lateral slip over travel speed"),
-    Variable("slip_rolling", "tractions", _PATCH, "1", "v_y/v", "rolling slip over travel speed"),
+    Variable(
+        "slip_lateral", "tractions", _PATCH, "1", "v_x/v", "lateral creepage at a point: slip speed over travel speed"
+    ),
+    Variable("slip_rolling", "tractions", _PATCH, "1", "v_y/v", "creepage at a point in the rolling direction"),
     Variable(
         "friction_energy_density",
         "tractions",
@@ -114,31 +135,31 @@ _ALL = (
 VARIABLES: dict[str, Variable] = {v.name: v for v in _ALL}
 
 VALIDITY_BITS = {
-    "half_space": "a or b above 0.3 of the smallest radius of curvature: the bodies are no half-spaces",
+    "half_space": "a or b above 0.3 of the smallest radius of curvature: the bodies are not half-spaces",
     "yield": "p_max above 1.6 R_m of a body (R_m taken for the yield strength): plastic flow under the surface",
-    "static": "peak stress above R_m of the body: static failure, the Woehler line is run beyond its end",
+    "static": "peak stress above R_m of the body: static failure; the life lies beyond the end of the S-N curve",
     "conformal": "the patch reaches the edge of the groove or the middle of the guide",
-    "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, or in one that has lifted if "
-    "there were no axial force: the wedge may lock, and the slightest axial force lifts a contact",
-    "large_slip": "longitudinal slip above 10 %: friction heat and wear decide",
-    "deep_life": "peak stress below the fatigue limit: life rests on the rule chosen beyond the knee",
-    "split_pole": "the slip of the sliding model vanishes apart from its spin pole, or twice in a patch: the stress of "
-    "the model is infinite there, as a logarithm; use kalker",
-    "steep_friction": "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip than "
-    "elastic surfaces follow, a patch has several states or none, and the roller may not roll steadily",
+    "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, or, after lift-off, without "
+    "the axial force: the wedge may lock, and the slightest axial force lifts a contact",
+    "large_slip": "longitudinal creepage above 10 %: friction heat and wear decide",
+    "deep_life": "peak stress below the fatigue limit: the life depends on life_rule",
+    "split_pole": "the slip of the sliding model vanishes away from its spin pole, or twice in a patch: there the "
+    "stress of the model grows without bound, as a logarithm; use kalker",
+    "steep_friction": "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip speed "
+    "than elastic surfaces follow; a patch has several states or none, and the roller may not roll steadily",
 }
 
 
 def validity_bit(name: str) -> int:
-    """The bit of `validity` that a name of `VALIDITY_BITS` stands for."""
+    """Return the flag of `validity` (a power of two) that a name of `VALIDITY_BITS` stands for."""
     return 1 << list(VALIDITY_BITS).index(name)
 
 
 FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
     "regime": ("regime of the case", REGIMES),
-    "converged": ("equilibrium found to the residual its contact model can reach", ("no", "yes")),
-    "contact_model_used": ("contact model of the case, as `auto` chose it or as asked for", CONTACT_MODELS[:-1]),
-    "stopped": ("the condition of stop_if holds: peak stress not searched for", ("no", "yes")),
+    "converged": ("equilibrium found to the residual that its contact model can reach", ("no", "yes")),
+    "contact_model_used": ("contact model that solved the case", CONTACT_MODELS[:-1]),
+    "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),
 }
 
 
@@ -148,7 +169,7 @@ def _flag(name: str, values: np.ndarray) -> tuple[str, np.ndarray, dict[str, Any
             "case",
             values.astype(np.int32),
             {
-                "long_name": "where the model leaves its ground",
+                "long_name": "validity flags: where an assumption of the model does not hold",
                 "units": "1",
                 "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
                 "flag_meanings": " ".join(VALIDITY_BITS),
@@ -171,11 +192,25 @@ def _flag(name: str, values: np.ndarray) -> tuple[str, np.ndarray, dict[str, Any
 def build(
     values: Mapping[str, np.ndarray], flags: Mapping[str, np.ndarray], attrs: Mapping[str, Any], single: bool
 ) -> xr.Dataset:
-    """Data set with dimension `case` (dropped for a `single` case) from arrays whose first axis is the case.
+    """Return a labelled data set.
 
-    `flags` are arrays (n,) of those in `FLAGS`, and `validity` with the bits of `VALIDITY_BITS`.
+    Parameters
+    ----------
+    values : mapping of str to numpy.ndarray
+        Arrays by their names in `VARIABLES`; the first axis is the case.
+    flags : mapping of str to numpy.ndarray
+        Arrays of integers, shape (n,), by their names in `FLAGS`, and `validity` with the flags of `VALIDITY_BITS`.
+    attrs : mapping
+        Global attributes.
+    single : bool
+        Whether to drop the dimension `case`.
+
+    Returns
+    -------
+    xarray.Dataset
+        With the coordinates `contact` and `body`.
     """
-    import xarray as xr
+    import xarray as xr  # heavy: `VARIABLES` is needed where no data set is made
 
     variables: dict[str, Any] = {}
     for name, array in values.items():

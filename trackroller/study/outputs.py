@@ -43,7 +43,7 @@ DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
     "normal_force_1": ("normal_force", {"contact": 1}, "sum", "natural", "normal force in contact 1"),
     "normal_force_2": ("normal_force", {"contact": 2}, "sum", "natural", "normal force in contact 2"),
     "drilling_torque": ("drilling_torque", {}, "sum", "natural", "drilling torque"),
-    "slip": ("slip", {}, "sum", "natural", "longitudinal slip"),
+    "slip": ("slip", {}, "sum", "natural", "longitudinal creepage"),
 }
 _REGIME_WORDS = {"rolling": "rolling", "full_slip": "full slip", "lift_off": "lift-off", "failed": "failed"}
 _JOIN: dict[str, Any] = {"min": np.nanmin, "max": np.nanmax, "sum": np.nansum}

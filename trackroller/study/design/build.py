@@ -14,7 +14,8 @@ import xarray as xr
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.numerics import expressions
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.case import geometry_problem, own_frictions
+from trackroller.roller.fields import own_frictions
+from trackroller.roller.geometry import geometry_problem
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import label, parse
 from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample

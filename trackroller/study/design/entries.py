@@ -10,7 +10,7 @@ from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.numerics import expressions
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS
-from trackroller.roller.case import mapping_text
+from trackroller.roller.fields import mapping_text
 from trackroller.study.design.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
