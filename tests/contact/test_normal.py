@@ -10,7 +10,8 @@ from trackroller.contact.cross_sections import Gap, arcs, parabola, with_edges
 from trackroller.contact.hertz import exact_shape
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.normal import TOLERANCE, displacement, solve_normal
-from trackroller.contact.normal.family import LATTICE, Family, largest_pressure, patch_area
+from trackroller.contact.normal.family import LATTICE, Family
+from trackroller.contact.normal.measure import largest_pressure, patch_area
 
 LOAD = 1e-3  # over the contact modulus [mm^2]
 
@@ -93,8 +94,8 @@ def test_surfaces_touch_inside_and_are_apart_outside():
     node = family.at(1e-3)
     x, y, hx, hy = node.box.grid(30, 30)
     pressure = node.shares * 1e-3 / (hx * hy)
-    distance = displacement(pressure, hx, hy) + family.gap.field(x, y) - node.scalars[0]
-    depth = node.scalars[0] - family.gap.field(x, y).min()
+    distance = displacement(pressure, hx, hy) + family.gap.field(x, y) - node.approach
+    depth = node.approach - family.gap.field(x, y).min()
     assert np.abs(distance[pressure > 0]).max() < 2 * TOLERANCE * depth
     assert distance[pressure == 0].min() > -2 * TOLERANCE * depth
 
@@ -109,8 +110,8 @@ def test_family_of_parabolas_is_hertz_for_every_load(guide, roller):
         node = family.at(load)
         assert 0.5 * (node.box.high - node.box.low) == pytest.approx(a, rel=4e-3)
         assert node.box.half == pytest.approx(b, rel=4e-3)
-        assert node.scalars[1] == pytest.approx(p, rel=1e-3)
-        assert node.scalars[2] == pytest.approx(np.pi * a * b, rel=8e-3)
+        assert node.largest == pytest.approx(p, rel=1e-3)
+        assert node.area == pytest.approx(np.pi * a * b, rel=8e-3)
         assert not node.reaches
 
 
@@ -134,7 +135,7 @@ def test_patch_stops_at_the_grooves_edge_and_presses_there():
     assert sharp.box.high == 0.25 and sharp.reaches
     across = sharp.shares.sum(axis=0)
     assert np.argmax(across) == 39 and across[39] > 1.3 * across[30]
-    assert wide.scalars[1] < rounded.scalars[1] < sharp.scalars[1]
+    assert wide.largest < rounded.largest < sharp.largest
     assert 0.25 < rounded.box.high < wide.box.high and not rounded.reaches
     for node in (wide, sharp, rounded):
         assert node.shares.sum() == pytest.approx(1.0, abs=1e-12)

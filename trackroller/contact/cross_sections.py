@@ -1,11 +1,11 @@
 """Cross-sections of guide and roller beside the nominal point of contact, and the gap between them.
 
 Lateral coordinate u [mm] along the common tangent, 0 at the nominal point of contact, > 0 away from the middle of the
-guide (outward). Heights [mm] are measured along the normal *out of the own body*: a convex circle of radius r has
-height -u^2/(2 r) near the point, a groove the opposite. The gap of two bodies is minus the sum of their heights.
+guide (outward). Heights [mm] are measured along the outward normal of each body: a convex circle of radius r has the
+height -u^2/(2 r) near the point, a groove +u^2/(2 r). The gap of two bodies is minus the sum of their heights.
 
-ASSUME: the bodies touch where the nominal contact angle says, whatever is drawn; drawn shapes change the gap around
-that point, not the lever arms of the equilibrium.
+ASSUME: the bodies touch at the nominal contact angle for every drawn shape; drawn shapes change the gap around that
+point, not the lever arms of the equilibrium.
 """
 
 from __future__ import annotations
@@ -15,25 +15,30 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import CubicSpline, make_smoothing_spline
+from scipy.optimize import brentq
 
-STEEPEST = 0.999  # sine of the inclination to the tangent plane up to which arcs are followed
-# Tangent of 25 degrees: ASSUME what is more inclined to the contact plane takes no part in this contact; a half-space
-# with one plane of contact could not tell what happens there.
+STEEPEST = 0.999  # largest sine of the inclination to the tangent plane at which arcs are followed
+# Tangent of 25 degrees. ASSUME: a surface with a larger inclination to the contact plane takes no part in this contact;
+# a half-space with one plane of contact does not describe it.
 CONTACT_SLOPE = 0.4663
 
-SAFETY = 1.05  # on the noise found in points: too little smoothing hurts more than too much
+SAFETY = 1.05  # factor on the noise found in points: too little smoothing does more harm than too much
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
 class CrossSection:
-    """Height and slope of one body over the tangent plane, and where its material ends.
+    """Height and slope of one body over the tangent plane, and the ends of its material.
 
+    Attributes
+    ----------
     height, slope : functions of u (any shape) [mm], [1]
-    inner, outer : ends of the drawn shape, inner < 0 < outer [mm]; infinite where nothing ends it
+    inner, outer : ends of the drawn shape, inner < 0 < outer [mm]; infinite without an edge
     chamfer : radius of the rounding beyond these ends [mm], 0 for a sharp edge
-    parabolic : Hertz's approximation: the inclination does not turn the curvature in the rolling direction
+    parabolic : True for Hertz's approximation, in which the inclination does not change the curvature in the rolling
+        direction
     """
 
     height: Curve
@@ -45,48 +50,50 @@ class CrossSection:
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Where there is no material any more, the rounding included, or it is too steep to touch [mm]."""
+        """Return the ends of the usable shape [mm]: of the material with its rounding, or of slopes that can touch."""
         return -self._reach(-1.0, -self.inner), self._reach(1.0, self.outer)
 
     def _reach(self, sign: float, end: float) -> float:
         far = min(end, 1e3)
-        # closely near the contact, however far the material goes
+        # samples are close near the contact for every width of the material
         u = far * np.concatenate([np.geomspace(1e-4, 1.0, 400), np.linspace(0.0, 1.0, 400)[1:]])
         u.sort()
         steep = np.flatnonzero(np.abs(self.slope(sign * u)) > CONTACT_SLOPE)
         return float(u[steep[0]]) if steep.size else end + STEEPEST * self.chamfer
 
     def full_height(self, u: np.ndarray) -> np.ndarray:
-        """Height with the rounded edges, shape of u."""
+        """Return the height with the rounded edges at u (any shape) [mm]."""
         inside = np.clip(u, self.inner, self.outer)
         beyond = np.abs(u - inside)
         if self.chamfer <= 0.0:
             return self.height(u)
-        # the rounding goes on tangentially
+        # the rounding continues the shape tangentially
         run = np.minimum(beyond, STEEPEST * self.chamfer)
         drop = run * run / (self.chamfer + np.sqrt(self.chamfer**2 - run * run))
         return self.height(inside) + self.slope(inside) * (u - inside) - drop
 
 
 def parabola(radius: float) -> CrossSection:
-    """Height -u^2/(2 r): the cross-section of Hertz's theory; radius > 0 convex, < 0 a groove [mm]."""
+    """Return the cross-section of Hertz's theory, height -u^2/(2 r); radius > 0 convex, < 0 a groove [mm]."""
     curvature = 1.0 / radius
     return CrossSection(lambda u: -0.5 * curvature * u * u, lambda u: -curvature * u, parabolic=True)
 
 
 def arcs(radii: Sequence[float], ends: Sequence[float]) -> CrossSection:
-    """Circular arcs that follow one another tangentially, from the inside to the outside.
+    """Return circular arcs that follow one another tangentially, from the inside to the outside.
 
     Parameters
     ----------
     radii : of each arc, > 0 convex, < 0 concave, inf straight [mm]
-    ends : u where each arc but the last gives way to the next, increasing [mm]
+    ends : u at the end of each arc except the last, increasing [mm]
 
-    The sine of the inclination is the integral of the curvature along u, hence linear on each arc.
+    Notes
+    -----
+    The sine of the inclination is the integral of the curvature along u, so that it is linear on each arc.
     """
     kappa = 1.0 / np.asarray(radii, dtype=float)
     knots = np.asarray(ends, dtype=float)
-    # both sides of u = 0, where height and slope are 0
+    # pieces start on both sides of u = 0, where height and slope are 0
     starts = np.unique(np.concatenate([knots, [0.0]]))
     order = np.searchsorted(knots, starts, side="right")
     zero = int(np.searchsorted(starts, 0.0))
@@ -117,7 +124,7 @@ def arcs(radii: Sequence[float], ends: Sequence[float]) -> CrossSection:
 
 
 def _steep_ends(starts, sine, kappa, order) -> tuple[float, float]:
-    """Where the arcs become as steep as STEEPEST, within their first and last piece."""
+    """Return the u at which the first and the last arc become as steep as STEEPEST [mm]."""
 
     def reach(s, curvature, sign):
         if curvature == 0.0:
@@ -130,14 +137,14 @@ def _steep_ends(starts, sine, kappa, order) -> tuple[float, float]:
 
 
 def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossSection:
-    """Cubic spline through points, or smoothed as far as their noise allows; height 0 at u = 0.
+    """Return the cubic spline through points, or a spline smoothed within their noise; height 0 at u = 0.
 
     Parameters
     ----------
     u, height : points, u strictly increasing, at least 5 [mm]
-    noise : standard deviation of the heights' measuring noise [mm]: the smoothest natural cubic spline whose
-        deviation from the points is that (Reinsch 1967); 'auto': with the noise that `noise_of` finds; 0: through every
-        point, whose scatter then counts as shape
+    noise : standard deviation of the measuring noise of the heights [mm]. The result is the smoothest natural cubic
+        spline with this deviation from the points (Reinsch 1967). 'auto' uses the noise that `noise_of` finds; 0 gives
+        the spline through every point, so that scatter counts as shape
     """
     spline = smoothed(u, height, noise)
     slope, zero = spline.derivative(), float(spline(0.0))
@@ -145,10 +152,7 @@ def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossS
 
 
 def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
-    """The spline of `drawn`."""
-    from scipy.interpolate import CubicSpline, make_smoothing_spline
-    from scipy.optimize import brentq
-
+    """Return the spline of `drawn`."""
     if noise == "auto":
         noise = noise_of(u, height)
     if noise == 0.0:
@@ -168,10 +172,14 @@ def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
 
 
 def noise_of(u: np.ndarray, height: np.ndarray) -> float:
-    """Standard deviation of the heights' noise [mm], from what no cubic through five neighbours can follow.
+    """Return the standard deviation of the noise of heights [mm], from divided differences of five neighbours.
 
-    Arcs and parabolas leave next to nothing there, kinks and steps few large values, which do not count. Noise that
-    neighbours share is not seen. Generalised cross-validation (Craven & Wahba 1979) takes more of it for shape.
+    These differences vanish for cubics and nearly vanish for arcs and parabolas. Kinks and steps give few large values,
+    which the median leaves out. Noise that neighbours share is not detected.
+
+    Parameters
+    ----------
+    u, height : points, (n,) [mm]
     """
     count = u.size - 4
     near = np.stack([u[k : k + count] for k in range(5)])
@@ -187,7 +195,7 @@ def noise_of(u: np.ndarray, height: np.ndarray) -> float:
 
 
 def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float = 0.0) -> CrossSection:
-    """The cross-section cut at `inner` < 0 < `outer` where it reaches so far, its edges rounded with `chamfer`."""
+    """Return the cross-section cut at `inner` < 0 < `outer` with edges of the radius `chamfer` [mm]."""
     return CrossSection(
         section.height, section.slope, max(section.inner, inner), min(section.outer, outer), chamfer, section.parabolic
     )
@@ -197,10 +205,15 @@ def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float
 class Gap:
     """Gap of the undeformed bodies over the contact plane: g(x, y) = g_0(x) + k_y(x) y^2 / 2 [mm].
 
-    guide, roller : cross-sections; alpha : contact angle [rad]; rolling_radius r_A and guide_curve_radius r_Curve of
-    the nominal point [mm]. The curvature in the rolling direction is that of two bodies of revolution at each x:
-    k_y = cos(inclination)/(r_A + x sin(alpha)) + cos(inclination)/(r_Curve - x sin(alpha)); for two parabolas
-    it is the one of the nominal point, so that the problem is that of Hertz.
+    The curvature in the rolling direction is that of two bodies of revolution at each x:
+    k_y = cos(inclination)/(r_A + x sin(alpha)) + cos(inclination)/(r_Curve - x sin(alpha)). For two parabolas it has
+    its value at the nominal point for all x, so that the problem is that of Hertz.
+
+    Attributes
+    ----------
+    guide, roller : cross-sections
+    alpha : contact angle [rad]
+    rolling_radius, guide_curve_radius : r_A and r_Curve of the nominal point [mm]
     """
 
     guide: CrossSection
@@ -211,28 +224,28 @@ class Gap:
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Where either body ends [mm]."""
+        """Return the first ends of the two bodies inward and outward [mm]."""
         (a, b), (c, d) = self.guide.limits, self.roller.limits
         return max(a, c), min(b, d)
 
     @property
     def is_rounded(self) -> bool:
-        """Has either body a rounded edge?"""
+        """Return True if one of the bodies has a rounded edge."""
         return max(self.guide.chamfer, self.roller.chamfer) > 0.0
 
     def lateral(self, x: np.ndarray) -> np.ndarray:
-        """g_0(x) [mm]."""
+        """Return g_0(x) [mm]."""
         return -(self.guide.full_height(x) + self.roller.full_height(x))
 
     def curvature(self, x: np.ndarray) -> np.ndarray:
-        """k_y(x) [1/mm]."""
+        """Return k_y(x) [1/mm]."""
         s, c = np.sin(self.alpha), np.cos(self.alpha)
         if self.guide.parabolic and self.roller.parabolic:
             return np.full(np.shape(x), c / self.rolling_radius + c / self.guide_curve_radius)
-        # outward, the roller's flank (height > 0 towards the guide) and the guide's turn with their slopes
+        # counted outward, the slopes of both flanks change their inclination to the axes
         roller = (c - s * self.roller.slope(x)) / (self.rolling_radius + x * s)
         return roller + (c + s * self.guide.slope(x)) / (self.guide_curve_radius - x * s)
 
     def field(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """g at the points x (nx,), y (ny,), shape (ny, nx) [mm]."""
+        """Return g at the points x (nx,), y (ny,) [mm], (ny, nx)."""
         return self.lateral(x)[None, :] + 0.5 * self.curvature(x)[None, :] * (y * y)[:, None]

@@ -1,10 +1,10 @@
 """Influence functions of steady rolling on the elastic half-space, and their fast products.
 
-Displacement differences of rectangular elements with constant traction: closed forms of Cerruti's and
-Boussinesq's solutions (Kalker 1990, Three-Dimensional Elastic Bodies in Rolling Contact, chapter 3); the slip
-needs their derivative in the rolling direction.
+The displacement differences of rectangular elements with constant traction are closed forms of Cerruti's and
+Boussinesq's solutions (Kalker 1990, Three-Dimensional Elastic Bodies in Rolling Contact, chapter 3). The slip needs
+their derivative in the rolling direction, which is y here and x in Kalker and CONTACT.
 
-Lengths are scaled by c = sqrt(a b), tractions by the largest traction bound, slips by that over G.
+Lengths are scaled by c = sqrt(a b), tractions by the largest traction bound, slips by this bound over G.
 """
 
 from __future__ import annotations
@@ -20,29 +20,39 @@ from scipy.fft import next_fast_len
 
 FAST = {"contract", "reassoc", "arcp", "nsz"}
 
-# The derivative of the displacements in the rolling direction is a difference of second order towards the leading
-# edge, where the material comes from. A central one would leave the shortest waves undetermined in the stick
-# area; one of first order turns the slip by half an element of spin.
-# Beyond the leading edge the displacement has a kink of power 3/2, so the first element of a column leans on the
-# central difference by this share. ASSUME: the share at which Carter's problem loses its first-order error.
+# The derivative of the displacements in the rolling direction is a difference of second order towards the leading edge,
+# where the material enters. A central difference would leave the shortest waves undetermined in the adhesion area; a
+# difference of first order changes the slip by half an element times the spin.
+# Beyond the leading edge the displacement has a kink of power 3/2. The first element of a column therefore takes this
+# share of the central difference. ASSUME: the share at which the first-order error of Carter's problem vanishes.
 LEADING_SHARE = 0.45
 HALO = 3  # rows of displacements beside those of the elements: one behind, two ahead
-DIGITS = 13  # of element sizes and Poisson's ratio: patches alike but for rounding share their influence functions
+DIGITS = 13  # digits of element sizes and Poisson's ratio; patches that differ by rounding share influence functions
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def _log_part(x, y):
-    """x asinh(y / |x|), 0 at x = 0."""
+    """Return x asinh(y / |x|), 0 at x = 0."""
     return 0.0 if x == 0.0 else x * math.asinh(y / abs(x))
 
 
 @njit(cache=True, nogil=True)
 def displacements(hx, hy, poisson, ny, nx, below, above):
-    """Displacement differences at distances (j hy, i hx) of a unit traction on an element hx x hy, G = 1.
+    """Return the displacement differences at distances (j hy, i hx) of a unit traction on an element, for G = 1.
 
     Kalker (1990) chapter 3: u_x = 1/(pi G) int [(1-nu)/r + nu x^2/r^3] tau_x + nu x y/r^3 tau_y.
-    Returns (3, ny + below + above + ..., ...): xx, yy, xy for j = -(ny-1)-below .. ny-1+above and
-    i = -(nx-1) .. nx-1.
+
+    Parameters
+    ----------
+    hx, hy : element sides
+    poisson : combined Poisson's ratio [1]
+    ny, nx : numbers of elements
+    below, above : additional rows at both ends
+
+    Returns
+    -------
+    (3, 2 ny - 1 + below + above, 2 nx - 1) array: xx, yy, xy for j = -(ny-1)-below to ny-1+above and i = -(nx-1) to
+    nx-1
     """
     rows, columns = 2 * ny - 1 + below + above, 2 * nx - 1
     corner = np.empty((3, rows + 1, columns + 1))
@@ -59,7 +69,7 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
 
 @njit(cache=True, nogil=True)
 def _over_element(corner, factor):
-    """Corner values (m, rows + 1, columns + 1) of a double antiderivative to integrals over elements."""
+    """Turn corner values (m, rows + 1, columns + 1) of a double antiderivative into integrals over elements."""
     out = np.empty((corner.shape[0], corner.shape[1] - 1, corner.shape[2] - 1))
     for c in range(out.shape[0]):
         for j in range(out.shape[1]):
@@ -71,9 +81,10 @@ def _over_element(corner, factor):
 
 @njit(cache=True, nogil=True)
 def pressure_displacements(hx, hy, ny, nx, below, above):
-    """Tangential displacement differences of a unit pressure on an element for G = 1, K = 1: x, y, shape (2, ., .).
+    """Return the tangential displacement differences x, y of a unit pressure on an element for G = K = 1, (2, ., .).
 
-    u = -K/(pi G) int p r/|r|^2: both bodies' surfaces move towards the load (Kalker 1990, section 1.5).
+    u = -K/(pi G) int p r/|r|^2: the surfaces of both bodies move towards the load (Kalker 1990, section 1.5).
+    Parameters as in `displacements`.
     """
     rows, columns = 2 * ny - 1 + below + above, 2 * nx - 1
     corner = np.empty((2, rows + 1, columns + 1))
@@ -89,7 +100,7 @@ def pressure_displacements(hx, hy, ny, nx, below, above):
 
 @njit(cache=True, nogil=True)
 def _multipliers(kernel, ny, nx, ly, lx):
-    """Spectrum (ly, lx) of a complex influence function over the distances, (2 ny - 1 + HALO, 2 nx - 1)."""
+    """Return the spectrum (ly, lx) of a complex influence function (2 ny - 1 + HALO, 2 nx - 1) of the distances."""
     field = np.zeros((ly, lx), np.complex128)
     for j in range(2 * ny - 1 + HALO):
         for i in range(2 * nx - 1):
@@ -100,7 +111,7 @@ def _multipliers(kernel, ny, nx, ly, lx):
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def _combined(p, q, z, out):
-    """`out` = P Z + Q conj(Z(-k))."""
+    """Write P Z + Q conj(Z(-k)) into `out`."""
     ly, lx = z.shape
     for i in range(ly):
         mirror = ly - i if i > 0 else 0
@@ -111,9 +122,9 @@ def _combined(p, q, z, out):
 
 @njit(cache=True, nogil=True)
 def convolve(field, p, q, work):
-    """Displacements of the tractions `field` (ny, nx) by transforms in `work` (2, ly, lx), which holds them in the end.
+    """Write the displacements of tractions `field` (ny, nx) into the first ny + HALO rows and nx columns of work[1].
 
-    They stand in its second part, rows 0 .. ny - 1 + HALO and columns 0 .. nx - 1.
+    `p` and `q` are the spectra of `Influence`; `work` (2, ly, lx) also serves the transforms.
     """
     ny = field.shape[0]
     ly, lx = p.shape
@@ -128,6 +139,8 @@ def convolve(field, p, q, work):
 class Influence:
     """Influence functions of ny x nx elements for products by fast Fourier transforms; a field is x + iy.
 
+    Attributes
+    ----------
     hy : element size in the rolling direction
     p, q : spectra W = P Z + Q conj(Z(-k)) of displacements W and tractions Z, (ly, lx)
     own : mean slip that an element's unit traction causes at itself
@@ -142,11 +155,11 @@ class Influence:
 
     @property
     def own_displacement(self) -> float:
-        """Mean displacement that an element's unit traction causes at itself."""
+        """Return the mean displacement that an element's unit traction causes at itself."""
         return float(self.column[:, (self.column.shape[1] - HALO + 1) // 2].mean())
 
     def displacements(self, field: np.ndarray) -> np.ndarray:
-        """Displacements (ny + HALO, nx), one row behind to two rows ahead, of the tractions `field` (ny, nx)."""
+        """Return the displacements (ny + HALO, nx), one row behind to two rows ahead, of tractions `field` (ny, nx)."""
         ny, nx = field.shape
         work = np.empty((2, *self.p.shape), complex)
         convolve(field, self.p, self.q, work)
@@ -165,12 +178,12 @@ def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influe
 
 
 def influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influence:
-    """Influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept."""
+    """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept."""
     return _influence(*(float(f"{v:.{DIGITS}g}") for v in (hx, hy, poisson)), ny, nx)
 
 
 def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
-    """Slip -du/dy (ny, nx), x + iy, of a pressure field (ny, nx) for K = G = 1, by central differences."""
+    """Return the slip -du/dy (ny, nx), x + iy, of a pressure field (ny, nx) for K = G = 1, by central differences."""
     ny, nx = pressure.shape
     ly, lx = next_fast_len(2 * ny - 1 + HALO), next_fast_len(2 * nx - 1)
     u = pressure_displacements(hx, hy, ny, nx, 1, 2)
@@ -181,7 +194,7 @@ def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
 
 @njit(cache=True, nogil=True)
 def leading_rows(bound):
-    """Row of the leading element (largest y with a traction bound > 0) of each column, -1 for none."""
+    """Return the row of the leading element (largest y with a traction bound > 0) of each column, -1 if none."""
     ny, nx = bound.shape
     rows = np.empty(nx, np.int64)
     for j in range(nx):
@@ -195,9 +208,10 @@ def leading_rows(bound):
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def differences(halo, leading, hy, result):
-    """Slip -du/dy (ny, nx) into `result` from displacements `halo` (ny + HALO, nx).
+    """Write the slip -du/dy into `result` (ny, nx) from displacements `halo` (ny + HALO, nx).
 
-    Upwind difference of second order, blended with the central one in the `leading` element of each column.
+    The difference is upwind and of second order; the `leading` element of each column takes a share of the central
+    difference.
     """
     ny, nx = result.shape
     for i in range(ny):

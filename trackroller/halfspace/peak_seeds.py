@@ -1,4 +1,4 @@
-"""Where the search for the peak stress begins: points of the scan and the best of them as seeds.
+"""Starting points of the search for the peak stress: points of the scan, and the best of them as seeds.
 
 Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis.
 """
@@ -13,7 +13,7 @@ from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
 
 
 def _scan_points() -> np.ndarray:
-    """Points (rho cos, rho sin, depth) in normalised coordinates."""
+    """Return points (rho cos, rho sin, depth) in normalised coordinates, (m, 3)."""
     rows = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)]
     for rho, count in ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)):
         angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
@@ -35,14 +35,19 @@ def _scan_points() -> np.ndarray:
 SCAN = _scan_points()
 
 
-SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis: from where on a spike counts, and in full
+SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
 
 def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
-    """Points (n, m, 3) of the scans: the common ones and some on the line where the lateral slip turns.
+    """Return the points of the scans, (n, m, 3): common points and points on the line where the lateral slip vanishes.
 
-    The sharp fold of the slip carries ridges of stress. In `slender` patches the slip turns within a fraction of the
-    long axis, so lines on both sides of the fold and across the pole are looked at as well.
+    The slip changes direction sharply on this line, which carries ridges of stress. In `slender` patches the slip turns
+    within a fraction of the long axis; lines on both sides of this line and across the pole are added.
+
+    Parameters
+    ----------
+    patches : records of `ellipse.patch_rows`, (n,)
+    slender : True for slender patches
     """
     pole = np.clip(patches["pole_x"] / patches["a"], -1.0, 1.0)[:, None]
     share = np.array([0.15, 0.4, 0.6, 0.85])
@@ -58,17 +63,17 @@ def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
 
 
 def _fold(patches: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """y where the lateral slip vanishes at x (n, m)."""
+    """Return the y at which the lateral slip vanishes at x, both (n, m), normalised."""
     a, *line = (patches[name][:, None] for name in ("a", "k0", "k1", "k2"))
     return pole_offset(x * a, a, *line) / patches["b"][:, None]
 
 
 def spike(patches: np.ndarray) -> np.ndarray:
-    """Friction over p_max (n,) where the slip vanishes apart from its pole, or a second time; 0 where it does not.
+    """Return the friction over p_max at points where the slip vanishes apart from the spin pole, (n,); 0 if none.
 
-    The rolling slip, eq. (24), vanishes at two x, of which the pole of eq. (22) is the first but for terms of second
-    order. Where both slips vanish under pressure the stress of the model grows about that point as a logarithm of
-    the distance, times this friction.
+    The rolling slip, eq. (21), vanishes at two x. The pole of eq. (22) is the first of them up to terms of second
+    order. Where both slips vanish under pressure, the stress of the model grows as a logarithm of the distance from
+    this point, times this friction.
     """
     sine, cosine, radius, shift = (patches[name] for name in ("sine", "cosine", "radius", "shift"))
     with np.errstate(invalid="ignore"):
@@ -81,7 +86,7 @@ def spike(patches: np.ndarray) -> np.ndarray:
 
 
 def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarray) -> list[np.ndarray]:
-    """Points (n, m, 2) beside the fold of the slip, and on and beside the chord x = pole."""
+    """Return points (n, m, 2) beside the line `fold`, and on and beside the chord x = pole."""
     width = np.minimum(a, b) / np.maximum(a, b)
     shifts = [np.stack([np.zeros_like(width), k * np.minimum(a / b, 1.0)], axis=2) for k in (-1.0, 1.0)]
     chord = np.array([-0.95, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 0.95])
@@ -94,9 +99,9 @@ def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarra
 
 
 def along_turn(patch: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Unit vectors (m, 2) along which the slip turns slowest at points u (m, 3) of patches (m, 12).
+    """Return unit vectors (m, 2) along which the slip turns slowest at points u (m, 3) of m patches.
 
-    In a patch long in x that is the direction of y, in one long in y that of the fold.
+    In a patch long in x this is the direction of y; in a patch long in y it is the line without lateral slip.
     """
     slope = np.where(u[:, 0] * patch["a"] < patch["pole_x"], patch["k1"], patch["k2"]) * patch["a"] / patch["b"]
     wide = patch["a"] > patch["b"]
@@ -105,7 +110,10 @@ def along_turn(patch: np.ndarray, u: np.ndarray) -> np.ndarray:
 
 
 def best_seeds(points: np.ndarray, values: np.ndarray, count: int, apart: float) -> np.ndarray:
-    """Scan points (n, m, 3) of largest value, `apart` from each other: indices (n, count), -1 where no more are."""
+    """Return the indices (n, count) of scan points (n, m, 3) with the largest values; -1 if there are no more.
+
+    The points are `apart` from each other.     `values` (n, m) are the stresses at the points.
+    """
     left, every = values.copy(), np.arange(len(values))
     enough = 0.85 * values.max(axis=1)
     chosen = np.full((len(values), count), -1)

@@ -1,4 +1,4 @@
-"""Derives, with SymPy, what `ellipse` and its kernels rest on from the potentials of eqs (1)-(5).
+"""Derive the plane-wave stresses that `ellipse` and its kernels use from the potentials of eqs (1)-(5), with SymPy.
 
 A traction that varies as exp(i k s) along a direction s has the potential function Omega -> 2 pi exp(-k z)/k^3 (since
 d^2 Omega/dz^2 = 1/rho, whose transform is 2 pi exp(-k z)/k). The potentials then give the stresses of such a wave as
@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import functools
 
+import sympy
+
 COMPONENTS = ("ss", "tt", "zz", "st", "tz", "zs")
 
 
-def _potential_stresses(sympy, potentials, space, poisson):
-    """Stresses of half-space potentials F1, G1, H1 (Johnson 1985, eqs (3.1)-(3.9)) for unit 1/(4 pi G)."""
+def _potential_stresses(potentials, space, poisson):
+    """Return the stresses of half-space potentials F1, G1, H1 (Johnson 1985, eqs (3.1)-(3.9)) for unit 1/(4 pi G)."""
     s, t, z = space
     diff = sympy.diff
     f_1, g_1, h_1 = potentials
@@ -36,14 +38,12 @@ def _potential_stresses(sympy, potentials, space, poisson):
 
 @functools.cache
 def plane_wave_stress():
-    """Stresses of unit traction waves exp(i k s), as functions of k z and nu without the factor exp(i k s - k z).
+    """Return the stresses of unit traction waves exp(i k s) over exp(i k s - k z), as functions of k z and nu.
 
     Returns
     -------
     dict: load 's' | 't' | 'z' -> dict: component -> SymPy expression in `kz` and `nu`
     """
-    import sympy
-
     s, t = sympy.symbols("s t", real=True)
     k, z = sympy.symbols("k z", positive=True)
     nu, kz = sympy.symbols("nu kz")
@@ -52,7 +52,7 @@ def plane_wave_stress():
     loads = {"s": (omega, 0 * omega, 0 * omega), "t": (0 * omega, omega, 0 * omega), "z": (0 * omega, 0 * omega, omega)}
     result = {}
     for load, potentials in loads.items():
-        stresses = _potential_stresses(sympy, potentials, (s, t, z), nu)
+        stresses = _potential_stresses(potentials, (s, t, z), nu)
         result[load] = {
             name: sympy.expand(sympy.simplify(value / wave)).subs(z, kz / k) for name, value in stresses.items()
         }

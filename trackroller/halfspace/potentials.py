@@ -1,6 +1,6 @@
-"""Derives the half-space stress kernels from the Boussinesq-Cerruti potentials and writes `kernels.py`.
+"""Derive the half-space stress kernels from the Boussinesq-Cerruti potentials.
 
-Regenerate with ``python -m trackroller.halfspace.potentials``.
+`kernel_writer` turns the result into `kernels.py`.
 
 With Omega = z ln(R + z) - R, R = sqrt(x^2 + y^2 + z^2) (eq. (2) of the paper, point load at the origin) the
 displacements of the half-space z >= 0 under tractions q = (q_x, q_y, q_z) acting on the body are, with
@@ -11,8 +11,8 @@ Q_i = q_i Omega and psi_1 = dQ_x/dx + dQ_y/dy + dQ_z/dz (Johnson 1985, sec. 3.2;
     4 pi G u_z =   d2Q_z/dz2 + (1 - 2 nu) dpsi_1/dz - z d2psi_1/dz2
 
 and Hooke's law, eq. (4), gives 2 pi sigma = sym grad (4 pi G u) + 2 nu d2psi_1/dz2 1 once the dilatation is
-known to be div (4 pi G u) = 2 (1 - 2 nu) d2psi_1/dz2 (`check_dilatation` proves it, so that nu = 0.5 is regular).
-E cancels and every component is A + nu B.
+known to be div (4 pi G u) = 2 (1 - 2 nu) d2psi_1/dz2. `check_dilatation` proves this relation, so that nu = 0.5 is
+regular. E cancels, and every component is A + nu B.
 
 Uniform and bilinear loads follow from the antiderivatives of Omega. `double_antiderivative` finds
 W with d4W/dx2dy2 = Omega, so that d2W/dxdy serves rectangles with uniform traction (Love 1929) and W itself
@@ -24,17 +24,14 @@ The algebra runs in a polynomial ring over the rationals in x, y, z, R, 1/R, 1/(
     Lx = asinh(x / sqrt(y^2+z^2)),  Ly = asinh(y / sqrt(x^2+z^2)),  Lz = ln(R + z),
     Ax = atan(y/x) - atan(y z/(x R)) = atan2(x y (R-z), x^2 R + y^2 z),  Ay the same with x and y exchanged,
 
-each with its known partial derivatives (a differential ring), which is exact and takes a second.
+each with its known partial derivatives (a differential ring). The algebra is exact and takes a second.
 """
 
 from __future__ import annotations
 
-import re
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-import sympy as sp
 from sympy import QQ
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import ring
@@ -87,7 +84,7 @@ _DERIVATIVES: dict[str, dict[Element, Element]] = {
     },
 }
 
-# Rewriting rules (factors to find, replacement), tried in this order until none applies.
+# Rewriting rules (factors to find, replacement), applied in this order as long as one of them applies.
 _RULES: list[tuple[dict[int, int], Element]] = [
     ({_R: 1, _IR: 1}, _RING(1)),
     ({_R: 2}, x**2 + y**2 + z**2),
@@ -110,7 +107,7 @@ def _rule_for(monomial: tuple[int, ...]) -> tuple[dict[int, int], Element] | Non
 
 
 def normal_form(f: Element) -> Element:
-    """The element with every relation between R, 1/R, 1/(R+z), ... used up (so that equal functions look equal)."""
+    """Return the element with all relations of R, 1/R, 1/(R+z), ... applied, so that equal functions look equal."""
     done, todo = _RING(0), f
     while todo:
         nxt = _RING(0)
@@ -128,14 +125,14 @@ def normal_form(f: Element) -> Element:
 
 
 def derivative(f: Element, along: str) -> Element:
-    """Partial derivatives of `f` along each letter of `along`, in turn: `derivative(f, "xxz")`."""
+    """Return the partial derivative of `f` along each letter of `along`, in turn: `derivative(f, "xxz")`."""
     for letter in along:
         f = normal_form(sum((f.diff(g) * dg for g, dg in _DERIVATIVES[letter].items()), _RING(0)))
     return f
 
 
 def omega() -> Element:
-    """Omega = z ln(R + z) - R, eq. (2)."""
+    """Return Omega = z ln(R + z) - R, eq. (2)."""
     return z * Lz - R
 
 
@@ -170,7 +167,7 @@ _QUADRUPLES = [
 
 
 def _values_at(f: Element, point: tuple[int, int, int, int]) -> dict[tuple[int, ...], Any]:
-    """Coefficients of the transcendental monomials of `f` at a point with rational R."""
+    """Return the coefficients of the transcendental monomials of `f` at a point with rational R."""
     a, b, c, r = map(QQ, point)
     values = (a, b, c, r, 1 / r, 1 / (r + c), 1 / (a * a + c * c), 1 / (b * b + c * c))
     found: dict[tuple[int, ...], Any] = {}
@@ -184,10 +181,14 @@ def _values_at(f: Element, point: tuple[int, int, int, int]) -> dict[tuple[int, 
 
 @cache
 def double_antiderivative() -> Element:
-    """W, even in x and y and homogeneous of degree 5 (but for the logarithm), with d4W/dx2dy2 = Omega.
+    """Return W with d4W/dx2dy2 = Omega, even in x and y and homogeneous of degree 5 except for the logarithm.
 
-    Undetermined coefficients: Omega times four lengths can only consist of the terms listed, and their
-    coefficients follow from linear equations over the rationals.
+    Omega times four lengths consists of the listed terms only; their coefficients follow from linear equations over the
+    rationals.
+
+    Raises
+    ------
+    ArithmeticError : if the listed terms do not suffice
     """
     terms = (
         [R * m for m in _monomials(4, 0, 0)]
@@ -215,7 +216,7 @@ def double_antiderivative() -> Element:
 
 
 def displacements(potential: Element, load: str) -> tuple[dict[str, Element], dict[str, Element]]:
-    """4 pi G u for unit traction along `load`, as (A, B) with u = A + nu B, per component."""
+    """Return 4 pi G u for unit traction along `load`, as (A, B) with u = A + nu B, per component."""
     psi_1 = derivative(potential, load)
     psi = derivative(psi_1, "z")
     a, b = {}, {}
@@ -233,7 +234,7 @@ def displacements(potential: Element, load: str) -> tuple[dict[str, Element], di
 
 
 def check_dilatation(load: str) -> bool:
-    """Whether div(4 pi G u) = 2 (1 - 2 nu) d(psi)/dz holds for the point load: then nu/(1 - 2 nu) cancels."""
+    """Return True if div(4 pi G u) = 2 (1 - 2 nu) d(psi)/dz for the point load: then nu/(1 - 2 nu) cancels."""
     a, b = displacements(omega(), load)
     psi_z = derivative(omega(), load + "zz")
     div_a = sum((derivative(a[i], i) for i in LOADS), _RING(0))
@@ -242,7 +243,7 @@ def check_dilatation(load: str) -> bool:
 
 
 def stresses(potential: Element, load: str) -> tuple[list[Element], list[Element]]:
-    """2 pi sigma for unit traction along `load`, as (A, B) in the order of COMPONENTS."""
+    """Return 2 pi sigma for unit traction along `load`, as (A, B) in the order of COMPONENTS."""
     a, b = displacements(potential, load)
     psi_z = derivative(potential, load + "zz")
     parts: tuple[list[Element], list[Element]] = ([], [])
@@ -256,101 +257,17 @@ def stresses(potential: Element, load: str) -> tuple[list[Element], list[Element
 
 
 def _without_polynomials(f: Element, differences: int) -> Element:
-    """Drops polynomials of degree < `differences` in x or in y, which the corner differences cancel."""
+    """Drop polynomials of degree < `differences` in x or in y, which the corner differences cancel."""
     keep = {m: c for m, c in f.terms() if any(m[_R:]) or min(m[_X], m[_Y]) >= differences}
     return _RING.from_dict(keep)
 
 
 @cache
 def kernel_elements(name: str) -> tuple[Element, ...]:
-    """The 36 elements of a kernel: A of the 18 (load, component) pairs, load slowest, then B."""
+    """Return the 36 elements of a kernel: A of the 18 (load, component) pairs, load slowest, then B."""
     w = double_antiderivative()
     potential = {"point_kernel": omega(), "uniform_corner": derivative(w, "xy"), "bilinear_corner": w}[name]
     split = [stresses(potential, load) for load in LOADS]
     found = [f for part in (0, 1) for one in split for f in one[part]]
     differences = KERNELS.index(name)
     return tuple(_without_polynomials(f, differences) if differences else f for f in found)
-
-
-_HEADER = '''"""Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
-
-Written by `python -m trackroller.halfspace.potentials`, which explains the derivation.
-Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, yz, xz,
-then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
-FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.
-"""
-
-from math import asinh, atan2, log, sqrt
-
-import numba
-
-FLOOR = 1e-10
-'''
-
-_COMMON = """    x2, y2, z2 = x * x, y * y, z * z
-    R = sqrt(x2 + y2 + z2)
-    iR = 1.0 / R if R > 0.0 else 0.0
-    S = R + z
-    iS = 1.0 / S if S > 0.0 else 0.0
-"""
-_CORNER = """    P = x2 + z2
-    Q = y2 + z2
-    iP = 1.0 / P if P > 0.0 else 0.0
-    iQ = 1.0 / Q if Q > 0.0 else 0.0
-    Lx = asinh(x / max(sqrt(Q), FLOOR))
-    Ly = asinh(y / max(sqrt(P), FLOOR))
-    Lz = log(max(S, FLOOR))
-    t = x * y * (x2 + y2) * iS
-    Ax = atan2(t, x2 * R + y2 * z)
-    Ay = atan2(t, y2 * R + x2 * z)
-"""
-_TITLES = {
-    "point_kernel": "Stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
-    "uniform_corner": "Corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless.",
-    "bilinear_corner": "Corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
-}
-
-
-def _without_unused(prelude: str, body: str) -> str:
-    """The prelude's assignments that something after them uses."""
-    kept: list[str] = []
-    for line in reversed(prelude.splitlines()):
-        names = {name.strip() for name in line.split(" = ")[0].split(",")}
-        if names & set(re.findall(r"[A-Za-z_]\w*", body + "".join(kept))):
-            kept.insert(0, line + "\n")
-    return "".join(kept)
-
-
-def function_source(name: str) -> str:
-    """Python source of one kernel function, common subexpressions taken out."""
-    expressions = [f.as_expr() / (2 * sp.pi) for f in kernel_elements(name)]
-    shared, reduced = sp.cse(expressions, symbols=sp.numbered_symbols("t"), optimizations="basic", order="canonical")
-    printer = sp.printing.pycode
-    lines = "".join(f"    {symbol} = {printer(value.evalf(17))}\n" for symbol, value in shared)
-    values = ",\n        ".join(printer(sp.Float(e) if e.is_number else e.evalf(17)) for e in reduced)
-    prelude = _without_unused(_COMMON + ("" if name == "point_kernel" else _CORNER), lines + values)
-    return (
-        '\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\n'
-        f'def {name}(x, y, z):\n    """{_TITLES[name]}"""\n{prelude}{lines}'
-        f"    return (\n        {values},\n    )\n"
-    )
-
-
-def module_source() -> str:
-    """The whole text of `kernels.py`."""
-    if not all(check_dilatation(load) for load in LOADS):
-        raise ArithmeticError("the dilatation is not proportional to 1 - 2 nu")
-    return _HEADER + "".join(function_source(name) for name in KERNELS)
-
-
-def main() -> None:
-    """Write `kernels.py` beside this file."""
-    here = Path(__file__)
-    here.with_name("kernels.py").write_text(module_source(), encoding="utf-8")
-    for module in here.parent.glob("*.py"):
-        if "halfspace.kernels import" in module.read_text(encoding="utf-8"):
-            module.touch()  # else numba would go on using what it compiled with the former kernels
-
-
-if __name__ == "__main__":
-    main()

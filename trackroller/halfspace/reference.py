@@ -1,4 +1,4 @@
-"""Closed forms for stresses in a half-space, and one independent quadrature, that tests and users share.
+"""Closed forms for stresses in a half-space and one independent quadrature, for tests and users.
 
 Conventions as in `stress.py`: z into the body, tractions on the body, components in the order of COMPONENTS
 (sigma_x, sigma_y, sigma_z, tau_xy, tau_yz, tau_xz). Lengths in mm, stresses in MPa; arrays broadcast.
@@ -28,7 +28,7 @@ def _six(shape: tuple[int, ...], **parts: Array | float) -> Array:
 
 
 def hertz_circle_axis(z: ArrayLike, radius: float, max_pressure: float, poisson_ratio: float) -> Array:
-    """Below the centre of a circular Hertz pressure (Johnson 1985, eq. 3.45). z (...) -> (..., 6)."""
+    """Return the stress (..., 6) at depths z (...) below a circular Hertz pressure (Johnson 1985, eq. 3.45)."""
     s = np.asarray(z, dtype=float) / radius
     angle = np.arctan2(1.0, s)
     axial = -max_pressure / (1.0 + s * s)
@@ -37,7 +37,7 @@ def hertz_circle_axis(z: ArrayLike, radius: float, max_pressure: float, poisson_
 
 
 def hertz_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_pressure: float, poisson_ratio: float) -> Array:
-    """Surface z = 0 of a circular Hertz pressure, inside and outside (Johnson 1985, eqs. 3.42-3.43). (..., 6)."""
+    """Return the stress (..., 6) on the surface of a circular Hertz pressure (Johnson 1985, eqs. 3.42-3.43)."""
     xa, ya = np.broadcast_arrays(np.asarray(x, dtype=float) / radius, np.asarray(y, dtype=float) / radius)
     r2 = xa**2 + ya**2
     p = np.sqrt(np.clip(1.0 - r2, 0.0, None))
@@ -53,9 +53,9 @@ def hertz_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_pressure
 
 
 def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_shear: float, poisson_ratio: float) -> Array:
-    """Surface inside a circle under q_x = max_shear sqrt(1 - r^2/a^2) on the body (Hamilton 1983). (..., 6).
+    """Return the surface stress (..., 6) inside a circle under q_x = max_shear sqrt(1 - r^2/a^2) (Hamilton 1983).
 
-    The tangential part only: add `hertz_circle_surface` for the pressure. NaN outside the circle.
+    This is the tangential part only: add `hertz_circle_surface` for the pressure. NaN outside the circle.
     """
     xa, ya = np.broadcast_arrays(np.asarray(x, dtype=float) / radius, np.asarray(y, dtype=float) / radius)
     r2 = xa**2 + ya**2
@@ -70,13 +70,13 @@ def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_shear:
 
 
 def sliding_circle_axis(z: ArrayLike, radius: float, max_shear: float) -> Array:
-    """Below the centre of q_x = max_shear sqrt(1 - r^2/a^2) on the body: tau_xz alone (Hamilton 1983). (..., 6)."""
+    """Return the stress (..., 6), tau_xz alone, below the centre of q_x = max_shear sqrt(1 - r^2/a^2) (Hamilton)."""
     s = np.asarray(z, dtype=float) / radius
     return _six(s.shape, xz=-max_shear * (1.0 - 1.5 * s * np.arctan2(1.0, s) + 0.5 * s * s / (1.0 + s * s)))
 
 
 def hertz_ellipse_centre(semi_axis_x: float, semi_axis_y: float, max_pressure: float, poisson_ratio: float) -> Array:
-    """Surface centre of an elliptical Hertz pressure (Johnson 1985, eq. 4.47), any shape. (6,)."""
+    """Return the stress (6,) at the surface centre of an elliptical Hertz pressure (Johnson 1985, eq. 4.47)."""
     a, b, nu = semi_axis_x, semi_axis_y, poisson_ratio
     xx = -(2.0 * nu + (1.0 - 2.0 * nu) * b / (a + b))
     yy = -(2.0 * nu + (1.0 - 2.0 * nu) * a / (a + b))
@@ -86,9 +86,10 @@ def hertz_ellipse_centre(semi_axis_x: float, semi_axis_y: float, max_pressure: f
 def hertz_ellipse_axis(
     z: ArrayLike, semi_axis_x: float, semi_axis_y: float, max_pressure: float, poisson_ratio: float
 ) -> Array:
-    """Below the centre of an elliptical Hertz pressure (Johnson 1985, eq. 4.46; Sackfield & Hills 1983). (..., 6).
+    """Return the stress (..., 6) below the centre of an elliptical Hertz pressure (Johnson 1985, eq. 4.46).
 
-    Semi-axes in either order, but not equal within 1e-3 (use `hertz_circle_axis`: the form is 0/0 there).
+    See also Sackfield & Hills 1983. The semi-axes may have either order; semi-axes equal within 1e-3 raise ValueError,
+    because the form is 0/0 there: use `hertz_circle_axis`.
     """
     if abs(semi_axis_x - semi_axis_y) < 1e-3 * semi_axis_x:
         raise ValueError("semi-axes (nearly) equal: use hertz_circle_axis")
@@ -110,7 +111,7 @@ def hertz_ellipse_axis(
 
 
 def rectangle_corner_sigma_z(z: ArrayLike, side_x: float, side_y: float, pressure: float) -> Array:
-    """sigma_z below a corner of a rectangle under uniform pressure (Love 1929). z (...) -> (...)."""
+    """Return sigma_z (...) at depths z (...) below a corner of a rectangle under uniform pressure (Love 1929)."""
     z = np.asarray(z, dtype=float)
     a, b = side_x, side_y
     r = np.sqrt(a * a + b * b + z * z)
@@ -122,7 +123,7 @@ def rectangle_corner_sigma_z(z: ArrayLike, side_x: float, side_y: float, pressur
 
 
 def rectangle_centre(side_x: float, side_y: float, pressure: float, poisson_ratio: float) -> Array:
-    """Surface centre of a rectangle under uniform pressure (Love 1929; Johnson 1985, eq. 3.25). (6,)."""
+    """Return the stress (6,) at the surface centre of a rectangle under uniform pressure (Johnson 1985, eq. 3.25)."""
     nu = poisson_ratio
     xx = -(2.0 * nu + 2.0 / np.pi * (1.0 - 2.0 * nu) * np.arctan2(side_y, side_x))
     yy = -(2.0 * nu + 2.0 / np.pi * (1.0 - 2.0 * nu) * np.arctan2(side_x, side_y))
@@ -140,11 +141,23 @@ def quadrature_on_ellipse(
     poisson_ratio: float,
     nodes: int = 64,
 ) -> Array:
-    """Stress at one point by Gauss quadrature of the point-force kernels over an ellipse: slow and independent. (6,).
+    """Return the stress (6,) at one point by Gauss quadrature of the point-force kernels over an ellipse.
 
-    Needs z > 0 and (x, y) inside the ellipse. Polar coordinates about (x, y), with r = z sinh(u) to open up the
-    peak of the kernel and u = u_max (1 - (1 - t)^2) for the square-root edge of Hertzian tractions.
-    `tractions(x, y)` returns q_x, q_y, q_z [MPa], smooth inside. Error falls exponentially with `nodes`.
+    The quadrature is slow and independent of the other methods. It uses polar coordinates about (x, y), with
+    r = z sinh(u), which widens the peak of the kernel, and u = u_max (1 - (1 - t)^2) for the square-root edge of
+    Hertzian tractions. The error falls exponentially with `nodes`.
+
+    Parameters
+    ----------
+    tractions : function of x, y [mm] that returns q_x, q_y, q_z [MPa], smooth inside the ellipse
+    semi_axis_x, semi_axis_y : of the ellipse [mm]
+    point : x, y inside the ellipse and z > 0 [mm]
+    poisson_ratio : of the body [1]
+    nodes : Gauss points
+
+    Raises
+    ------
+    ValueError : a point at the surface or outside the ellipse
     """
     x, y, z = point
     a, b = semi_axis_x, semi_axis_y

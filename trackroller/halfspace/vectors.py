@@ -1,7 +1,7 @@
-"""Elementary functions as branchless arithmetic, so that loops over them run in vector registers.
+"""Elementary functions as branch-free arithmetic, so that loops over them run in vector registers.
 
-The mathematics library's own are called one number at a time. Relative errors below 1e-11 in the ranges stated, far
-below those of the quadratures they serve (tests/test_vector_functions.py).
+The functions of the mathematics library take one number at a time. The relative errors here are below 1e-11 in the
+stated ranges, far below the errors of the quadratures (tests/halfspace/test_vector_functions.py).
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keep
 
 
 def inner(function: Callable[..., Any]) -> Any:
-    """Compiles a function that only compiled ones call: without the wrappers for callers in Python.
+    """Compile a function that only compiled functions call, without the wrappers for callers in Python.
 
-    Always inlined: a callee with a body of its own is linked from wherever it was compiled first, and as fast
-    arithmetic rounds differently there, the process that compiles would find other last digits than later ones.
+    The function is always inlined. Otherwise the first compilation of a callee would be linked everywhere; fast
+    arithmetic rounds differently there, so that the process that compiles would compute other last digits than later
+    processes.
     """
     options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
     return njit(cache=True, fastmath=FAST, error_model="numpy", **options)(function)
@@ -28,7 +29,7 @@ def inner(function: Callable[..., Any]) -> Any:
 
 @inner
 def exp(x):
-    """e^x for |x| < 700: a power of two by its bits, the rest by Taylor's series."""
+    """Return e^x for |x| < 700: a power of two by its bits, times Taylor's series."""
     k = math.floor(x * 1.4426950408889634 + 0.5)
     r = (x - k * 0.693147180369123816490) - k * 1.90821492927058770002e-10
     e = 1.0 + r * (
@@ -61,7 +62,7 @@ def exp(x):
 
 @inner
 def sine_cosine(x):
-    """sin x and cos x for |x| < 100."""
+    """Return sin x and cos x for |x| < 100."""
     turns = math.floor(x * (2.0 / math.pi) + 0.5)
     r = (x - turns * 1.5707963267341256) - turns * 6.077100506506192e-11
     q = r * r
@@ -82,7 +83,7 @@ def sine_cosine(x):
 
 @inner
 def log(x):
-    """ln x for normal x > 0: exponent and mantissa apart, the latter by the series of artanh."""
+    """Return ln x for normal x > 0: the exponent by its bits, the mantissa by the series of artanh."""
     bits = np.float64(x).view(np.int64)
     exponent = float((bits >> 52) - 1023)
     m = np.int64((bits & 0xFFFFFFFFFFFFF) | 0x3FF0000000000000).view(np.float64)
@@ -97,7 +98,7 @@ def log(x):
 
 @inner
 def angle(y, x):
-    """atan2(y, x) for y > 0."""
+    """Return atan2(y, x) for y > 0."""
     a = abs(x)
     low, high = min(a, y), max(a, y)
     wide = low > 0.41421356237309503 * high

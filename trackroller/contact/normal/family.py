@@ -1,9 +1,9 @@
 """Patches of one gap under any load, from solutions of the normal problem on a fixed lattice of loads.
 
-The equilibrium asks for a patch at tens of slightly different loads. Solved from scratch are those of a geometric
-lattice, F/E* = LATTICE^k, the same whatever is asked, so that no result depends on what was solved before. Between them
-the box around the patch and the pressures over their load are interpolated: a start close to the solution, and exact
-for Hertz's gap.
+The equilibrium asks for a patch at tens of slightly different loads. The loads of a geometric lattice, F/E* =
+LATTICE^k, are solved from scratch. The lattice does not depend on the loads asked for, so that no result depends on
+earlier ones. Between lattice loads the box around the patch and the pressures over their load are interpolated. This
+interpolation is exact for Hertz's gap and starts the solution for other gaps.
 """
 
 from __future__ import annotations
@@ -18,35 +18,48 @@ from trackroller.contact.hertz import exact_shape
 from trackroller.contact.normal.measure import Box, largest_pressure, patch_area, patch_box
 from trackroller.contact.normal.pressure import NormalSolution, displacement, solve_normal
 
-LATTICE = 1.6  # ratio of neighbouring loads
-FINER = 4  # times the elements across, where an edge is rounded
-KEPT = 8  # solutions at asked loads that are remembered
-OVERLAP = 1e-3  # of the approach, that counts as contact outside the box
+LATTICE = 1.6  # ratio of neighbouring lattice loads
+FINER = 4  # factor on the elements across for gaps with a rounded edge
+KEPT = 8  # number of solutions between lattice loads that are remembered
+OVERLAP = 1e-3  # overlap over the approach that counts as contact outside the box
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
-BOX_TOLERANCE = 3e-3  # of the sides of the box around the patch
-MARGIN = 0.08  # of a box on each side, for a patch to move in that shear presses
-SAMPLES = 401  # points across, for the start and to look for contact outside the box
+BOX_TOLERANCE = 3e-3  # relative change of the sides of the box at which it counts as found
+MARGIN = 0.08  # margin over the sides of the box, for patches that shear moves
+SAMPLES = 401  # points across for the first box and for the search of contact outside the box
 
 
 @dataclass(frozen=True)
 class Node:
-    """A solved load: box, share of the load that each element carries (sum 1), and what else grows with the load.
+    """Solution for one load.
 
-    scalars : approach [mm], largest pressure per E* [-], area of the patch [mm^2]; reaches : does it end at an edge
+    Attributes
+    ----------
+    box : rectangle around the patch
+    shares : share of the load that each element carries, (N, M), sum 1
+    approach : of the bodies [mm]
+    largest : largest pressure over E* [1]
+    area : of the patch [mm^2]
+    reaches : True if the patch ends at an edge of the material
     residual : of `solve_normal`
     """
 
     box: Box
     shares: np.ndarray
-    scalars: np.ndarray
-    reaches: bool
-    residual: float
+    largest: float
+    approach: float = math.nan
+    area: float = math.nan
+    reaches: bool = False
+    residual: float = math.nan
 
 
 class Family:
-    """All patches of one gap; `elements` along the rolling direction of the box, and across it.
+    """All patches of one gap.
 
-    Rounded edges are narrow: they ask for FINER times as many across.
+    Parameters
+    ----------
+    gap : of the undeformed bodies
+    elements : number of elements along each side of the box; rounded edges, which are narrow, get FINER times as many
+        across
     """
 
     def __init__(self, gap: Gap, elements: int) -> None:
@@ -57,43 +70,47 @@ class Family:
         self._asked: dict[float, Node] = {}
         x = np.linspace(-1.0, 1.0, SAMPLES)[1:-1]
         low, high = self.limits
-        # evenly over all there is, and closer around the nominal point, however small the patch
+        # even samples over the whole width, and closer ones around the nominal point for small patches
         x = np.unique(np.concatenate([0.5 * (low + high) + 0.5 * (high - low) * x, np.where(x < 0, -low, high) * x**5]))
         self._samples, self._lateral = x, gap.lateral(x)
 
-    def between(self, load: float) -> tuple[Box, np.ndarray]:
-        """Box and shares of the load under load/E* [mm^2], between two solved loads; exact for Hertz's gap."""
+    def between(self, load: float) -> Node:
+        """Interpolate box and shares under load/E* [mm^2] between two lattice loads; exact for Hertz's gap."""
         k = math.floor(math.log(load) / math.log(LATTICE))
         low, high = self.node(k), self.node(k + 1)
-        # sizes grow with the cube root in Hertz's theory
+        # in Hertz's theory the sizes grow with the cube root of the load
         t = (np.cbrt(load) - np.cbrt(LATTICE**k)) / (np.cbrt(LATTICE ** (k + 1)) - np.cbrt(LATTICE**k))
         sides = [(1 - t) * getattr(low.box, name) + t * getattr(high.box, name) for name in ("low", "high", "half")]
-        return self._clipped(*sides), (1 - t) * low.shares + t * high.shares
+        box, shares = self._clipped(*sides), (1 - t) * low.shares + t * high.shares
+        return Node(box, shares, shares.max() / box.cell(shares.size) * load)
 
     def at(self, load: float) -> Node:
-        """The solution under load/E* [mm^2], on a box that changes continuously with the load."""
+        """Return the solution under load/E* [mm^2], on a box that changes continuously with the load."""
         if load not in self._asked:
-            box, shares = self.between(load)
-            solution = self._pressure(box, load, self.shape, shares)
+            start = self.between(load)
+            solution = self._pressure(start.box, load, self.shape, start.shares)
             self._asked = dict(list(self._asked.items())[-KEPT:])
-            self._asked[load] = self._told(solution, box, load)
+            self._asked[load] = self._node_of(solution, start.box, load)
         return self._asked[load]
 
     def pressed(self, load: float, lift: np.ndarray | None = None, start: np.ndarray | None = None) -> Node:
-        """The solution with the surfaces moved apart by `lift` (N, M) [mm], on a box with a margin to all sides."""
-        box, _ = self.between(load)
+        """Return the solution with the surfaces moved apart by `lift` (N, M) [mm], on a box with a margin on all sides.
+
+        `load` is F/E* [mm^2], `start` are pressures (N, M) to start from.
+        """
+        box = self.between(load).box
         margin = MARGIN * (box.high - box.low)
         wide = self._clipped(box.low - margin, box.high + margin, (1.0 + 2.0 * MARGIN) * box.half)
-        return self._told(self._pressure(wide, load, self.shape, start, lift), wide, load)
+        return self._node_of(self._pressure(wide, load, self.shape, start, lift), wide, load)
 
     def node(self, k: int) -> Node:
-        """The solution under F/E* = LATTICE^k, solved at the first call."""
+        """Return the solution under F/E* = LATTICE^k; it is computed at the first call."""
         if k not in self._nodes:
             self._nodes[k] = self._solve(LATTICE**k)
         return self._nodes[k]
 
     def _start(self, load: float) -> Box:
-        """Box by Hertz's theory with the curvature that the gap has over the width of the patch."""
+        """Return a first box by Hertz's theory, with the mean curvature of the gap over the width of the patch."""
         centre = float(self._samples[np.argmin(self._lateral)])
         lowest = float(self._lateral.min())
         k_y = float(self.gap.curvature(np.array(centre)))
@@ -134,21 +151,21 @@ class Family:
             change = max(abs(filled.low - box.low), abs(filled.high - box.high)) / (box.high - box.low)
             if max(change, abs(filled.half / box.half - 1)) < BOX_TOLERANCE or attempt > 2:
                 break
-            if attempt > 0:  # it may go to and fro by a part of an element
+            if attempt > 0:  # the box may oscillate by a part of an element
                 filled = Box(*(0.5 * (getattr(box, k) + getattr(filled, k)) for k in ("low", "high", "half")))
             box = self._clipped(filled.low, filled.high, filled.half)
-        return self._told(solution, box, load)
+        return self._node_of(solution, box, load)
 
-    def _told(self, solution, box: Box, load: float) -> Node:
+    def _node_of(self, solution, box: Box, load: float) -> Node:
         _, _, hx, hy = box.grid(*self.shape)
         p = solution.pressure
         at_low, at_high = box.low <= self.limits[0], box.high >= self.limits[1]
         reaches = bool((at_low and p[:, 0].any()) or (at_high and p[:, -1].any()))
-        scalars = np.array([solution.approach, largest_pressure(p), patch_area(p, hx, hy)])
-        return Node(box, p * (hx * hy / load), scalars, reaches, solution.residual)
+        top, area = largest_pressure(p), patch_area(p, hx, hy)
+        return Node(box, p * (hx * hy / load), top, solution.approach, area, reaches, solution.residual)
 
     def _beyond(self, solution, box: Box) -> Box:
-        """The box, a good element wider on each side where the bodies would overlap just outside it."""
+        """Return the box, wider by 1.2 elements on each side where the bodies would overlap just outside it."""
         rows, columns = self.shape
         x, y, hx, hy = box.grid(rows, columns)
         around = np.zeros((rows + 2, columns + 2))
@@ -161,7 +178,7 @@ class Family:
         return self._clipped(low, high, box.half + 1.2 * hy * overlap[[0, -1]].any())
 
     def _around(self, load: float) -> Box:
-        """A box that the patch fills, by coarse solutions."""
+        """Return a box that the patch fills, by coarse solutions."""
         box = self._start(load)
         for _ in range(20):
             solution = self._pressure(box, load, (COARSE, COARSE))
@@ -184,7 +201,7 @@ class Family:
         return box
 
     def _outside(self, solution, box: Box) -> tuple[float, float]:
-        """Furthest places left and right of the box where the bodies would overlap; (inf, -inf) for none."""
+        """Return the outermost places left and right of the box where the bodies would overlap; (inf, -inf) if none."""
         x, y, hx, hy = box.grid(COARSE, COARSE)
         beyond = (self._samples < box.low - 0.5 * hx) | (self._samples > box.high + 0.5 * hx)
         places = self._samples[beyond]

@@ -22,6 +22,10 @@ class Box:
         wide = self.high - self.low
         return self.low + wide * x, self.half * (2 * y - 1), wide / columns, 2 * self.half / rows
 
+    def cell(self, elements: int) -> float:
+        """Return the area of one of `elements` equal elements [mm^2]."""
+        return 2.0 * self.half * (self.high - self.low) / elements
+
 
 def _vanishing(sums: np.ndarray) -> float:
     """Return where sums over lines of elements vanish at the far end, in elements from the centre of the first line.

@@ -1,8 +1,7 @@
-"""Patches of many rollers under the loads that an equilibrium asks for, from families of solved ones."""
+"""Solved patches of many rollers under the loads of an equilibrium, from families of solutions."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -17,14 +16,27 @@ from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import ShapeError
 
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
+SCALARS = (
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+    "max_pressure",
+    "centre",
+    "approach",
+    "area",
+    "reaches_edge",
+    "residual",
+)
 
 
 @dataclass(frozen=True)
 class Pressing:
-    """Patches whose pressures shear changes.
+    """The m of n patches whose pressures shear changes.
 
-    place : number of each patch among these, -1 for others (n,); per_stress : their K/G [1/MPa]; shear : the tractions
-    on them, once known
+    Attributes
+    ----------
+    place : number of each patch among the m patches, -1 for the other patches, (n,)
+    per_stress : K/G of the m patches, (m,) [1/MPa]
+    shear : tractions on the m patches, once known
     """
 
     place: np.ndarray
@@ -32,29 +44,31 @@ class Pressing:
     shear: SurfaceTractions | None = None
 
     def node(self, family: Family, load: float, i: int, side: int) -> Node:
-        """Patch `i` of `family` under load/E* [mm^2]."""
+        """Return the solution of patch `i`, of contact 1 or 2 (`side`), under load/E* [mm^2]."""
         k = self.place[i]
         if k < 0:
             return family.at(load)
         if self.shear is None:
             return family.pressed(load)
-        t, flip = self.shear, slice(None, None, 1 if side == 1 else -1)  # x counts outward in the family
+        t, flip = self.shear, slice(None, None, 1 if side == 1 else -1)  # x counts outward in a family
         sides = t.x[k, 1] - t.x[k, 0], t.y[k, 1] - t.y[k, 0]
         apart = lift(t.shear_lateral[k], t.shear_rolling[k], *sides, self.per_stress[k])
         return family.pressed(load, apart[:, flip], t.pressure[k][:, flip])
 
 
 class Patches:
-    """Patches of n rollers under any load.
+    """Solver of the normal problem of n rollers under any load.
 
     Parameters
     ----------
-    gaps : for roller `row` and contact `side` (1 or 2), a key that equal gaps share, and what makes the gap
-    modulus : contact modulus E* of the rollers [MPa], (n,)
-    elements : along the rolling direction of the box around a patch
+    gaps : function of roller `row` and contact `side` (1 or 2) that returns a key, which equal gaps share, and a
+        function that makes the gap
+    modulus : contact modulus E* of the rollers, (n,) [MPa]
+    elements : number of elements along the rolling direction of the box around a patch
 
-    A roller one of whose gaps cannot be made (`ShapeError`) has patches of NaN; if there is no other, the error is
-    raised.
+    Raises
+    ------
+    ShapeError : if no roller has both gaps. A single roller without a gap has patches of NaN.
     """
 
     def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int) -> None:
@@ -77,38 +91,45 @@ class Patches:
     def at(
         self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True, pressing: Pressing | None = None
     ) -> GridPatch:
-        """Patches under `load` [N] beside contact 1 (sine > 0) or 2 of the rollers `rows`; rough if not `fine`."""
+        """Return the patches of m contacts under given loads.
+
+        Parameters
+        ----------
+        load : normal forces, (m,) [N]; NaN and values <= 0 give patches of NaN
+        sine : > 0 for contact 1, < 0 for contact 2, (m,)
+        rows : numbers of the rollers, (m,)
+        fine : False interpolates between solved loads
+        pressing : patches whose pressures shear changes
+        """
         n = len(load)
         found: dict[int, np.ndarray] = {}
-        numbers = np.full((n, 9), np.nan)
+        scalars = {name: np.full(n, np.nan) for name in SCALARS}
         for i in np.flatnonzero(np.isfinite(load) & (load > 0)).tolist():
             side, modulus = (1 if sine[i] > 0 else 2), self.modulus[rows[i]]
             family = self._places[int(rows[i]), side]
             if family is None:
                 continue
-            if fine:
-                scaled = load[i] / modulus
-                node = family.at(scaled) if pressing is None else pressing.node(family, scaled, i, side)
-                box, shares, rest = node.box, rim_means(node.shares), (*node.scalars, node.reaches, node.residual)
+            scaled = load[i] / modulus
+            if not fine:
+                node = family.between(scaled)
             else:
-                box, shares = family.between(load[i] / modulus)
-                rest = (math.nan, shares.max() / _cell(box, shares) * load[i] / modulus, math.nan, False, math.nan)
-            outward = 1.0 if side == 1 else -1.0  # x counts outward in the family, along x_R here
+                node = family.at(scaled) if pressing is None else pressing.node(family, scaled, i, side)
+            box, shares = node.box, rim_means(node.shares) if fine else node.shares
+            outward = 1.0 if side == 1 else -1.0  # x counts outward in a family, along x_R here
             wide, middle = 0.5 * (box.high - box.low), 0.5 * (box.high + box.low)
-            numbers[i] = (wide, box.half, rest[1] * modulus, load[i], outward * middle, rest[0], rest[2], *rest[3:])
-            found[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / _cell(box, shares))
+            values = (wide, box.half, node.largest * modulus, outward * middle, node.approach, node.area)
+            for name, value in zip(SCALARS, (*values, node.reaches, node.residual), strict=True):
+                scalars[name][i] = value
+            found[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / box.cell(shares.size))
         shape = next((p.shape for p in found.values()), (self.elements, self.elements))
         pressure = np.full((n, *shape), np.nan)
         for i, mean in found.items():
             pressure[i] = mean
-        a, b, p, force, centre, approach, area, reaches, residual = np.ascontiguousarray(numbers.T)
-        return GridPatch(a, b, p, force, centre, pressure, approach, area, reaches == 1.0, residual)
+        scalars["normal_force"] = np.where(np.isnan(scalars["semi_axis_lateral"]), np.nan, load)
+        scalars["reaches_edge"] = scalars["reaches_edge"] == 1.0
+        return GridPatch(pressure=pressure, **scalars)
 
     def contour(self, row: int, sine: float) -> Callable[[np.ndarray], np.ndarray] | None:
-        """`slip.contour_over_tangent` of the guide beside contact 1 (sine > 0) or 2 of a roller; None without a gap."""
+        """Return `slip.contour_over_tangent` of the guide at contact 1 (sine > 0) or 2; None without a gap."""
         family = self._places[row, 1 if sine > 0 else 2]
         return None if family is None else contour_over_tangent(family.gap.guide, family.gap.alpha)
-
-
-def _cell(box, shares: np.ndarray) -> float:
-    return 2.0 * box.half * (box.high - box.low) / shares.size

@@ -1,10 +1,12 @@
 """The normal problem of two elastic half-spaces on a grid: pressure and patch for any gap.
 
-Elements with constant pressure, collocation at their centres: u = A p, with the displacement of a uniformly loaded
-rectangle (Love 1929; Johnson 1985, eq. 3.25) and products by FFT. In the patch p > 0 and u + g = delta, outside p = 0
-and u + g >= delta. Conjugate gradients with the load as side condition: Polonsky & Keer (1999), Wear 231, 206-219.
+The pressure is constant in each element, and the gap is evaluated at the element centres: u = A p, with the
+displacement of a uniformly loaded rectangle (Love 1929; Johnson 1985, eq. 3.25) and products by FFT. In the patch p > 0
+and u + g = delta; outside p = 0 and u + g >= delta. The conjugate-gradient method keeps the load as a side condition
+(Polonsky & Keer 1999, Wear 231, 206-219).
 
-The normal displacement by shear tractions, zero for like materials, may be given as part of the gap; see `lift`.
+Shear tractions displace the surfaces along the normal on unlike materials; `lift` gives this displacement, which is
+added to the gap.
 """
 
 from __future__ import annotations
@@ -13,19 +15,26 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from scipy import fft
+from scipy.signal import fftconvolve
 
 from trackroller.contact.influence import displacements, pressure_displacements
 
-TOLERANCE = 1e-7  # of the gap in the patch, over the approach
+TOLERANCE = 1e-7  # largest gap in the patch, over the approach
 ITERATIONS = 400
 
 
 @dataclass(frozen=True)
 class NormalSolution:
-    """Pressure (ny, nx) per contact modulus [-], approach [mm], iterations and largest residual gap over the approach.
+    """Solution of the normal problem.
 
-    The residual is the stopping rule: no element of the patch is further from the common surface, and none outside it
-    lies deeper.
+    Attributes
+    ----------
+    pressure : over the contact modulus, (ny, nx) [1]
+    approach : of the bodies [mm]
+    iterations : number of iterations
+    residual : over the approach: the largest remaining gap of an element of the patch, or the largest overlap of an
+        element outside it; the iteration stops at a small residual
     """
 
     pressure: np.ndarray
@@ -36,9 +45,7 @@ class NormalSolution:
 
 @lru_cache(maxsize=64)
 def _multiplier(hx: float, hy: float, ny: int, nx: int) -> tuple[np.ndarray, tuple[int, int]]:
-    """Spectrum of the displacements for E* = 1, and the padded lengths."""
-    from scipy import fft
-
+    """Return the spectrum of the displacements for E* = 1, and the padded lengths."""
     kernel = displacements(hx, hy, 0.0, ny, nx, 0, 0)[0]  # 1/pi int 1/r
     lengths = (fft.next_fast_len(2 * ny - 1), fft.next_fast_len(2 * nx - 1, real=True))
     wrapped = np.zeros(lengths)
@@ -48,35 +55,39 @@ def _multiplier(hx: float, hy: float, ny: int, nx: int) -> tuple[np.ndarray, tup
 
 
 class _Surface:
-    """Products with the influence functions of one grid; lengths over the element's, so that grids share spectra."""
+    """Products with the influence functions of one grid; lengths over the element width let grids share spectra."""
 
     def __init__(self, hx: float, hy: float, ny: int, nx: int) -> None:
         self.shape = ny, nx
         self.unit = hx
-        # a ratio of few digits would be shared more often, but the product must be that of this grid
+        # a rounded ratio would be shared more often, but the product would not be that of this grid
         self.spectrum, self.lengths = _multiplier(1.0, hy / hx, ny, nx)
 
     def displacement(self, pressure: np.ndarray) -> np.ndarray:
-        """u (ny, nx) [mm] of pressures over the contact modulus."""
-        from scipy import fft
-
+        """Return the displacement u (ny, nx) [mm] under pressures over the contact modulus (ny, nx) [1]."""
         field = fft.irfft2(fft.rfft2(pressure, self.lengths) * self.spectrum, self.lengths)
         return self.unit * field[: self.shape[0], : self.shape[1]]
 
 
 def displacement(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
-    """Normal displacement [mm] at the element centres of pressures over the contact modulus, both (ny, nx)."""
+    """Return the normal displacement (ny, nx) [mm] under pressures over the contact modulus (ny, nx) [1].
+
+    hx, hy are the element sides [mm].
+    """
     return _Surface(hx, hy, *pressure.shape).displacement(pressure)
 
 
 def lift(shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: float, per_stress: float) -> np.ndarray:
-    """How far shear tractions (ny, nx) [MPa] on the roller move unlike surfaces apart (ny, nx) [mm].
+    """Return the distance by which shear on the roller moves unlike surfaces apart, (ny, nx) [mm].
 
-    w = K/(pi G) int (x - x').tau/|x - x'|^2, the counterpart of the creep by pressures (Kalker 1990, section 1.5);
-    per_stress = K/G [1/MPa], hx, hy element sides [mm].
+    w = K/(pi G) int (x - x').tau/|x - x'|^2, the counterpart of the creep by pressures (Kalker 1990, section 1.5).
+
+    Parameters
+    ----------
+    shear_lateral, shear_rolling : (ny, nx) [MPa]
+    hx, hy : element sides [mm]
+    per_stress : K/G [1/MPa]
     """
-    from scipy.signal import fftconvolve
-
     ny, nx = shear_lateral.shape
     along_x, along_y = pressure_displacements(hx, hy, ny, nx, 0, 0)
     whole = fftconvolve(shear_lateral, along_x) + fftconvolve(shear_rolling, along_y)
@@ -92,19 +103,29 @@ def solve_normal(
     start: np.ndarray | None = None,
     tolerance: float = TOLERANCE,
 ) -> NormalSolution:
-    """Pressure, patch and approach under a load.
+    """Solve for pressure, patch and approach under a load.
 
     Parameters
     ----------
     gap : of the undeformed bodies at the element centres, (ny, nx) [mm]
     hx, hy : element sides [mm]
     load : normal force over the contact modulus E* [mm^2], > 0
-    material : where both bodies have material, (ny, nx); everywhere if not given
+    material : True where both bodies have material, (ny, nx); everywhere if not given
     start : pressures to start from, (ny, nx)
-    tolerance : stopping rule, see `NormalSolution`
+    tolerance : residual at which the iteration stops, see `NormalSolution`
 
-    The sum of the pressures is the load to rounding. Error against Hertz with 40 elements across: 0.1 % in the largest
-    pressure, 0.2 % in the approach, falling with the element size to the power 1.5 to 2 (tests/test_normal.py).
+    Returns
+    -------
+    NormalSolution
+
+    Notes
+    -----
+    The sum of the pressures equals the load to rounding. The error against Hertz falls with the element size to the
+    power 1.5 to 2 (tests/contact/test_normal.py).
+
+    References
+    ----------
+    Polonsky & Keer 1999, Wear 231, 206-219
     """
     ny, nx = gap.shape
     allowed = np.ones(gap.shape, bool) if material is None else material

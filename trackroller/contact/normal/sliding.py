@@ -1,7 +1,8 @@
 """Full sliding with an empirical spin pole under pressures solved on a grid.
 
-The model of `contact.sliding`, eqs (21)-(30), with the semi-axes of the spin pole's rules those of the box around the
-patch. In each element the pressure is constant: across the rolling direction by Gauss points, along it in closed form.
+This is the model of `contact.sliding`, eqs (21)-(30). The rules of the spin pole take half the sides of the box around
+the patch as semi-axes. The pressure is constant in each element. The integrals use Gauss points across the rolling
+direction and closed forms along it.
 """
 
 from __future__ import annotations
@@ -23,13 +24,14 @@ from trackroller.contact.slip import (
 )
 
 POINTS = 4  # Gauss points across each element
-PIECES = 3  # of each element along the rolling direction, in which a falling friction law is constant
-_TINY = 1e-13
+PIECES = 3  # parts of each element along the rolling direction in which a falling friction law is constant
+_TINY = 1e-13  # keeps logarithms finite on the column through the pole
 
 
 @dataclass(frozen=True)
 class SlidingPatches:
-    """Resultants on the roller, dissipation per angular speed [N mm per rad] and mean shear of each element [MPa]."""
+    """Friction of n patches: `resultants` on the roller, `power` per angular speed (n,) [N mm per rad], mean shear of
+    each element (n, N, M) [MPa]."""
 
     resultants: Resultants
     power: np.ndarray
@@ -38,7 +40,7 @@ class SlidingPatches:
 
 
 def _slip_of(x: np.ndarray, patch: GridPatch, slip: Slip, i: int, model: int) -> tuple[np.ndarray, np.ndarray]:
-    """v_y / omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22), (25) [mm]."""
+    """Return v_y / omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22), (25) [mm]."""
     sine, shift = slip.sine[i], slip.shift[i]
     along = rolling_slip(x, sine, slip.cosine[i], slip.guide_profile_radius[i], shift)
     a, b, middle = patch.semi_axis_lateral[i], patch.semi_axis_rolling[i], patch.centre[i]
@@ -55,15 +57,20 @@ def solve_sliding(
     law: FrictionLaw | None = None,
     travel_speed: np.ndarray | float = 1.0,
 ) -> SlidingPatches:
-    """Friction of n sliding patches, tau = -mu f(|v|) p v/|v|.
+    """Compute the friction of n sliding patches, tau = -mu f(|v|) p v/|v|.
 
     Parameters
     ----------
-    patch, slip : arrays (n,); friction : coefficient mu [1], (n,)
-    spin_model : 'concentric' | 'edge' | 'skewed'
-    law, travel_speed : friction by slip speed and omega r_A [mm/s], (n,) or scalar
+    patch, slip : patches and their kinematics, arrays (n,)
+    friction : coefficient mu, (n,) [1]
+    spin_model : 'concentric', 'edge' or 'skewed'
+    law : friction as a function of the slip speed; constant if not given
+    travel_speed : omega r_A, (n,) or scalar [mm/s]
 
-    Error against `contact.sliding` on Hertz's ellipse with 40 elements: 1e-3 of mu F_N (tests/test_normal_models.py).
+    Notes
+    -----
+    On Hertz's ellipse with 40 elements the result agrees with `contact.sliding` within 1e-3 of mu F_N
+    (tests/contact/test_normal_models.py).
     """
     n, rows, columns = patch.pressure.shape
     law, model = law or constant(), spin_model_index(spin_model)
@@ -84,7 +91,10 @@ def solve_sliding(
 
 
 def _column_means(x, along, offset, sine, half, m, law, per_omega) -> np.ndarray:
-    """Means over the m elements of each column of -v_x/|v|, -v_y/|v|, their moment and |v|/omega, (4, columns, m)."""
+    """Return means over the m elements of each column of -v_x/|v|, -v_y/|v|, their moment and |v|/omega.
+
+    The result has the shape (4, columns, m); `half` is half the length of the box [mm].
+    """
     pieces = 1 if law.is_constant else PIECES
     edges = half * np.linspace(-1.0, 1.0, m * pieces + 1)
     eps = np.maximum(np.abs(along / sine), _TINY * half)[:, None]
@@ -106,7 +116,7 @@ def _column_means(x, along, offset, sine, half, m, law, per_omega) -> np.ndarray
 def tractions(
     patch: GridPatch, slip: Slip, friction, spin_model="skewed", law=None, travel_speed=1.0
 ) -> SurfaceTractions:
-    """Pressure and mean shear of each element, and the slip at its centre per travel speed; see `solve_sliding`."""
+    """Return pressure and mean shear of each element, and the slip at its centre; parameters as in `solve_sliding`."""
     found = solve_sliding(patch, slip, friction, spin_model, law, travel_speed)
     model, loaded = spin_model_index(spin_model), patch.pressure > 0
     slip_x, slip_y = np.empty(patch.pressure.shape), np.empty(patch.pressure.shape)

@@ -1,4 +1,4 @@
-"""What each case makes of its forces and stresses: friction power, life and warnings."""
+"""Friction power, life and validity flags of each case, from its forces and stresses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ LIFE_CONVENTIONS = (
 
 
 def finish(table: CaseTable, block: Block, options: Options) -> None:
-    """What follows from forces and stresses case by case: power, life and warnings."""
+    """Add friction power, life and validity flags to a block."""
     v = block.values
     if "friction_work" in options.outputs:
         v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
@@ -35,7 +35,7 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 
 
 def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
-    """Overrollings and hours to failure from the peak stress."""
+    """Add overrollings and hours to failure, from the peak stress."""
     per_body, errors = [], []
     for j, m in enumerate((table.roller, table.guide)):
         column = lambda a: a[:, None]  # noqa: E731
@@ -60,7 +60,7 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
-    """Cases (n,) where the slip of the sliding model vanishes well apart from its spin pole, see `pole_split`."""
+    """Return True where the slip of the sliding model vanishes apart from its spin pole, (n,); see `pole_split`."""
     alpha = np.deg2rad(table.contact_angle)
     split = [
         pole_split(
@@ -77,7 +77,7 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def validity(table: CaseTable, block: Block) -> None:
-    """Bits that warn where the model leaves its ground, see `dataset.VALIDITY_BITS`."""
+    """Set the validity flags where the assumptions of the model do not hold, see `dataset.VALIDITY_BITS`."""
     v = block.values
     bit = {name: 1 << i for i, name in enumerate(VALIDITY_BITS)}
     r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)

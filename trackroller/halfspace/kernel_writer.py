@@ -1,0 +1,93 @@
+"""Write `kernels.py` from the derivation in `potentials`: `python -m trackroller.halfspace.kernel_writer`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import sympy as sp
+
+from trackroller.halfspace.potentials import KERNELS, LOADS, check_dilatation, kernel_elements
+
+_HEADER = '''"""Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
+
+Written by `python -m trackroller.halfspace.kernel_writer`; `potentials` explains the derivation.
+Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, yz, xz,
+then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
+FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.
+"""
+
+from math import asinh, atan2, log, sqrt
+
+import numba
+
+FLOOR = 1e-10
+'''
+
+_COMMON = """    x2, y2, z2 = x * x, y * y, z * z
+    R = sqrt(x2 + y2 + z2)
+    iR = 1.0 / R if R > 0.0 else 0.0
+    S = R + z
+    iS = 1.0 / S if S > 0.0 else 0.0
+"""
+_CORNER = """    P = x2 + z2
+    Q = y2 + z2
+    iP = 1.0 / P if P > 0.0 else 0.0
+    iQ = 1.0 / Q if Q > 0.0 else 0.0
+    Lx = asinh(x / max(sqrt(Q), FLOOR))
+    Ly = asinh(y / max(sqrt(P), FLOOR))
+    Lz = log(max(S, FLOOR))
+    t = x * y * (x2 + y2) * iS
+    Ax = atan2(t, x2 * R + y2 * z)
+    Ay = atan2(t, y2 * R + x2 * z)
+"""
+_TITLES = {
+    "point_kernel": "Stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
+    "uniform_corner": "Corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless.",
+    "bilinear_corner": "Corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
+}
+
+
+def _without_unused(prelude: str, body: str) -> str:
+    """Return the assignments of the prelude that a later line uses."""
+    kept: list[str] = []
+    for line in reversed(prelude.splitlines()):
+        names = {name.strip() for name in line.split(" = ")[0].split(",")}
+        if names & set(re.findall(r"[A-Za-z_]\w*", body + "".join(kept))):
+            kept.insert(0, line + "\n")
+    return "".join(kept)
+
+
+def function_source(name: str) -> str:
+    """Return the Python source of one kernel function, with common subexpressions computed once."""
+    expressions = [f.as_expr() / (2 * sp.pi) for f in kernel_elements(name)]
+    shared, reduced = sp.cse(expressions, symbols=sp.numbered_symbols("t"), optimizations="basic", order="canonical")
+    printer = sp.printing.pycode
+    lines = "".join(f"    {symbol} = {printer(value.evalf(17))}\n" for symbol, value in shared)
+    values = ",\n        ".join(printer(sp.Float(e) if e.is_number else e.evalf(17)) for e in reduced)
+    prelude = _without_unused(_COMMON + ("" if name == "point_kernel" else _CORNER), lines + values)
+    return (
+        '\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\n'
+        f'def {name}(x, y, z):\n    """{_TITLES[name]}"""\n{prelude}{lines}'
+        f"    return (\n        {values},\n    )\n"
+    )
+
+
+def module_source() -> str:
+    """Return the whole text of `kernels.py`."""
+    if not all(check_dilatation(load) for load in LOADS):
+        raise ArithmeticError("the dilatation is not proportional to 1 - 2 nu")
+    return _HEADER + "".join(function_source(name) for name in KERNELS)
+
+
+def main() -> None:
+    """Write `kernels.py` beside this file."""
+    here = Path(__file__)
+    here.with_name("kernels.py").write_text(module_source(), encoding="utf-8")
+    for module in here.parent.glob("*.py"):
+        if "halfspace.kernels import" in module.read_text(encoding="utf-8"):
+            module.touch()  # otherwise numba would use code that it compiled with the former kernels
+
+
+if __name__ == "__main__":
+    main()
