@@ -55,7 +55,7 @@ def place(tmp_path):
     """A folder with a study, and the solver that waits."""
     (tmp_path / "hook").mkdir()
     (tmp_path / "hook" / "sitecustomize.py").write_text(HOLD)
-    return lay_study(tmp_path, levels=100, outputs="forces, peak_stress", size=50)
+    return lay_study(tmp_path, levels=20, outputs="forces, contact", size=10)
 
 
 def submit(place, env, results):
@@ -79,7 +79,7 @@ def submit(place, env, results):
     )
 
 
-def finish(process, seconds=240):
+def finish(process, seconds=480):
     try:
         told = process.communicate(timeout=seconds)[0]
     except subprocess.TimeoutExpired:
@@ -123,7 +123,7 @@ def test_cluster_gives_the_numbers_of_a_local_run_though_a_worker_is_killed(slur
         env=slurm,
         check=True,
         capture_output=True,
-        timeout=240,
+        timeout=480,
     )
     hold = place / "hold"
     hold.touch()

@@ -7,13 +7,14 @@ import sys
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from PIL import Image
+
 FOLDER = Path(__file__).resolve().parents[2] / "docs"
 DATA, FIGURES = FOLDER / "data", FOLDER / "figures"
 
 
 def copy_figures(results: Path, names: Iterable[str], colours: int | None = None) -> None:
     """PNGs of `results/figures`; with few colours, where asked for, so that the repository stays small."""
-    from PIL import Image
 
     for name in names:
         source, kept = results / "figures" / f"{name}.png", FIGURES / f"{name}.png"

@@ -12,13 +12,21 @@ where it stopped when the same command is given again with the same `keep` folde
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
 import yaml
+
+from trackroller.study import store
+from trackroller.study.caselists import load_list
+from trackroller.study.config import load_study
+from trackroller.study.plan import make_plan
+from trackroller.study.solve import solve_rows
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = {
@@ -45,21 +53,12 @@ STUDY = {
 
 def plan() -> None:
     """Write the case lists."""
-    from trackroller.study.config import load_study
-    from trackroller.study.plan import make_plan
 
     make_plan(load_study("study.yaml"), "results")
 
 
 def hand_out() -> None:
     """Fill every chunk with the results of the first one, over and over."""
-    import numpy as np
-
-    from trackroller.study import store
-    from trackroller.study.caselists import load_list
-    from trackroller.study.config import load_study
-    from trackroller.study.plan import make_plan
-    from trackroller.study.solve import solve_rows
 
     made = make_plan(load_study("study.yaml"), "results")
     solved = None
@@ -87,7 +86,6 @@ def measured(words: list[str], place: Path) -> tuple[float, float, float]:
 
 def prepare(place: Path, base_samples: int) -> None:
     """The workflow and the study in a folder."""
-    import shutil
 
     for part in ("workflow", "profiles", "config"):
         shutil.copytree(ROOT / part, place / part, dirs_exist_ok=True)

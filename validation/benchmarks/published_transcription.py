@@ -23,6 +23,14 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+import sympy as sp
+from scipy.integrate import simpson
+from scipy.optimize import differential_evolution
+
+import trackroller as tr
+from trackroller.halfspace.influence import corner_loads, stress_parts
+from trackroller.halfspace.stress import body_stress, von_mises
+from trackroller.roller.case import Case
 
 POINTS = 40  # surface points per direction
 POPSIZE = 15  # scipy's default; 3 unknowns make a population of 45
@@ -52,7 +60,6 @@ STYLES = ("printed", "reused", "shared")
 @cache
 def derivatives_of_omega() -> dict:
     """Functions of (x - xi, y - eta, z, rho): each derivative of Omega, eqs. (2)-(3), by its orders in x, y, z."""
-    import sympy as sp
 
     x, y, z = sp.symbols("x y z", real=True)
     name = sp.Symbol("rho", positive=True)
@@ -68,7 +75,6 @@ def derivatives_of_omega() -> dict:
 @cache
 def shared_derivatives():
     """One function of (x - xi, y - eta, z) giving all derivatives in the order of _ORDERS."""
-    import sympy as sp
 
     x, y, z = sp.symbols("x y z", real=True)
     rho = sp.sqrt(x**2 + y**2 + z**2)
@@ -96,7 +102,6 @@ def _integrals(contact: Contact, point: Sequence[float], style: str):
     u, v = x - contact.x[None, :], y - contact.y[:, None]
     q = dict(zip(AXES, (contact.q_x, contact.q_y, contact.q_z), strict=True))
     if style == "printed":
-        from scipy.integrate import simpson
 
         def integral(load: str, along: str) -> float:
             rho = np.sqrt(u**2 + v**2 + z**2)
@@ -160,7 +165,6 @@ def peak_by_differential_evolution(contact: Contact, seed: int = 1, style: str =
     `evaluate(point) -> MPa` stands in for the transcription where only the number of evaluations matters.
     Returns dict(peak [MPa], position [mm], evaluations, seconds).
     """
-    from scipy.optimize import differential_evolution
 
     if evaluate is None:
 
@@ -182,8 +186,6 @@ def peak_by_differential_evolution(contact: Contact, seed: int = 1, style: str =
 
 def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
     """How many evaluations the search takes, counted on the same field evaluated with our own kernels (quick)."""
-    from trackroller.halfspace.influence import corner_loads, stress_parts
-    from trackroller.halfspace.stress import body_stress, von_mises
 
     loads = corner_loads(contact.x, contact.y, np.stack([contact.q_x, contact.q_y, contact.q_z], -1))
 
@@ -226,8 +228,6 @@ def tractions_of_paper(
 
 def contacts_of_case(case=None, points: int = POINTS) -> list[Contact]:
     """Both contacts of a case (default: the paper's own), from our forces and ellipses and the paper's tractions."""
-    import trackroller as tr
-    from trackroller.roller.case import Case
 
     case = Case() if case is None else case
     ds = tr.solve(case, outputs=("forces", "contact")).squeeze()

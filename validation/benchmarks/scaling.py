@@ -16,11 +16,17 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import resource
 import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import Any
+
+import trackroller as tr
+from trackroller.numerics.threads import thread_count
+from trackroller.report.figures import style
+from validation.benchmarks.speed import load_study
 
 HERE = Path(__file__).resolve().parent
 OUTPUTS = {
@@ -33,7 +39,6 @@ ACCURACY_CASES = 1000  # at which accuracies are compared
 
 def peak_memory() -> float:
     """Largest resident memory of this process so far [MB]."""
-    import resource
 
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1e6 if sys.platform == "darwin" else peak * 1024 / 1e6
@@ -41,9 +46,6 @@ def peak_memory() -> float:
 
 def measure_here(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
     """Solve `n` cases in this process, small batches best of several runs."""
-    import trackroller as tr
-    from trackroller.numerics.threads import thread_count
-    from validation.benchmarks.speed import load_study
 
     tr.solve(load_study(2), outputs=OUTPUTS[outputs], accuracy=accuracy)
     warm = peak_memory()
@@ -114,7 +116,6 @@ def show(rows: list[dict[str, Any]]) -> None:
 
 def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folder: Path) -> tuple[Path, Path]:
     """scaling.svg and scaling.png: CPU time and memory over cases, CPU time of a case over accuracy."""
-    from trackroller.report.figures import style
 
     with style.look():
         figure = style.new_figure(66, 2 * style.COLUMN_MM)

@@ -18,6 +18,7 @@ import numpy as np
 
 import trackroller as tr
 from trackroller.numerics.threads import thread_count
+from validation.benchmarks.published_transcription import STYLES, time_transcription
 
 
 def load_study(n: int, seed: int = 1) -> list[tr.Case]:
@@ -93,8 +94,6 @@ def main() -> None:
         "reference": rate(load_study(max(args.cases // 10, 20)), complete, "reference"),
     }
     if not args.skip_transcription:
-        from validation.benchmarks.published_transcription import STYLES, time_transcription
-
         study = result["complete_load_study"]
         for style in STYLES:
             published = time_transcription(tr.Case(motor_force=0), style=style)

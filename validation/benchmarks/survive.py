@@ -23,6 +23,9 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from trackroller.study import store
+from trackroller.study.files import StudyFolder
+
 ROOT = Path(__file__).resolve().parents[2]
 TOOLS = Path(sys.executable).parent
 STUDY = """
@@ -107,8 +110,6 @@ def results(place: Path) -> Path:
 
 def finished(place: Path) -> set[bytes]:
     """Fingerprints of the cases that are kept."""
-    from trackroller.study import store
-    from trackroller.study.files import StudyFolder
 
     found: set[bytes] = set()
     for path in StudyFolder(results(place)).solved_files():

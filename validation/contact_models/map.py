@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.patches import Patch
 
 from trackroller.report.figures import style
 from trackroller.report.numbers import factor_label, number
+from trackroller.roller.case import Case, to_table
+from trackroller.roller.choice import choose as choice
+from trackroller.roller.options import Options
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,7 +25,6 @@ POINTS = 40
 
 def choice_map(tolerance: float = 0.05) -> Figure:
     """Regions over friction and contact angle for the paper's free roller, and shares of designs by tolerance."""
-    from matplotlib.patches import Patch
 
     figure = style.new_figure(124.0)
     upper, lower = figure.subplots(2, 1, height_ratios=(1.5, 1.0))
@@ -42,9 +45,6 @@ def choice_map(tolerance: float = 0.05) -> Figure:
 
 
 def _regions(axes: Axes, tolerance: float) -> None:
-    from trackroller.roller.case import Case, to_table
-    from trackroller.roller.choice import choose as choice
-    from trackroller.roller.options import Options
 
     mus, angles = np.geomspace(0.02, 0.6, POINTS), np.linspace(12.0, 78.0, POINTS)
     cases = [
@@ -74,7 +74,6 @@ def _regions(axes: Axes, tolerance: float) -> None:
 
 
 def _shares(axes: Axes) -> None:
-    from trackroller.roller.choice import choose as choice
 
     m = choice.stored()
     at, left = np.arange(len(m["tolerances"])), np.zeros(len(m["tolerances"]))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.patches import Ellipse
+from matplotlib.ticker import MaxNLocator
 
 from trackroller.report.figures import style
 from trackroller.report.numbers import level_text, number
@@ -25,7 +27,6 @@ def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
     fields : dataset of `validation.contact_models.product.patch_fields`, over `contact_model` and `row`
     contact : the contact drawn
     """
-    from matplotlib.ticker import MaxNLocator
 
     names, rows = list(map(str, fields["contact_model"].values)), fields.sizes["row"]
     figure = style.new_figure(28.0 + 29.0 * rows, 2 * style.COLUMN_MM)
@@ -58,7 +59,6 @@ def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
 
 
 def _patch(axes: Axes, one: xr.Dataset, mu: float, top: float) -> Any:
-    from matplotlib.patches import Ellipse
 
     x, y = one["patch_x"].values, one["patch_y"].values
     pressure = np.nan_to_num(one["pressure"].values)

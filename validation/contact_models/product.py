@@ -9,8 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
-from trackroller.report.comparison.words import percent
+from trackroller.report.build import analyse_study, draw_study, report_study
+from trackroller.report.comparison.pairs import pairs
+from trackroller.report.comparison.words import percent, sentences
+from trackroller.report.figures import style
+from trackroller.roller.case import Case
+from trackroller.roller.choice import choose as choice
+from trackroller.roller.solver import solve
+from trackroller.study.config import load_study
+from trackroller.study.run import run_study
+from validation.contact_models import map as ladder_map
+from validation.contact_models import patches as ladder_patches
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,10 +36,6 @@ PATCHES = ((0.05, 0.0), (0.15, 0.0), (0.15, 0.5), (0.5, 0.0), (0.5, 0.5))
 
 def compare(study_file: Path, out: Path) -> None:
     """Solve the study, then figures, words and report as of any study, with pictures of the patch, into `out`."""
-    from trackroller.report.build import analyse_study, draw_study, report_study
-    from trackroller.roller.case import Case
-    from trackroller.study.config import load_study
-    from trackroller.study.run import run_study
 
     study = load_study(study_file)
     plan = run_study(study, out.parent)
@@ -45,10 +52,6 @@ def compare(study_file: Path, out: Path) -> None:
 
 def write_words(study_nc: str, path: Path) -> None:
     """What the comparison says, a line a sentence, with what the random designs behind `auto` say."""
-    import xarray as xr
-
-    from trackroller.report.comparison.pairs import pairs
-    from trackroller.report.comparison.words import sentences
 
     with xr.open_dataset(study_nc) as ds:
         paired = pairs(ds)
@@ -58,9 +61,6 @@ def write_words(study_nc: str, path: Path) -> None:
 
 def draw_patches(case: Any, out: Path) -> list[FigureInfo]:
     """The patches of a case by model and the map behind `auto`, with their index, in the folder `out`."""
-    from trackroller.report.figures import style
-    from validation.contact_models import map as ladder_map
-    from validation.contact_models import patches as ladder_patches
 
     infos = []
     with style.look():
@@ -90,9 +90,6 @@ def patch_fields(case: Any, wanted: Sequence[tuple[float, float]] = PATCHES) -> 
     `wanted`: friction coefficient of each row, and the drive as a share of mu times the sum of the normal forces that
     the load alone causes.
     """
-    import xarray as xr
-
-    from trackroller.roller.solver import solve
 
     press = abs(case.radial_force) / np.cos(np.deg2rad(case.contact_angle))
     drives = [-float(f"{share * mu * press:.1g}") if share else 0.0 for mu, share in wanted]
@@ -124,7 +121,6 @@ def _resampled(ds: xr.Dataset, points: dict[str, int]) -> xr.Dataset:
 
 def map_sentences() -> list[str]:
     """What the random designs behind `contact_model="auto"` say."""
-    from trackroller.roller.choice import choose as choice
 
     m = choice.stored()
     said = [f"Of {int(m['checked'])} random designs, auto takes"]

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.patches import Patch, Rectangle
 
 from trackroller.report.figures.style import (
     REGIME_COLOURS,
@@ -98,7 +99,6 @@ def draw_map(record: Record, out_dir: Path, model: str) -> FigureInfo:
 
 
 def _cell(j: int, i: int, colour: str, hatch: str) -> Any:
-    from matplotlib.patches import Rectangle
 
     return Rectangle(
         (j - 0.47, i - 0.45),
@@ -113,7 +113,6 @@ def _cell(j: int, i: int, colour: str, hatch: str) -> Any:
 
 def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
     """Regimes over axial force and friction."""
-    from matplotlib.patches import Patch
 
     data = record["map"]
     axial, friction = np.array(data["axial"]), np.array(data["friction"])

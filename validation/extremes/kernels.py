@@ -7,7 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import mpmath
 import numpy as np
+from scipy.special import ellipe, ellipkm1
 
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.contact.hertz import axis_ratio
@@ -40,7 +42,6 @@ class KernelError:
 def _digits(function: Callable[[], KernelError]) -> Callable[[], KernelError]:
     @functools.wraps(function)
     def inner() -> KernelError:
-        import mpmath
 
         with mpmath.workdps(DIGITS):
             return function()
@@ -50,7 +51,6 @@ def _digits(function: Callable[[], KernelError]) -> Callable[[], KernelError]:
 
 def _curvature_ratio(kappa):
     """Smaller over larger curvature of a Hertzian ellipse of axis ratio kappa, Johnson (4.26), in many digits."""
-    import mpmath
 
     m = 1 - kappa**2
     if m == 0:
@@ -62,7 +62,6 @@ def _curvature_ratio(kappa):
 @_digits
 def axis_ratios() -> KernelError:
     """Axis ratio of the ellipse from 1e-6 to 1 - 1e-12: the ratio put in must come out."""
-    import mpmath
 
     values = (1e-6, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 0.9, 1 - 1e-3, 1 - 1e-6, 1 - 1e-9, 1 - 1e-12)
     found = axis_ratio(np.array([float(_curvature_ratio(mpmath.mpf(v))) for v in values]))
@@ -72,7 +71,6 @@ def axis_ratios() -> KernelError:
 
 def _single_ratio(values: tuple[float, ...]) -> float:
     """Worst error of the curvature ratio written with K and E, as books do, in single precision."""
-    from scipy.special import ellipe, ellipkm1
 
     kappa = np.array(values, np.float32)
     m_1 = kappa * kappa
@@ -84,14 +82,12 @@ def _single_ratio(values: tuple[float, ...]) -> float:
 
 
 def _many(value: float):
-    import mpmath
 
     return mpmath.mpf(value)
 
 
 def _on_axis(z):
     """Stresses sigma_z and sigma_r (nu = 0.3) below a circular Hertz pressure, Johnson (3.45), z over radius."""
-    import mpmath
 
     tail = 1 / (2 * (1 + z * z))
     angle = z * mpmath.atan(1 / z) if z else mpmath.mpf(0)
@@ -101,7 +97,6 @@ def _on_axis(z):
 @_digits
 def depth() -> KernelError:
     """Stresses under the centre of a circle from the surface to a million radii; the closed form in single."""
-    import mpmath
 
     values = (0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.5, 1.0, 2.9, 3.1, 30.0, 1e3, 1e6)
     one = np.ones(1)
@@ -209,7 +204,6 @@ def _influence_errors(cases) -> tuple[tuple[float, ...], float]:
 
     Over the largest of the like: displacements by tractions, and by pressure.
     """
-    import mpmath
 
     errors: list[float] = []
     single: list[float] = []

@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.contact.common import Ellipse, Slip
+from trackroller.contact.slip import spin_model_index
+from trackroller.halfspace.ellipse import patch_rows, stress_parts
+from trackroller.halfspace.stress import von_mises
+from trackroller.materials import load_database
 from trackroller.roller.case import Case
+from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.solver import solve
 
 if TYPE_CHECKING:
@@ -63,12 +69,6 @@ def as_published(case: Case) -> xr.Dataset:
 
 def stress_at(scene: str, points: list[list[float]]) -> list[float]:
     """Von Mises stress [MPa] of the sliding model on the roller, at one point (x, y, z) [mm] below each contact."""
-    from trackroller.contact.common import Ellipse, Slip
-    from trackroller.contact.slip import spin_model_index
-    from trackroller.halfspace.ellipse import patch_rows, stress_parts
-    from trackroller.halfspace.stress import von_mises
-    from trackroller.materials import load_database
-    from trackroller.roller.geometry import rolling_radius
 
     ds, case = solved(scene, "sliding"), case_of(scene)
     alpha = np.deg2rad(case.contact_angle) * np.array([1.0, -1.0])

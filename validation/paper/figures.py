@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
@@ -171,6 +172,5 @@ def tractions() -> Drawn:
 
 
 def _few() -> Any:
-    from matplotlib.ticker import MaxNLocator
 
     return MaxNLocator(5)

@@ -9,7 +9,9 @@ from typing import Any
 
 from trackroller.parameters import PARAMETERS
 from trackroller.report.pages import Block, page_html
+from trackroller.study.files import write_whole
 from validation.paper.compute import reference, results
+from validation.paper.figures import draw_all
 
 EXPONENT = 8.966  # ln(N_k/N_Rm)/ln(R_m/sigma_D) of 1.7225: life goes with stress to this power
 ROWS = (
@@ -263,8 +265,6 @@ def _table_2(found: dict[str, Any]) -> list[Block]:
 
 def write_results(folder: Path) -> None:
     """`paper.json`, `figures/` and `paper.html` in `folder`; each whole or not at all."""
-    from trackroller.study.files import write_whole
-    from validation.paper.figures import draw_all
 
     found = results()
     text = json.dumps(found, indent=1) + "\n"

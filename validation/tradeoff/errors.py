@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.stats import binom
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,7 +78,6 @@ def tolerance_bound(errors: np.ndarray, share: float = 0.99, confidence: float =
     log(1 - confidence)/log(share) (299 designs) cannot say so much: ASSUME then half as much again as its 95th
     percentile, which is a promise for about 95 % of the cases.
     """
-    from scipy.stats import binom
 
     known = np.sort(errors[~np.isnan(errors)])[::-1]
     if known.size == 0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Sequence
 from typing import Any
@@ -73,7 +74,6 @@ def _solve(setting: Setting, cases: Sequence[Case], model: str) -> xr.Dataset:
 
 def labelled(settings: Sequence[Setting], errors: np.ndarray, cost: np.ndarray, attrs: dict[str, Any]) -> xr.Dataset:
     """One part of the measurement as a data set over setting, quantity and design."""
-    import json
 
     def text(values: list[str]) -> tuple[str, np.ndarray]:
         return "setting", np.array(values, dtype=object)

@@ -8,10 +8,15 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+import xarray as xr
+
 from trackroller.errors import InputError
 from trackroller.report.pages import Block, page_html
 from trackroller.roller.accuracy import PROMISES, accuracy_settings, preset_rungs, read_ladders, rounded_up
+from trackroller.study.files import write_whole
 from validation.tradeoff.errors import QUANTITIES
+from validation.tradeoff.figures import draw_all
+from validation.tradeoff.summary import summary
 
 Record = dict[str, Any]
 LADDER_NAMES = {
@@ -268,11 +273,6 @@ def _error(value: float | None) -> str:
 
 def write_results(tradeoff_nc: str, summary_json: str, figures: str, page: str) -> None:
     """Summary, figures and report from the gathered measurement."""
-    import xarray as xr
-
-    from trackroller.study.files import write_whole
-    from validation.tradeoff.figures import draw_all
-    from validation.tradeoff.summary import summary
 
     ds = xr.load_dataset(tradeoff_nc)
     found = summary(ds)

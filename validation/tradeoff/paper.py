@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+from scipy.optimize import minimize
+
+from trackroller.halfspace.ellipse import stress_parts
+from trackroller.halfspace.stress import von_mises
 from trackroller.parameters import ACCURACIES
 from trackroller.roller.case import Case
 from trackroller.roller.solver import solve
@@ -74,11 +79,6 @@ def paper_table() -> list[dict[str, Any]]:
 
 def _inner(patches: Patches) -> float:
     """Local maximum below the surface in contact 1 of the roller [MPa], by a search that may not rise to it."""
-    import numpy as np
-    from scipy.optimize import minimize
-
-    from trackroller.halfspace.ellipse import stress_parts
-    from trackroller.halfspace.stress import von_mises
 
     e, nu = patches.ellipse, float(patches.poisson[0])
     size = np.array(

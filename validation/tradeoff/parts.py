@@ -16,8 +16,10 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
 from trackroller.study.files import write_whole
+from trackroller.study.provenance import git_commit, versions
 from validation.tradeoff import settings
 from validation.tradeoff.measure import measure
+from validation.tradeoff.paper import paper_table
 from validation.tradeoff.sample import SEED, sample
 from validation.tradeoff.stages import measure_stages
 
@@ -126,8 +128,6 @@ def _mean(group: Sequence[xr.Dataset], value: Callable[[xr.Dataset], Any]) -> An
 
 def write_gathered(parts: Sequence[str], sizes_path: str, out: str) -> None:
     """Gather the parts, with the designs and what is needed to repeat them."""
-    from trackroller.study.provenance import git_commit, versions
-    from validation.tradeoff.paper import paper_table
 
     sizes = load_sizes(sizes_path)
     sets = [xr.load_dataset(path) for path in parts]

@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 import numpy as np
+from scipy.stats import qmc
 
 from trackroller.errors import InputError
 from trackroller.roller.case import Case
@@ -62,7 +63,6 @@ def sample(count: int, seed: int = SEED) -> list[Case]:
     Left out: surfaces without point contact, lift-off, self-locking without a solution, and patches in which the slip
     of the sliding model makes the stress itself infinite (bits `conformal` and `split_pole`).
     """
-    from scipy.stats import qmc
 
     sequence = qmc.Sobol(DIMENSIONS, scramble=True, seed=seed)
     kept: list[Case] = []

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import mpmath
 import numpy as np
 import xarray as xr
 
@@ -104,7 +105,6 @@ def _hertz_input(table: CaseTable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _axes(k_x: float, k_y: float, modulus: float) -> tuple[float, float]:
     """Semi-axes a, b for 1 N [mm] by complete elliptic integrals in 30 digits, Johnson (1985) eqs (4.25), (4.26)."""
-    import mpmath
 
     with mpmath.workdps(30):
         small, large = sorted((mpmath.mpf(float(k_x)), mpmath.mpf(float(k_y))))
