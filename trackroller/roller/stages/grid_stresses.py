@@ -71,7 +71,7 @@ class GridStresses(PatchStresses):
             if times * patch.shape[1] > LARGEST_GRID or not rows.size:
                 break
             finer = find_grid_peaks([self._refined(int(flat[i]), times) for i in rows], ratios[rows], seeds)
-            peak = peak.replaced(rows, finer)
+            peak.put(rows, finer)
         return peak
 
     def _refined(self, flat: int, times: int) -> GridLoad:
