@@ -173,14 +173,12 @@ def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
             variable = design[name]
             if set(variable.dims) - {"case"}:
                 raise InputError(name, tuple(variable.dims), "a design has the dimension 'case' only")
-            values = variable.values.astype(object)
+            values = variable.values
         else:
             values = np.array(default[name], dtype=object)
             if name == "friction_coefficient" and "friction_law" in design.data_vars:
                 values = own_frictions(design["friction_law"].values)
-        column = np.empty(n, dtype=object)
-        column[:] = np.broadcast_to(values, (n,))
-        columns[name] = column
+        columns[name] = np.broadcast_to(values if values.dtype == float else values.astype(object), (n,))
     return columns, n
 
 
@@ -197,7 +195,7 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
             ).reshape(n)
         bad = np.flatnonzero(~parameter.accepts(numbers[name]))
         if bad.size:
-            raise InputError(f"{name} (case {bad[0]})", raw[bad[0]], parameter.allowed())
+            raise InputError(f"{name} (case {bad[0]})", raw[bad[:1]].tolist()[0], parameter.allowed())
     return numbers
 
 

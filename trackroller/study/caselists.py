@@ -68,6 +68,7 @@ def load_list(folder: StudyFolder, name: str) -> CaseList:
     if chunk_name(cases) != name:
         raise WorkError(f"{path}: corrupt case list (its cases do not fit its name). Start again.")
     columns = {key: v.astype(object) if v.dtype.kind == "U" else v for key, v in columns.items()}
+    columns = {key: np.broadcast_to(v, len(cases)) for key, v in columns.items()}
     return CaseList(name, cases, columns, options)
 
 
@@ -79,11 +80,20 @@ def list_is_gone(folder: StudyFolder, name: str) -> WorkError:
 
 def write_list(folder: StudyFolder, cases: CaseList) -> None:
     """Write the case list of a chunk, whole or not at all."""
-    plain = {k: v.astype(str) if v.dtype == object else v for k, v in cases.columns.items()}
+    columns = {name: _shortened(values) for name, values in cases.columns.items()}
+    plain = {k: v.astype(str) if v.dtype == object else v for k, v in columns.items()}
     options = np.array(json.dumps(cases.options))
 
     def save(beside: Any) -> None:
         with open(beside, "wb") as stream:
-            np.savez_compressed(stream, cases=cases.cases, options=options, allow_pickle=False, **plain)
+            np.savez(stream, cases=cases.cases, options=options, allow_pickle=False, **plain)
 
     write_whole(folder.case_list(cases.name), save)
+
+
+def _shortened(values: np.ndarray) -> np.ndarray:
+    """Return the first value alone if all values of a column are equal."""
+    equal = values == values[:1]
+    if values.dtype.kind == "f":
+        equal |= np.isnan(values) & np.isnan(values[:1])
+    return values[:1] if equal.all() else values

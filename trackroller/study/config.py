@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.materials import MaterialDatabase
+    from trackroller.study.design.sampling import SampledDesign
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
@@ -212,6 +213,13 @@ class Study:
 
             data["table"] = str(Path(table_path(self)).resolve())
         return write_yaml(data)
+
+    @cached_property
+    def drawn(self) -> SampledDesign:
+        """The factors' columns, drawn once: a CSV of a million cases takes seconds to read."""
+        from trackroller.study.design.build import draw
+
+        return draw(self)
 
     def design(self) -> xr.Dataset:
         """The cases: dimension `case`, one variable a parameter, materials by name."""

@@ -15,7 +15,7 @@ import numpy as np
 from trackroller import __version__
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study import provenance, store
-from trackroller.study.design.build import build, case_columns, draw
+from trackroller.study.design.build import build, case_columns
 from trackroller.study.design.factors import Factor, label
 from trackroller.study.files import StudyFolder, Tell, WorkError, record_checksum, write_whole
 from trackroller.study.inventory import Inventory, take_inventory
@@ -75,7 +75,7 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
     file in the study's folder.
     """
     study, folder = plan.study, plan.folder
-    sampled = draw(study)
+    sampled = study.drawn
     design = build(study, sampled)
     cases = identify(study, design)
     if not folder.design.is_file():

@@ -14,7 +14,7 @@ from trackroller.materials.yaml_file import read_mapping
 from trackroller.parameters import REGIMES
 from trackroller.study.config import load_study, parse_study
 from trackroller.study.cost import study_rate
-from trackroller.study.design.build import build, draw
+from trackroller.study.design.build import build
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
 from trackroller.study.inventory import take_inventory
@@ -107,8 +107,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     """
     folder = study_folder(study.name, results)
     study = with_history(study, folder)
-    sampled = draw(study)
-    cases = identify(study, build(study, sampled))
+    cases = identify(study, build(study))
     found = take_inventory(folder)
     place = found.find(cases)
     regime = found.regime[place[place >= 0]]
@@ -125,9 +124,9 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         gathered=folder.gathered.is_file(),
         corrupt=list(found.corrupt.values()),
     )
-    for name, factor in sampled.factors.items():
+    for name, factor in study.drawn.factors.items():
         if factor.discrete:
-            counts = Counter(_level(name, sampled.columns[name][i]) for i in failed)
+            counts = Counter(_level(name, study.drawn.columns[name][i]) for i in failed)
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
     return status
 

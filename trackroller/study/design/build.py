@@ -108,7 +108,7 @@ def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
     Coordinates along `case`: models that vary, and auxiliary factors of expressions. Attributes: study, design,
     seed, the factors and the shape of a grid.
     """
-    design = draw(study) if design is None else design
+    design = study.drawn if design is None else design
     n = design.size or 1
     columns = _columns(study, design, n)
     data = {}
@@ -117,7 +117,7 @@ def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
         data[name] = ("case", columns.pop(name), attrs)
     for name in case_columns(columns)[len(PARAMETERS) :]:
         attrs = {"long_name": name.replace("_", " ")}
-        data[name] = ("case", columns.pop(name).astype(str).astype(object), attrs)
+        data[name] = ("case", np.array([str(v) for v in columns.pop(name)], dtype=object), attrs)
     coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
     for name, values in columns.items():
         if values.dtype == object:
@@ -157,7 +157,7 @@ def _columns(study: Study, design: SampledDesign, n: int) -> dict[str, np.ndarra
             columns["friction_coefficient"] = own_frictions(columns["friction_law"])
     columns["friction_coefficient"] = _friction(study, columns)
     for name in PARAMETERS:
-        columns[name] = np.array([math.nan if v is None else v for v in columns[name]], dtype=float)
+        columns[name] = columns[name].astype(float)  # None becomes NaN
     return columns
 
 

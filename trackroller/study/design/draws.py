@@ -183,17 +183,31 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
     names, lines = _table_lines(path)
     columns: dict[str, np.ndarray] = {}
     for j, name in enumerate(names):
-        cells = [line[j].strip() for line in lines]
+        cells = [line[j] for line in lines]
         try:
             columns[name] = column([float(cell) for cell in cells], numeric=True)
         except ValueError:
             if name in PARAMETERS:
                 raise InputError("table", f"column {name}", PARAMETERS[name].allowed()) from None
             columns[name] = column(cells, numeric=False)
-    levels = {name: tuple(dict.fromkeys(values.tolist())) for name, values in columns.items()}
-    free = {name: Factor(name, "values", levels=found) for name, found in levels.items() if len(found) > 1}
-    unit = np.array([[f.levels.index(v) for v in columns[name]] for name, f in free.items()], dtype=float)
-    return columns, free, unit.reshape(len(free), -1).T if free else np.zeros((len(lines), 0)), {}
+        if columns[name].dtype == float and np.isnan(columns[name]).any():
+            raise InputError("table", f"column {name}: nan", "a number in each cell")
+    found = {name: _levels(values) for name, values in columns.items()}
+    found = {name: (levels, index) for name, (levels, index) in found.items() if len(levels) > 1}
+    free = {name: Factor(name, "values", levels=levels) for name, (levels, _) in found.items()}
+    unit = np.empty((len(lines), len(free)))
+    for j, (_, index) in enumerate(found.values()):
+        unit[:, j] = index
+    return columns, free, unit, {}
+
+
+def _levels(values: np.ndarray) -> tuple[tuple[Any, ...], np.ndarray]:
+    """Return the different values in the order of appearance, and the place of each row's value among these."""
+    _, first, inverse = np.unique(values, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), dtype=int)
+    rank[order] = np.arange(len(order))
+    return tuple(values[first[order]].tolist()), rank[inverse]
 
 
 def _table_lines(path: Any) -> tuple[list[str], list[list[str]]]:
@@ -201,13 +215,13 @@ def _table_lines(path: Any) -> tuple[list[str], list[list[str]]]:
     if path is None or not Path(path).is_file():
         raise InputError("table", path, "the path of a CSV file with one column a factor")
     with open(path, newline="", encoding="utf-8-sig") as stream:
-        lines = [line for line in csv.reader(stream) if any(cell.strip() for cell in line)]
+        lines = [line for cells in csv.reader(stream) if any(line := [cell.strip() for cell in cells])]
     if len(lines) < 2:
         raise InputError("table", str(path), "a CSV with a line of names and at least one case")
-    names = [name.strip() for name in lines[0]]
+    names = lines[0]
     if len(set(names)) < len(names) or not all(names):
         raise InputError("table", ", ".join(names), "a different name for each column")
     for number, line in enumerate(lines[1:], start=2):
-        if len(line) != len(names) or not all(cell.strip() for cell in line):
+        if len(line) != len(names) or not all(line):
             raise InputError("table", f"{path}, line {number}", f"{len(names)} values, none of them empty")
     return names, lines[1:]
