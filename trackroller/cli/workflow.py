@@ -88,8 +88,8 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], N
     plan = read_plan(study, study_folder(study.name, results))
     if plan is None:
         raise WorkError(
-            f"study '{study.name}' was edited while the workflow runs: this workflow solves the earlier version and "
-            "stops here. Start it again: every finished case is kept."
+            f"study '{study.name}' (or its materials, or the solver) was edited while the workflow runs. This workflow "
+            "solves the earlier version and stops here. Start it again: every finished case is kept."
         )
     return plan
 
