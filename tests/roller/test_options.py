@@ -87,7 +87,7 @@ def test_a_new_option_appears_everywhere_once_it_is_declared():
     told = json.loads(done.stdout)
     assert told["schema"]["enum"] == ["first", "second"] and told["schema"]["default"] == "first"
     assert told["schema"]["description"] == "a choice for this test"
-    assert "dummy=first|second (first)" in told["help"] and told["docs"]
+    assert "dummy=first | second (first)" in told["help"] and told["docs"]
     assert (told["attribute"], told["given"], told["without meaning"]) == ("first", "second", "")
     assert told["set"] == {"dummy": "second"} and told["study"] == "second"
     assert all("Did you mean 'second'?" in words for words in told["refused"])

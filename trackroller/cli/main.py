@@ -16,6 +16,7 @@ import typer
 
 from trackroller import __version__
 from trackroller.errors import InputError
+from trackroller.parameters import options_text
 from trackroller.study.files import WorkError, disk_error
 
 app = typer.Typer(
@@ -27,6 +28,7 @@ app = typer.Typer(
 materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 app.add_typer(materials, name="materials")
 
+SET_HELP = f"key=value, may be repeated; a parameter of the case or an option: {options_text()}"
 NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="spare nothing; the numbers stay the same")]
 Results = Annotated[Path, typer.Option("--results", help="folder that holds results/NAME/")]
 StudyFile = Annotated[Path, typer.Argument(help="study file (YAML)", show_default=False)]
@@ -49,7 +51,7 @@ def _root(
 @app.command()
 def solve(
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
-    settings: Annotated[list[str] | None, typer.Option("--set", help="key=value, again and again")] = None,
+    settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
     sheet: Annotated[Path | None, typer.Option("--report", help="write a printable sheet (HTML) as well")] = None,

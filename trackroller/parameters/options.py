@@ -251,7 +251,7 @@ def options_text() -> str:
     """Return the options with their values and defaults, for the help of a command."""
     told = []
     for option in OPTIONS.values():
-        values = "|".join(option.values) or {"tolerance": "0..1", "condition": "CONDITION"}.get(
+        values = " | ".join(option.values) or {"tolerance": "0..1", "condition": "CONDITION"}.get(
             option.kind, "true|false"
         )
         default = ",".join(option.default) or "none" if isinstance(option.default, tuple) else option.default
