@@ -1,6 +1,7 @@
 """The exact theory of rolling with friction against limits, symmetries and CONTACT."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from scipy.optimize import root
 
 import trackroller as tr
-from trackroller.contact import kalker
+from trackroller.contact import kalker, sliding
 from trackroller.contact.common import Elastic, Ellipse, Slip
 from trackroller.contact.friction_laws import exponential_falling, linear_falling, table
 from trackroller.contact.hertz import contact_modulus, shape
@@ -17,6 +18,7 @@ from trackroller.contact.kalker import batch as kalker_batch
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.kalker.extrapolation import weights
 from trackroller.contact.kalker.law import KalkerLaw
+from trackroller.contact.slip import turning_of
 from trackroller.roller.geometry import curvatures, rolling_radius
 
 # 58 equilibria by CONTACT (open-source release 2025) on 40x40 and 60x60 elements, first order: extrapolated here
@@ -277,12 +279,23 @@ def test_falling_friction_is_consistent_with_the_slip_it_causes(law):
     assert abs(values(s)[0, 2]) < abs(values(constant)[0, 2])
 
 
-def test_profile_slip_differs_little_on_a_small_patch():
-    pair = np.ones(1)
-    slip = Slip(0.5 * pair, np.sqrt(0.75) * pair, 6.0 * pair, 16.55 * pair, -0.06 * pair)
-    linear_, profile = (kalker.resultants(patch(), slip, 0.3, STEEL, KalkerSettings(profile_slip=p)) for p in (0, 1))
-    assert profile.lateral_force == pytest.approx(linear_.lateral_force, rel=0.05)
-    assert profile.lateral_force != linear_.lateral_force
+def test_profile_slip_is_that_of_the_circle_in_full_sliding():
+    """Little friction lets all slide: the forces are integrals of eq. (30) for circle and tangent."""
+    pair, mu = np.ones(1), np.array([1e-3])
+    slip = Slip(0.5 * pair, np.sqrt(0.75) * pair, 3.0 * pair, 16.55 * pair, -0.06 * pair)
+    flat = replace(slip, guide_profile_radius=1e9 * pair)
+    limit = mu[0] * patch().normal_force[0]
+    found, exact = [], []
+    for profile, kinematics in ((False, flat), (True, slip)):
+        settings = KalkerSettings(elements=40, profile_slip=profile)
+        f = kalker.resultants(patch(), slip, mu, STEEL, settings)
+        g = sliding.resultants(patch(), kinematics, mu, spin_model="concentric", nodes=32)
+        found.append([f.driving_force[0] / limit, f.spin_moment[0] / limit / 0.3])
+        exact.append([g.driving_force[0] / limit, g.spin_moment[0] / limit / 0.3])
+    np.testing.assert_allclose(found, exact, atol=2e-3)
+    change, expected = np.subtract(*found), np.subtract(*exact)
+    assert abs(expected[0]) > 0.02  # the profile shifts the driving force by 2 % of mu F_N
+    assert change[0] == pytest.approx(expected[0], rel=0.1)
 
 
 @pytest.mark.parametrize(
@@ -312,7 +325,9 @@ def test_profile_and_curve_in_the_slip_agree_with_contact(name, profile, curve):
         radius * pair,
         record["rolling_radius_shift"] * pair,
     )
-    creep = Creepage.of_slip(slip, bool(profile), curve * pair if curve else None)
+    if curve:
+        slip = slip.detailed(turning=turning_of(curve * pair, 6.0 * pair, np.cos(alpha) * pair))
+    creep = Creepage.of_slip(slip, bool(profile))
     found = values(solve_patch(ellipse, creep, 0.3, STEEL, KalkerSettings(tolerance=1e-8)))
     np.testing.assert_allclose(found[:, 0], record["lateral_force"], rtol=1.5e-2)
     np.testing.assert_allclose(found[:, 2], record["spin_moment"], rtol=1e-2)

@@ -1,4 +1,4 @@
-"""Kalker"s simplified theory of rolling contact (FASTSIM)."""
+"""Kalker's simplified theory of rolling contact (FASTSIM)."""
 
 from __future__ import annotations
 

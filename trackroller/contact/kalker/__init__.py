@@ -1,4 +1,4 @@
-"""Kalker"s exact theory of rolling contact: stick and slip on the elastic half-space."""
+"""Kalker's exact theory of rolling contact: adhesion and slip areas on the elastic half-space."""
 
 from __future__ import annotations
 

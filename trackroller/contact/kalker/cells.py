@@ -37,9 +37,23 @@ def unit_cells(ny: int, nx: int) -> tuple[np.ndarray, np.ndarray]:
     return height, share
 
 
-def cells(patch: Ellipse, elements: int) -> tuple[np.ndarray, np.ndarray]:
-    """`unit_cells` of ellipses, shared by all, or mean pressures and loaded elements (n, ., .) of solved patches."""
-    if not isinstance(patch, GridPatch):
+def cells(patch: Ellipse | GridPatch, elements: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return pressure and covered share of the elements of n patches.
+
+    Parameters
+    ----------
+    patch : Ellipse or GridPatch
+        Patches.
+    elements : int
+        Elements along each axis; on a solved patch a divisor of its own numbers.
+
+    Returns
+    -------
+    tuple of ndarray
+        Mean pressure over p_max, and share inside the patch: `unit_cells` (ny, nx) for ellipses, which are alike, or
+        (n, ny, nx) for solved patches.
+    """
+    if patch.is_hertzian:
         return unit_cells(elements, elements)
     height = patch.heights(elements)
     share = (height > 0).astype(float)

@@ -8,7 +8,6 @@ import numpy as np
 
 from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
-from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.slip import Creepage
@@ -43,7 +42,7 @@ class KalkerLaw:
 
     def __call__(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> Resultants:
         """Resultants on the roller, shape (n,); rough ones where not `fine`: the table's, or of half the elements."""
-        if fine or isinstance(ellipse, GridPatch) or self.settings.profile_slip or not self._constant:
+        if fine or not ellipse.is_hertzian or self.settings.profile_slip or not self._constant:
             return self.solve(ellipse, slip, friction, rows, fine).resultants
         creep = Creepage.of_slip(slip, self.settings.profile_slip)
         found = table.solve_patch(ellipse, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))

@@ -27,7 +27,7 @@ def _level(
     n, elements = friction.size, start.shape[-1]
     height, share = (np.broadcast_to(v, (n, elements, elements)) for v in cells(ellipse, elements))
     a, bound = ellipse.semi_axis_lateral, friction * ellipse.max_pressure
-    x = _centre(ellipse)[:, None] + a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
+    x = ellipse.centre[:, None] + a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         coupling = elastic.coupling / friction
     patches = batch.Batch(
@@ -47,11 +47,6 @@ def _level(
     found = batch.Found.start(start)
     batch.solve_batch(patches, settings.law or constant(), settings, found)
     return found
-
-
-def _centre(ellipse: Ellipse) -> np.ndarray:
-    """Return x_C of the middle of the patches [mm], (n,)."""
-    return ellipse.centre if isinstance(ellipse, GridPatch) else np.zeros(len(ellipse.semi_axis_lateral))
 
 
 def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, traction, started: bool):
@@ -82,7 +77,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
         error = np.abs(value - coarse.forces)
-        middle = Creepage(creep.longitudinal + creep.spin * _centre(ellipse), creep.lateral, creep.spin)
+        middle = Creepage(creep.longitudinal + creep.spin * ellipse.centre, creep.lateral, creep.spin)
         weights = extrapolation.weights(ellipse, middle, friction, elastic, elements, fine.stick_fraction)
         weight = weights[:, 0]
         value = value + weights * (value - coarse.forces)
@@ -91,7 +86,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         # observed to be of second order wherever a part of the patch slides
         energy = extrapolation.energy(energy, coarse.energy_residual)
     # the moment is about the nominal point, wherever the patch lies
-    value = np.stack([value[:, 0], value[:, 1], value[:, 2] + _centre(ellipse) * value[:, 1]], axis=1)
+    value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
         Resultants(value[:, 0], value[:, 1], value[:, 2]),
         found.traction,
@@ -116,7 +111,7 @@ def _full(value, n: int) -> np.ndarray:
 
 def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np.ndarray, Elastic]:
     n = np.size(ellipse.semi_axis_lateral)
-    if not isinstance(ellipse, GridPatch):
+    if ellipse.is_hertzian:
         ellipse = Ellipse(
             *(_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure))
         )
@@ -179,7 +174,7 @@ def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> Surface
     """Fields at the element centres of a solution; the pressure is that of Hertz there, 0 outside the ellipse."""
     n, _, ny, nx = solution.traction.shape
     ellipse, friction, _ = _prepared(ellipse, friction, Elastic(np.ones(n), np.ones(n), np.ones(n)))
-    if isinstance(ellipse, GridPatch):
+    if not ellipse.is_hertzian:
         return _grid_tractions(ellipse, friction, solution)
     u, v = ((2.0 * np.arange(m) + 1.0) / m - 1.0 for m in (nx, ny))
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - v[:, None] ** 2, 0.0))
