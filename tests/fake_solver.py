@@ -26,7 +26,7 @@ def solve(design: xr.Dataset, database=None, **options) -> xr.Dataset:
     return xr.Dataset(
         {
             "normal_force": (("case", "contact"), force, {"units": "N", "long_name": "normal force", "symbol": "F_N"}),
-            "residual": ("case", np.where(load == 7.0, 1.0, 0.0), {"units": "1"}),
+            "residual": ("case", np.where(load == 7.0, 1.0, 0.0), {"units": "1", "long_name": "residual"}),
             "regime": (
                 "case",
                 np.where(load == 7.0, 3, 0).astype("i1"),
@@ -34,9 +34,10 @@ def solve(design: xr.Dataset, database=None, **options) -> xr.Dataset:
                     "flag_values": np.arange(4, dtype="i1"),
                     "flag_meanings": "rolling full_slip lift_off failed",
                     "units": "1",
+                    "long_name": "regime",
                 },
             ),
-            "converged": ("case", (load != 7.0).astype("i1"), {"units": "1"}),
+            "converged": ("case", (load != 7.0).astype("i1"), {"units": "1", "long_name": "converged"}),
         },
-        {"contact": ("contact", np.array([1, 2]))},
+        {"contact": ("contact", np.array([1, 2]), {"long_name": "contact"})},
     )

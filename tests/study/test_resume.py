@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from collections import Counter
 from pathlib import Path
 
 import fake_solver
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -76,6 +78,19 @@ def test_gathered_grid_has_its_factors_as_labelled_dimensions(tmp_path):
     for name in ("study", "versions", "git_commit", "seed", "accuracy", "date_created", "materials"):
         assert name in ds.attrs
     assert all("units" in ds[name].attrs for name in ("normal_force", "axial_force", "radial_force"))
+
+
+def test_files_carry_their_conventions_and_coordinates_have_no_fill_value(tmp_path):
+    plan, _, _ = run(changed(material_pair=[["PA6", "POM"], ["POM", "PA6"]]), tmp_path)
+    folder = plan.folder
+    for path in (folder.design, folder.gathered, *map(folder.chunk, plan.chunks)):
+        with netCDF4.Dataset(path) as file:
+            assert file.Conventions == "CF-1.11" and file.title and file.history
+            assert not re.search(r"\d\d:\d\d", file.history), "equal studies give equal files"
+            coordinates = {*file.dimensions, *getattr(file, "coordinates", "").split()}
+            for name in coordinates & {*file.variables}:
+                assert "_FillValue" not in file[name].ncattrs(), (path.name, name)
+            assert all("long_name" in variable.ncattrs() for variable in file.variables.values()), path.name
 
 
 def test_killed_run_goes_on_and_ends_bit_for_bit_the_same(tmp_path, solved, monkeypatch):
