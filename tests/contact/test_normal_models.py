@@ -389,3 +389,15 @@ def test_a_flat_pressure_is_not_stopped_by_the_bound_of_an_ellipse():
     peak = float(tr.solve(flat, ("peak_stress",), normal="halfspace").peak_stress.max())
     assert not bool(stopped(1.02 * peak).stopped)
     assert bool(stopped(0.3 * peak).stopped)
+
+
+def test_an_offset_pressure_tilts_the_roller():
+    """F_N x_p of an off-centre pressure adds to the tilting moment, eqs (13), (14)."""
+    case = tr.Case(guide_profile={"parabola": 6.0, "edge": {"outer": 0.05}}, friction_coefficient=0.2)
+    ds = tr.solve(case, ("forces", "contact"), normal="halfspace", accuracy="preview")
+    alpha, reach = math.radians(30), 21.75
+    (n_1, n_2), (t_1, t_2) = ds.normal_force.values, ds.lateral_force.values
+    offset = float((ds.normal_force * ds.pressure_centre).sum())
+    arms = reach * math.sin(alpha) * (n_1 - n_2) + (reach * math.cos(alpha) - 6.0) * (t_1 + t_2)
+    assert abs(offset) > 0.1
+    assert float(ds.tilting_moment) == pytest.approx(arms + offset, rel=1e-9)
