@@ -5,7 +5,7 @@ import pytest
 
 from trackroller.analysis.pareto import pareto, pareto_mask
 from trackroller.errors import InputError
-from trackroller.report import sentences as words
+from trackroller.report import choices
 from trackroller.report.numbers import quantity
 from trackroller.study.config import parse_study
 
@@ -68,7 +68,7 @@ def test_sentence_tells_the_size_and_the_ends():
     front = pareto(
         trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b), {"roller_life_hours": "max", "friction_power": "min"}
     )
-    text = words.pareto(front).text
+    text = choices.pareto(front).text
     assert text.startswith(
         f"{int(front['optimal'].sum())} of 400 allowed designs are Pareto-optimal: from 200 h life of the roller"
     )
@@ -81,7 +81,7 @@ def test_sentence_tells_the_size_and_the_ends():
 def test_a_single_best_design_is_called_so():
     """Where one design wins in everything there is nothing to trade."""
     front = pareto(trade(lambda a, b: 100 - a, lambda a, b: a), {"roller_life_hours": "max", "friction_power": "min"})
-    assert words.pareto(front).text.startswith(
+    assert choices.pareto(front).text.startswith(
         "One of 400 allowed designs is best in everything: life of the roller 99"
     )
 
@@ -116,4 +116,4 @@ def test_figures_of_the_set_are_drawn_in_words():
     with style.look():
         _, first = pareto_front(front)
     assert "Treated as free to choose" in first.caption
-    assert first.sentence == words.pareto(front).text
+    assert first.sentence == choices.pareto(front).text

@@ -9,7 +9,7 @@ from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, robustness, wilson
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
-from trackroller.report import sentences as words
+from trackroller.report import choices
 from trackroller.study.config import parse_study
 
 INNER_OUTER = {
@@ -63,7 +63,7 @@ def test_percentiles_b10_and_probabilities_match_the_closed_forms(tmp_path):
 def test_sentence_names_the_best_design_point():
     """The point with ten times the life is named with its B10 and its slip."""
     ds = solved(lognormal)
-    text = words.robustness(robustness(ds, design_of(ds)), "roller_life_hours").text
+    text = choices.robustness(robustness(ds, design_of(ds)), "roller_life_hours").text
     assert text.startswith(
         "Best B10 of the life of the roller: at mean travel speed 60 m/min nine of ten rolling cases reach"
     )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from random_studies import FLAGS, random_study
 
-from trackroller.report import findings
+from trackroller.report import findings, known_errors
 from trackroller.report.effects import effect_of
 from trackroller.report.view import StudyView
 
@@ -222,7 +222,7 @@ def check_classes(raw, said):
         rng = np.random.default_rng(0)
         boot = [np.median(rng.choice(high, len(high))) - np.median(rng.choice(low, len(low))) for _ in range(60)]
         assert np.mean(np.array(boot) * step <= 0) <= 0.1  # the sign is no chance
-        fold, least, most = first(rf"{NUMBER}-fold \(95 % interval {NUMBER} to {NUMBER}\)", said.text)
+        fold, least, most = first(rf"{NUMBER}-fold \(95 % interval {NUMBER} to {NUMBER};", said.text)
         assert close(fold, 10 ** abs(step), 3 if 10 ** abs(step) < 9.99 else 2)
         assert 1 <= value(least) * 1.01 and value(least) <= value(most)
     elif said.kind == "classes_none":
@@ -283,14 +283,14 @@ def check_others(raw, view):
             assert strong.values["below"] == (raw.rolling & (stress < 120)).sum()
             assert strong.values["above"] == (raw.rolling & (stress > 240)).sum()
             said.append(strong)
-    residual, error = raw.get("energy_residual"), findings.friction_error(view)
+    residual, error = raw.get("energy_residual"), known_errors.friction_error(view)
     known = None if residual is None else residual[raw.rolling & np.isfinite(residual)]
     assert (error is not None) == (known is not None and known.size > 0 and np.median(known) > 0.05)
     if error:
         middle, most = first(rf"by {NUMBER} % in the median and {NUMBER} % at most", error.text)
         assert close(middle, 100 * np.median(known)) and close(most, 100 * known.max())
         said.append(error)
-    for sentence in findings.accuracy(view):
+    for sentence in known_errors.accuracy(view):
         if sentence.kind == "singular":
             assert sentence.values["count"] == (raw.flags["split_pole"] & raw.rolling).sum()
         else:

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from trackroller.analysis.pareto import pareto_mask
+from trackroller.report import choices
 from trackroller.report import sentences as words
 
 NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")
@@ -175,7 +176,7 @@ def test_every_sentence_on_a_pareto_set_is_true():
             coords={"row": np.arange(n)},
             attrs=attrs,
         )
-        text = words.pareto(front).text
+        text = choices.pareto(front).text
         tuples = [float(v.replace(",", "")) for v in re.findall(r"([\d,]+(?:\.\d+)?) (?:h|W)\b", text)]
         if best.sum() == 1:
             assert text.startswith("One of")
@@ -213,7 +214,7 @@ def test_every_sentence_on_design_points_is_true():
             },
             attrs={"outer_factors": "velocity"},
         )
-        said = words.robustness(table, "roller_life_hours")
+        said = choices.robustness(table, "roller_life_hours")
         best = said.values["point"]
         assert safe[best] == safe.max() and b10[best] == b10[safe == safe.max()].max()
         assert f"at mean travel speed {10 + best} m/min" in said.text

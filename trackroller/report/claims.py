@@ -18,6 +18,8 @@ from trackroller.report.view import MOST_LEVELS, StudyView
 FEW = 20  # events below this number are named one by one and attributed to nothing
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # rows of a class below which its median is not compared
+FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
+COVERED = 0.8  # share of a class that must lie in levels with rows enough, so that pooling can be checked
 UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change
 MOST = 0.9  # share of pairs that must agree in the direction of an effect
 
@@ -162,12 +164,28 @@ def class_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) ->
     if len(x) < 3 * FEWEST_ROWS:
         return None
     ends = np.sort(x)[[len(x) // 3, len(x) - 1 - len(x) // 3]]
-    return _between(factor, x, logs, float(ends[0]), float(ends[1]))
+    return _between(factor, x, logs, (float(ends[0]), float(ends[1])), FEWEST_ROWS)
 
 
-def _between(factor: str, x: np.ndarray, logs: np.ndarray, end: float, start: float) -> Effect | None:
+def comparable(view: StudyView, effect: Effect, column: str, rows: np.ndarray) -> bool:
+    """Say whether both classes of a factor hold each category's levels, so that pooling cannot turn the effect."""
+    x, values = (view.table[c].to_numpy(dtype=float) for c in (effect.factor, column))
+    good = rows & np.isfinite(values) & (values > 0)
+    ends = good & (x <= effect.low), good & (x >= effect.high)
+    for category in (c for c in view.categories if c != effect.factor):
+        own = view.table[category].to_numpy()
+        cells = np.array([[int((end & (own == level)).sum()) for level in view.levels(category)] for end in ends])
+        enough = (cells >= FEWEST_STRATUM).all(axis=0)
+        if (cells[:, enough].sum(axis=1) < COVERED * cells.sum(axis=1)).any():
+            return False
+    return True
+
+
+def _between(factor: str, x: np.ndarray, logs: np.ndarray, ends: tuple[float, float], fewest: int) -> Effect | None:
+    """Compare the medians below the first and above the second of two ends; None for fewer rows than `fewest`."""
+    end, start = ends
     low, high = logs[x <= end], logs[x >= start]
-    if end >= start or min(low.size, high.size) < FEWEST_ROWS:
+    if end >= start or min(low.size, high.size) < fewest:
         return None
     step, least, most = difference_of_medians(low, high)
     interval = (float(10**least), float(10**most))
@@ -194,7 +212,7 @@ def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) ->
     if np.isfinite(effect.interval[0]):
         x, values = (view.table[c].to_numpy(dtype=float)[rows] for c in (effect.factor, column))
         good = np.isfinite(values) & (values > 0)
-        return _between(effect.factor, x[good], np.log10(values[good]), effect.low, effect.high)
+        return _between(effect.factor, x[good], np.log10(values[good]), (effect.low, effect.high), FEWEST_STRATUM)
     matrix, levels = pair_matrix(view, column, effect.factor, rows)
     if not len(matrix):
         return None

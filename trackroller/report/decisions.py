@@ -9,9 +9,10 @@ import xarray as xr
 
 from trackroller.damage.fatigue import DECADES
 from trackroller.parameters import PARAMETERS
+from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.claims import Sentence
-from trackroller.report.findings import FRICTION_OUTPUTS
+from trackroller.report.known_errors import FRICTION_OUTPUTS
 from trackroller.report.numbers import capital, listing, long_name, plus_minus, rounded, unit_text, with_unit
 from trackroller.report.tables import Table, factor_cell
 from trackroller.report.view import StudyView
@@ -99,7 +100,7 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
         b10, low, high = (float(part[n][p]) for n in ("b10", "b10_low", "b10_high"))
         span = f"{rounded(low)} to {rounded(high)}" if np.isfinite(high) else "–"
         chances = [_chance(table, regime, p) for regime in seen]
-        rows.append([capital(words.point_words(table, p)), b10, span, float(part["b10_safe"][p]), *chances])
+        rows.append([capital(choices.point_words(table, p)), b10, span, float(part["b10_safe"][p]), *chances])
     unit = unit_text(str(part["output_units"].item()))
     name = capital(str(part["output_name"].item()))
     own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DECADES * scatter))}."
@@ -130,7 +131,7 @@ def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points:
     rows = []
     for p in map(int, points):
         spread = [float(part["percentile_value"].sel(percentile=q)[p]) for q in shares]
-        rows.append([capital(words.point_words(table, p)), float(part["mean"][p]), *spread])
+        rows.append([capital(choices.point_words(table, p)), float(part["mean"][p]), *spread])
     heads = ["Design point", "Mean", *(f"{q:.0f} %" for q in shares)]
     name, unit = capital(str(part["output_name"].item())), unit_text(str(part["output_units"].item()))
     note = "Rolling cases; scatter of the study's factors alone, without that of the material."
@@ -147,7 +148,7 @@ def _chance(table: xr.Dataset, regime: str, point: int) -> str:
 
 def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> Table | None:
     """List Pareto-optimal designs along the first goal, with a column that says which lie outside the model."""
-    goals = words.goals_of(front)
+    goals = choices.goals_of(front)
     best = np.flatnonzero(front["optimal"].values == 1)
     if not len(best):
         return None

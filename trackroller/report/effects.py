@@ -13,6 +13,7 @@ from trackroller.report.claims import (
     Effect,
     Sentence,
     class_effect,
+    comparable,
     paired_effect,
     strata,
 )
@@ -36,7 +37,7 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
     effect = paired_effect(view, column, factor, rows)
     paired = effect is not None
     effect = effect or class_effect(view, column, factor, rows)
-    if effect is None:
+    if effect is None or (not paired and not comparable(view, effect, column, rows)):
         return None
     parts = strata(view, column, effect, rows)
     values: dict[str, Any] = {
@@ -149,8 +150,9 @@ def _of_classes(
     up = effect.ratio > 1
     bounds = (low, high) if up else (1 / high, 1 / low)
     text = (
-        f"{capital(name)} {_verb(words, up)} the {words}: between the thirds of the valid designs with {name} up to "
-        f"{ends} its median changes {times(max(effect.ratio, 1 / effect.ratio))} (95 % interval "
-        f"{rounded(bounds[0])} to {rounded(bounds[1])})."
-    )
+        f"A {name} from {level_text(effect.factor, effect.high)} up, instead of one up to "
+        f"{level_text(effect.factor, effect.low)}, {_verb(words, up)} the median {words} "
+        f"{times(max(effect.ratio, 1 / effect.ratio))} (95 % interval {rounded(bounds[0])} to {rounded(bounds[1])}; "
+        f"the outer thirds of the valid designs, {count(effect.size)} or more in each)."
+    ).replace("A a", "An a")
     return Sentence("classes", text, values, rows)

@@ -15,17 +15,13 @@ from trackroller.report.numbers import (
     listing,
     long_name,
     number,
-    percent,
     quantity,
-    rounded,
     setting,
     share,
 )
 from trackroller.report.view import BODIES, MOST_LEVELS, OUTSIDE, StudyView
 
 CONDITIONS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity", "guide_curve_radius")
-KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
-FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
 FLAG_WORDS = {
     "half_space": "the patch is too large for a half-space",
     "yield": "the contact pressure exceeds the yield limit",
@@ -310,38 +306,3 @@ def lift_off(view: StudyView) -> Sentence | None:
     text = f"{count(cases)} of {count(len(lifted))} designs lift off; the smallest axial force among them is "
     values = {"count": cases, "least": least}
     return Sentence("lift_off", f"{text}{number(least)} N.", values, np.ones(len(lifted), dtype=bool))
-
-
-def friction_error(view: StudyView) -> Sentence | None:
-    """Say how far friction energy is from the work put in, where the median difference exceeds 5 %."""
-    residual = view.column("energy_residual")
-    rows = view.rolling & np.isfinite(residual)
-    if not rows.any() or np.median(residual[rows]) <= KNOWN_ERROR:
-        return None
-    middle, most = float(np.median(residual[rows])), float(residual[rows].max())
-    text = (
-        f"Known model error: friction energy and power differ from the work put in by {rounded(100 * middle)} % in the "
-        f"median and {rounded(100 * most)} % at most of {count(int(rows.sum()))} rolling designs. Solve with "
-        "`contact_model: kalker` before a decision rests on them."
-    )
-    return Sentence("friction_error", text, {"median": middle, "largest": most, "of": int(rows.sum())}, rows)
-
-
-def accuracy(view: StudyView) -> list[Sentence]:
-    """Say how well the peaks are resolved, and where the stress of the contact model is singular."""
-    said = []
-    for body in BODIES:
-        error = view.column(f"error_estimate_{body}")
-        rows = view.valid & np.isfinite(error)
-        if rows.any():
-            middle, most = float(np.median(error[rows])), float(error[rows].max())
-            text = f"The peak stress of the {body} is resolved to {percent(middle)} in the median of the valid designs"
-            values = {"body": body, "median": middle, "largest": most}
-            said.append(Sentence("resolved", f"{text} and to {percent(most)} at worst.", values, rows))
-            break
-    if "split_pole" in view.flags and (hit := view.flagged("split_pole") & view.rolling).any():
-        cases = int(hit.sum())
-        text = f"In {count(cases)} rolling designs the stress of full sliding is singular: solve them with"
-        values = {"count": cases}
-        said.append(Sentence("singular", f"{text} `contact_model: kalker`.", values, view.rolling))
-    return said

@@ -16,11 +16,12 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.analysis.pareto import study_pareto
+from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.comparison import report_section
 from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
-from trackroller.report.findings import friction_error
 from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
+from trackroller.report.known_errors import friction_error
 from trackroller.report.numbers import capital, count, long_name, percent, plain, rounded
 from trackroller.report.pages import inline
 from trackroller.report.papers import conventions, papers
@@ -132,12 +133,12 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
     front = _guarded(lambda: None, study_pareto, ds)
     said = []
     if front is not None:
-        said.append(words.pareto(front, view).text)
+        said.append(choices.pareto(front, view).text)
         decide.append(pareto_table(front, view, error))
     why: list[Table] = []
     if sens is not None and words.robust_design(sens):
         decide += _guarded(list, robust_tables, sens, error)
-        said += [words.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
+        said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
         why = [index_table(sens, error), *(measure_table(sens, name) for name in _leading_outputs(sens))]
     compared = []
@@ -155,7 +156,7 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
     }
 
 
-def _leading_outputs(sens: xr.Dataset, most: int = 2) -> list[str]:
+def _leading_outputs(sens: xr.Dataset, most: int = 1) -> list[str]:
     """Lives first, then the other outputs that have an index."""
     index = words.headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]

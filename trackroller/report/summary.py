@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.claims import Sentence
-from trackroller.report.findings import accuracy, best_design, friction_error, occurrence, valid_designs
+from trackroller.report.findings import best_design, occurrence, valid_designs
+from trackroller.report.known_errors import accuracy, friction_error
 from trackroller.report.numbers import REGIME_LABELS, capital, count
 from trackroller.report.view import StudyView
 
@@ -52,7 +54,7 @@ def decides(sens: xr.Dataset | None) -> Sentence | None:
     names = [str(n) for n in sens["output"].values]
     if words.robust_design(sens):
         lives = [n for n in LIVES if n in names]
-        return words.robustness(sens, lives[0]) if lives else None
+        return choices.robustness(sens, lives[0]) if lives else None
     ranked = [n for n in [*LIVES, *names] if n in names and words.order(sens, n)]
     return words.decides(sens, ranked[0]) if ranked else None
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from trackroller.report import sentences as words
+from trackroller.report import choices
 from trackroller.report.figures import style
 from trackroller.report.findings import CONDITIONS
 from trackroller.report.numbers import REGIME_LABELS, capital, factor_label, listing, long_name, plain, with_unit
@@ -42,7 +42,7 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
     front : dataset of `trackroller.analysis.pareto.pareto`
     view : the study, for the validity of the designs
     """
-    goals = words.goals_of(front)
+    goals = choices.goals_of(front)
     if not (front["optimal"].values == 1).any():
         return None
     others = goals[1:4]
@@ -60,7 +60,7 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
         f"Pareto set for {wanted}; {front.sizes['row']:,} allowed designs of {front.attrs['rows']:,}{limits}. Left "
         f"out: {front.attrs['excluded']}.{_given(front)}"
     )
-    return figure, style.FigureInfo("pareto-front", caption, words.pareto(front, view).text)
+    return figure, style.FigureInfo("pareto-front", caption, choices.pareto(front, view).text)
 
 
 def _trade(axes: Any, front: xr.Dataset, across: tuple[str, str], upwards: tuple[str, str], joined: bool) -> None:
@@ -106,7 +106,7 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
     place = np.arange(len(rank))[::-1]
     own = float(table.attrs.get("log_life_scatter", 0.0)) > 0
     _spread(left, part, rank, place, own)
-    left.set_yticks(place, [capital(words.point_words(table, int(p))) for p in rank])
+    left.set_yticks(place, [capital(choices.point_words(table, int(p))) for p in rank])
     name = str(part["output_name"].item())
     left.set_xlabel(with_unit(capital(name), str(part["output_units"].item())))
     _shares(right, table, rank, place)
@@ -122,7 +122,7 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
         "Whiskers: 95 % intervals. Lives of the rolling cases; the share of the others on the right."
         + (" B10 holds the material's own scatter of life as well." if own else "")
     )
-    return figure, style.FigureInfo(f"robustness-{output}", caption, words.robustness(table, output).text)
+    return figure, style.FigureInfo(f"robustness-{output}", caption, choices.robustness(table, output).text)
 
 
 def _spread(axes: Any, part: xr.Dataset, rank: np.ndarray, place: np.ndarray, own: bool) -> None:

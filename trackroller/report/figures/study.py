@@ -30,7 +30,7 @@ from trackroller.report.figures.sensitivity import (
     tornado,
 )
 from trackroller.report.figures.woehler import woehler
-from trackroller.report.findings import FRICTION_OUTPUTS, friction_error
+from trackroller.report.known_errors import FRICTION_OUTPUTS, friction_error
 from trackroller.report.view import StudyView
 
 log = logging.getLogger(__name__)

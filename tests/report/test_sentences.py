@@ -1,0 +1,206 @@
+"""Sentences that earlier reports got wrong, each on data where the old sentence fails."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from synthetic_results import grid_study
+
+from trackroller.report.choices import pareto
+from trackroller.report.decisions import robust_tables
+from trackroller.report.effects import effect_of
+from trackroller.report.findings import occurrence, valid_designs
+from trackroller.report.known_errors import friction_error
+from trackroller.report.numbers import percent, plus_minus, share
+from trackroller.report.page import contents
+from trackroller.report.tables import validity_table
+from trackroller.report.view import StudyView
+from trackroller.report.workbook import export
+from trackroller.study.config import parse_study
+
+
+def study(columns, **results):
+    """A gathered study along `case` from columns of factors and results."""
+    n = len(next(iter(columns.values())))
+    ds = xr.Dataset({k: ("case", np.asarray(v)) for k, v in results.items()}, coords={"case": np.arange(n)})
+    ds = ds.assign_coords({k: ("case", np.asarray(v)) for k, v in columns.items()})
+    ds.attrs["study"] = yaml.safe_dump({"factors": {k: {} for k in columns}})
+    return ds
+
+
+def test_a_trend_that_pooling_turns_is_told_by_category():
+    """Life falls with friction in both materials, but the durable one was tried at high friction: pooled it rises."""
+    rng = np.random.default_rng(0)
+    pair = np.repeat(["PA6 / steel", "steel / steel"], 200)
+    friction = np.where(pair == "PA6 / steel", rng.uniform(0.0, 0.3, 400), rng.uniform(0.2, 0.5, 400))
+    life = 10 ** (2 - 3 * friction + 3 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
+    low, high = np.median(life[friction < 0.2]), np.median(life[friction > 0.3])
+    assert high > low  # what a pooled sentence would say
+    view = StudyView.of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
+    said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
+    assert said is None  # the materials share too little of the range to be compared
+    # where both materials were tried over the whole range, the common trend is found
+    friction = rng.uniform(0, 0.5, 400)
+    life = 10 ** (2 - 3 * friction + 0.2 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
+    view = StudyView.of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
+    said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
+    assert said.kind == "classes" and "shortens the median life of the roller" in said.text
+
+
+def test_no_effect_is_stated_where_the_interval_holds_zero():
+    rng = np.random.default_rng(1)
+    axial = rng.uniform(0, 50, 300)
+    life = 10 ** (3 + 3.0 * (rng.random(300) < 0.5))  # bimodal, whatever the axial force
+    view = StudyView.of(study({"axial_force": axial}, roller_life_hours=life))
+    said = effect_of(view, "roller_life_hours", "life of the roller", "axial_force", view.valid)
+    assert said.kind == "classes_none" and said.text.startswith("No effect of axial force")
+
+
+def test_sentences_use_all_rows_and_not_those_of_a_figure():
+    rng = np.random.default_rng(2)
+    axial = rng.uniform(0, 50, 5000)
+    life = 10 ** (3 - axial / 50 + rng.normal(0, 0.3, 5000))
+    view = StudyView.of(study({"axial_force": axial}, roller_life_hours=life))
+    said = effect_of(view, "roller_life_hours", "life of the roller", "axial_force", view.valid)
+    assert said.values["size"] == pytest.approx(5000 / 3, abs=2) and said.rows.sum() == 5000
+
+
+def test_a_single_event_is_named_and_attributed_to_nothing():
+    view = StudyView.of(grid_study())
+    hit = np.zeros(len(view.table), bool)
+    hit[77] = True
+    text = occurrence(view, hit, "Lift-off").text
+    assert text == f"Lift-off occurs in 1 of {len(hit):,} designs: case 77."
+
+
+def test_head_lines_count_valid_cases_and_say_by_body_why_others_are_not():
+    ds = grid_study()
+    roller, guide = (ds["validity"] & 4) > 0, (ds["validity"] & 8) > 0
+    bits = xr.concat([roller * 4 + guide * 8, guide * 8 + 0 * roller], "body").astype("int32")
+    ds["validity_body"] = bits.transpose(..., "body")
+    view = StudyView.of(ds)
+    said = valid_designs(view)
+    rolls = ds["regime"] == 0
+    exceeds = int((roller & rolls).sum())
+    assert f"the peak stress exceeds the tensile strength of the roller ({exceeds:,})" in said.text
+    assert "strength of the guide" not in said.text  # the guide never exceeds its strength here
+    rows = {(row[0], row[1]): row[3] for row in validity_table(view).rows}
+    assert rows[("static", "roller")] == exceeds and ("static", "guide") not in rows
+
+
+def test_a_share_is_never_rounded_to_all_or_none():
+    assert share(5399, 5400) == "99.98 %" and share(1, 5400) == "0.02 %"
+    assert share(5400, 5400) == "100 %" and share(0, 5400) == "0 %"
+    for whole in (7, 300, 12345):
+        for part in range(1, whole, max(whole // 50, 1)):
+            told = float(share(part, whole).removesuffix(" %"))
+            assert 0 < told < 100 and told == pytest.approx(100 * part / whole, abs=0.51)
+
+
+def test_plus_minus_is_half_the_interval_in_sentence_and_table():
+    assert percent(0.5, 0.40, 0.52) == "50 ± 6 %" and plus_minus(0.5, 0.40, 0.52) == "0.500 ± 0.060"
+
+
+def with_error(middle):
+    """A sample whose friction energy misses the work put in by about `middle`."""
+    factors = {"axial_force": {"uniform": [0, 50]}, "velocity": {"uniform": [10, 60]}}
+    asked = parse_study({"name": "e", "design": "lhs", "samples": 60, "factors": factors})
+    ds = asked.design()
+    power = np.random.default_rng(3).uniform(1, 5, 60)
+    ds["roller_life_hours"], ds["energy_residual"] = ("case", 1e3 * power), ("case", np.full(60, middle))
+    both = np.stack([power, power], axis=1)
+    ds["friction_power"] = (("case", "contact"), both, {"units": "W", "long_name": "friction power"})
+    ds["regime"] = ("case", np.zeros(60, "i1"))
+    ds.attrs = {"study": asked.merged()}
+    return ds.assign_coords(contact=[1, 2])
+
+
+@pytest.mark.parametrize(("middle", "told"), [(1.27, True), (0.03, False)])
+def test_a_known_model_error_above_5_percent_is_told_with_its_size(middle, told):
+    ds = with_error(middle)
+    assert (friction_error(StudyView.of(ds)) is not None) == told
+    found = contents(ds)
+    sure = " ".join(s.text for s in dict(found["summary"]).get("How sure", []))
+    table = next(t for t in found["decide"] if t.name == "pareto")
+    for text in (sure, table.note):
+        assert ("127 % in the median" in text) == told
+
+
+def test_a_set_with_designs_outside_the_model_says_how_many():
+    front = xr.Dataset(
+        {
+            "a": ("row", [3.0, 1.0], {"units": "h", "long_name": "life"}),
+            "b": ("row", [3.0, 1.0], {"units": "W", "long_name": "power"}),
+            "optimal": ("row", [1, 1]),
+        },
+        coords={"row": [0, 1]},
+        attrs={"objectives": "a max, b min", "excluded": "nothing"},
+    )
+    ds = study({"axial_force": [0.0, 1.0]}, regime=[0, 1])
+    assert "1 of the set lie outside the model" in pareto(front, StudyView.of(ds)).text
+
+
+def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
+    names = ["roller_life_hours", "friction_power", "max_pressure"]
+    dims, points = ("output", "point"), 2
+    table = xr.Dataset(
+        {
+            **{n: (dims, np.ones((3, points))) for n in ("b10", "b10_low", "b10_high", "b10_safe", "mean")},
+            "percentile_value": ((*dims, "percentile"), np.ones((3, points, 3))),
+            **{n: (("regime", "point"), np.zeros((4, points))) for n in ("probability", "probability_low")},
+            "probability_high": (("regime", "point"), np.full((4, points), 0.03)),
+        },
+        coords={
+            "output": names,
+            "output_name": ("output", names),
+            "output_units": ("output", ["h", "W", "MPa"]),
+            "percentile": [5.0, 50.0, 95.0],
+            "regime": ["rolling", "full_slip", "lift_off", "failed"],
+            "velocity": ("point", [30.0, 60.0]),
+        },
+        attrs={
+            "outer_factors": "velocity",
+            "log_life_scatter": 0.2,
+            "study": yaml.safe_dump({"analysis": {"outputs": names}}),
+        },
+    )
+    found = {t.name: t for t in robust_tables(table, None)}
+    assert {f"percentiles_{n}" for n in names} | {"b10_roller_life_hours"} == set(found)
+    assert not {"5 %", "50 %", "95 %", "Mean"} & set(found["b10_roller_life_hours"].heads)
+    assert "T_N" in found["b10_roller_life_hours"].note
+
+
+def test_tables_are_exported_as_csv_and_one_workbook_with_units_in_the_head(tmp_path):
+    import csv
+    import zipfile
+    from xml.etree import ElementTree as ET
+
+    tables = [t for t in contents(grid_study())["decide"] if t]
+    paths = export(tables, tmp_path)
+    assert paths[-1].name == "tables.xlsx" and len(paths) == len(tables) + 1
+    with paths[0].open(encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    assert rows[0][1] == "Best 1" and any(row[0] == "Life of the roller [h]" for row in rows)
+    with zipfile.ZipFile(paths[-1]) as book:
+        for name in book.namelist():
+            ET.fromstring(book.read(name))
+        sheet = ET.fromstring(book.read("xl/worksheets/sheet1.xml"))
+    numbers = [float(v.text) for v in sheet.iter("{http://schemas.openxmlformats.org/spreadsheetml/2006/main}v")]
+    life = next(row for row in tables[0].rows if row[0] == "Life of the roller [h]")
+    assert set(life[1:]) <= set(numbers)
+
+
+def test_pairs_agree_with_a_closed_form():
+    """Life 10^(3 - friction) exactly: every pair of friction 0 and 0.4 differs by 10^0.4."""
+    friction, axial = np.array(list(itertools.product([0.0, 0.2, 0.4], [0.0, 10.0, 20.0, 30.0, 40.0, 50.0]))).T
+    ds = study({"friction_coefficient": friction, "axial_force": axial}, roller_life_hours=10 ** (3 - friction))
+    view = StudyView.of(ds)
+    said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
+    assert said.text == (
+        "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold in the median of 6 pairs of valid "
+        "designs that differ in nothing else, in all of them."
+    )

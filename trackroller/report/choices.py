@@ -1,0 +1,103 @@
+"""Sentences on choices: the Pareto set of a study and the design points of an inner/outer design."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from trackroller.report.claims import Sentence
+from trackroller.report.numbers import count, listing, quantity, rounded, setting, share
+from trackroller.report.view import StudyView
+
+
+def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:
+    """List the goals of a Pareto set: (name, 'min' or 'max')."""
+    return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]  # type: ignore[misc]
+
+
+def pareto(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
+    """State the size and the ends of a Pareto set, and how many of its designs lie outside the model.
+
+    Parameters
+    ----------
+    front : dataset of `trackroller.analysis.pareto.pareto`
+    view : the study, for the validity of the designs
+    """
+    best = np.flatnonzero(front["optimal"].values == 1)
+    goals, left = goals_of(front), f"Left out: {front.attrs['excluded']}."
+    model = f" The designs are those solved with {front.attrs['model']}." if front.attrs.get("model") else ""
+    allowed = count(front.sizes["row"])
+    values = {"count": len(best), "of": front.sizes["row"], "ends": []}
+    if not len(best):
+        return Sentence("pareto", f"No design is left. {left}{model}", values)
+    ends = []
+    for name, way in goals:
+        table = front[name].values[best].astype(float)
+        at = int(best[np.argmax(table) if way == "max" else np.argmin(table)])
+        ends.append((name, int(front["row"][at]), {g: float(front[g].values[at]) for g, _ in goals}))
+    if len(best) == 1:
+        told = [f"{_goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
+        text = f"One of {allowed} allowed designs is best in everything: {listing(told)}."
+    else:
+        one, two = ends[0], ends[1]
+        said = [
+            listing([f"{_goal_value(front, g, end[2][g])} {_goal_words(front, g)}" for g, _ in goals])
+            for end in (one, two)
+        ]
+        text = f"{count(len(best))} of {allowed} allowed designs are Pareto-optimal: from {said[0]} to {said[1]}."
+    if view is not None:
+        outside = int((~view.valid[front["row"].values[best]]).sum())
+        values["outside"] = outside
+        text += f" {count(outside)} of the set lie outside the model." if outside else ""
+    return Sentence("pareto", f"{text} {left}{model}", values | {"ends": ends})
+
+
+def _goal_words(front: xr.Dataset, name: str) -> str:
+    return str(front[name].attrs.get("long_name", name))
+
+
+def _goal_value(front: xr.Dataset, name: str, value: float) -> str:
+    return quantity(value, str(front[name].attrs.get("units", "1") or "1"))
+
+
+def robustness(table: xr.Dataset, output: str) -> Sentence:
+    """Name the best design point by B10 and how often designs slip or lift off there."""
+    part = table.sel(output=output)
+    words, safe = str(part["output_name"].item()), part["b10_safe"].values
+    if not (np.isfinite(safe) | np.isposinf(safe)).any():
+        return Sentence("no_b10", f"No B10 can be given for {words}.", {"output": output})
+    b10s = np.nan_to_num(part["b10"].values, nan=-1.0)
+    key = np.lexsort((-b10s, -np.nan_to_num(safe, nan=-1.0)))
+    best = int(key[0])
+    slip, lift = (table["probability"].sel(regime=r).values for r in ("full_slip", "lift_off"))
+    b10, low, high = (float(part[n].values[best]) for n in ("b10", "b10_low", "b10_high"))
+    unit = "overrollings" if words.endswith("overrollings") else str(part["output_units"].item())
+    still = float(table["probability"].sel(regime="rolling").values[best]) == 1.0
+    text = (
+        f"Best B10 of the {words}: at {point_words(table, best)} nine of ten {'cases' if still else 'rolling cases'} "
+        f"reach {quantity(b10, unit)} (95 % interval {rounded(low)} to {rounded(high)})"
+    )
+    if not still and safe[best] > 0:
+        text += f"; with every case that does not roll counted as life 0 it is {quantity(float(safe[best]), unit)}"
+    elif not still:
+        text += "; one in ten or more do not roll, so that counting these no B10 is left"
+    text += f"; full slip there in {_chance(slip[best])} and lift-off in {_chance(lift[best])} of the cases"
+    values = {"output": output, "point": best, "b10": b10, "safe": float(safe[best])}
+    worst = int(np.argmax(slip + lift))
+    if slip[worst] + lift[worst] > slip[best] + lift[best]:
+        text += f", at most in {_chance(slip[worst] + lift[worst])} ({point_words(table, worst)})"
+        values["worst"] = worst
+    return Sentence("robust", f"{text}.", values)
+
+
+def _chance(value: float) -> str:
+    whole = 10**6
+    return share(round(value * whole), whole)
+
+
+def point_words(table: xr.Dataset, point: int) -> str:
+    """Name a design point: 'profile ratio 1.1, contact angle 30°'."""
+    names = [n for n in str(table.attrs.get("outer_factors", "")).split(", ") if n]
+    values = [table[name].values[point] for name in names]
+    said = [setting(n, v if isinstance(v, str) else float(v)) for n, v in zip(names, values, strict=True)]
+    return ", ".join(said) or "the one design point"
