@@ -8,7 +8,7 @@ CORES ?= all
 SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile validation/rules
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
-.PHONY: env study validate test test-quick lint test-slurm test-long clean-results
+.PHONY: env study validate test test-quick lint docs test-slurm test-long clean-results
 
 env: $(STAMP)
 
@@ -43,7 +43,14 @@ lint: $(STAMP)
 	$(BIN)/snakefmt --check $(SNAKEFILES)
 	$(BIN)/snakemake --lint
 	$(BIN)/snakemake -s validation/Snakefile --lint
+	$(BIN)/python -m validation.docstrings
 	$(BIN)/python -m validation.house
+
+# the site in site/: generated pages must be up to date, and no link may be dead
+docs: $(STAMP)
+	$(BIN)/python docs/generate.py --check
+	$(BIN)/python docs/api.py --check
+	$(BIN)/mkdocs build --strict --quiet
 
 # needs Debian's slurmctld slurmd slurm-client munge on this machine; starts and stops its own
 test-slurm: $(STAMP)

@@ -82,7 +82,7 @@ PARTS: tuple[tuple[str, tuple[tuple[str, tuple[str, ...]], ...]], ...] = (
         (
             ("trackroller.report.figures.contact", ("plot_case",)),
             ("trackroller.report.figures.study", ("draw_all",)),
-            ("trackroller.report", ("write_report",)),
+            ("trackroller.report.page", ("write_report",)),
         ),
     ),
 )

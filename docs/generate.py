@@ -104,8 +104,8 @@ def render() -> str:
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += [
         "### contact_model_used, stopped\n",
-        "`contact_model_used` is the model that solved the case; it differs from the one asked for with `auto`, and with",
-        "`kalker` at accuracy `preview`: "
+        "`contact_model_used` is the model that solved the case; it differs from the one asked for with `auto`, and",
+        "with `kalker` at accuracy `preview`: "
         + ", ".join(f"{i} {name}" for i, name in enumerate(p.CONTACT_MODELS[:-1]))
         + ".",
         "`stopped` (with `stop_if`): 1 where the condition holds.\n",

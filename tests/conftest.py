@@ -27,4 +27,4 @@ def pytest_runtest_makereport(item, call):
 def pytest_terminal_summary(terminalreporter):
     """Say how many tests were skipped, so that nobody takes them for passed ones."""
     if skipped := len(terminalreporter.stats.get("skipped", ())):
-        terminalreporter.write_line(f"{skipped} tests did not run here; the reasons stand above. .ci/run runs them all.")
+        terminalreporter.write_line(f"{skipped} tests did not run here for the reasons above; .ci/run runs them all.")

@@ -1,0 +1,115 @@
+"""Check the docstrings of public functions and classes by numpydoc's rules: `python -m validation.docstrings`.
+
+Public are the names of `trackroller.__all__` and those of the reference page (`docs/api.py`). The command ends with
+1 if a docstring breaks a rule.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+from numpydoc.validate import validate
+
+import trackroller
+
+# numpydoc's codes: a summary, in the imperative, one line; every parameter and the result described
+RULES = {
+    "GL08": "no docstring",
+    "SS01": "no summary",
+    "SS05": "summary does not start with an infinitive verb",
+    "PR01": "a parameter is missing",
+    "PR02": "an unknown parameter",
+    "PR03": "parameters in another order than the signature",
+    "PR07": "a parameter without description",
+    "RT01": "no section Returns",
+    "RT03": "the result without description",
+}
+# to be rewritten; a name that keeps the rules leaves this list
+STILL_TO_WRITE = frozenset(
+    """
+    trackroller.analysis.pareto.pareto
+    trackroller.analysis.robustness.robustness
+    trackroller.analysis.sensitivity.analyse
+    trackroller.analysis.sensitivity.analyse_dataset
+    trackroller.contact.fastsim.patch.solve_patch
+    trackroller.contact.friction_laws.law_of
+    trackroller.contact.hertz.contact_modulus
+    trackroller.contact.hertz.shape
+    trackroller.contact.kalker.patch.solve_patch
+    trackroller.contact.linear.creepage_coefficients
+    trackroller.contact.normal.pressure.solve_normal
+    trackroller.contact.profiles.canonical
+    trackroller.errors.InputError
+    trackroller.halfspace.stress.max_shear
+    trackroller.halfspace.stress.principal_stresses
+    trackroller.halfspace.stress.stress_from_tractions
+    trackroller.halfspace.stress.stress_on_grid
+    trackroller.halfspace.stress.von_mises
+    trackroller.materials.add_material
+    trackroller.materials.load_database
+    trackroller.report.figures.contact.plot_case
+    trackroller.report.figures.study.draw_all
+    trackroller.report.page.write_report
+    trackroller.roller.stop.parse_condition
+    trackroller.study.config.Study.design
+    trackroller.study.config.load_study
+    trackroller.study.explain.explain
+    trackroller.study.spectrum.file.load_spectrum
+    trackroller.study.spectrum.solve.solve_spectrum
+    """.split()
+)
+API = Path(__file__).resolve().parents[1] / "docs" / "api.py"
+
+
+def public_names() -> list[str]:
+    """Return the dotted names of all public functions, classes and methods, each where it is defined."""
+    spec = importlib.util.spec_from_file_location("docs_api", API)
+    if spec is None or spec.loader is None:
+        raise FileNotFoundError(API)
+    page = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(page)
+    listed = [("trackroller", name) for name in trackroller.__all__ if not name.startswith("__")]
+    listed += [(module, name) for _, parts in page.PARTS for module, names in parts for name in names]
+    return sorted(set(_defined(listed)))
+
+
+def _defined(listed: list[tuple[str, str]]) -> Iterator[str]:
+    for module, name in listed:
+        thing = getattr(importlib.import_module(module), name.partition(".")[0])
+        if isinstance(thing, ModuleType):  # `trackroller.report` is a room and a function
+            yield f"{thing.__name__}.write"
+        elif callable(thing):
+            yield f"{thing.__module__}.{name}"
+
+
+def problems() -> list[str]:
+    """Return one line for each rule that a public docstring breaks."""
+    return [
+        f"{name}: {code} {text}"
+        for name in public_names()
+        for code, text in validate(name)["errors"]
+        if code in RULES and not (code in ("RT01", "RT03") and isinstance(_object(name), type))
+    ]
+
+
+def _object(name: str) -> object:
+    module, _, last = name.rpartition(".")
+    try:
+        return getattr(importlib.import_module(module), last)
+    except ModuleNotFoundError:  # a method
+        return None
+
+
+if __name__ == "__main__":
+    found = problems()
+    waived = {line.partition(":")[0] for line in found} & STILL_TO_WRITE
+    broken = [line for line in found if line.partition(":")[0] not in STILL_TO_WRITE]
+    print("\n".join(broken))
+    print(
+        f"{len(public_names())} public docstrings: {len(broken)} rules broken, {len(waived)} docstrings still to write"
+    )
+    raise SystemExit(1 if broken else 0)
