@@ -1,0 +1,75 @@
+"""The comparison of estimators with libraries runs, and its reasons for keeping our own estimators hold."""
+
+import json
+
+import numpy as np
+import pytest
+
+from validation import index_estimators as tool
+from validation.known_indices import functions
+
+
+def measured(kind: str, name: str, seeds: int) -> dict[str, dict[str, float]]:
+    """Numbers of both estimators in the comparison whose name starts with `name`."""
+    data, truth = next((d, t) for k, n, d, t in tool.cases() if k == kind and n.startswith(name))
+    return {who: tool.measure(one, data, truth, seeds) for who, one in tool.ESTIMATORS[kind].items()}
+
+
+def test_closed_forms_agree_with_brute_force():
+    """Variance of conditional means over 200 000 rows, each function."""
+    for name, function in functions().items():
+        unit = np.random.default_rng(0).random((200_000, len(function.first)))
+        y = function.evaluate(unit)
+        for j, exact in enumerate(function.first):
+            group = (unit[:, j] * 100).astype(int)
+            mean = np.bincount(group, y) / np.bincount(group)
+            assert mean.var() / y.var() == pytest.approx(exact, abs=0.01), (name, j)
+
+
+@pytest.mark.parametrize("name", list(functions()))
+def test_sobol_by_correlations_has_smaller_errors_than_salib_and_covers_as_often(name):
+    found = measured("sobol", f"Sobol indices, {name}", 16)
+    ours, theirs = found["ours"], found["SALib sobol"]
+    assert ours["rmse"] < 0.8 * theirs["rmse"] and ours["half_width"] < 0.8 * theirs["half_width"]
+    assert ours["coverage"] > max(0.9, theirs["coverage"] - 0.05)
+
+
+def test_first_order_indices_use_rbd_fast_for_numbers_and_groups_for_categories():
+    """The same values as SALib for numbers; a category is unbiased, where RBD-FAST alone is not."""
+    numbers = measured("first", "first-order index, Ishigami, 256 rows", 12)
+    assert numbers["ours"]["rmse"] == pytest.approx(numbers["SALib rbd_fast"]["rmse"])
+    assert numbers["ours"]["bias"] < 0.03 and numbers["ours"]["coverage"] > 0.9
+    kinds = measured("first", "first-order index, number and category", 12)
+    assert kinds["ours"]["bias"] < 0.02 and kinds["SALib rbd_fast"]["bias"] > 0.05
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.99])
+def test_delta_has_smaller_errors_than_salib(correlation):
+    found = measured("delta", f"delta, normal pair r = {correlation}, 400 rows", 8)
+    assert found["ours"]["rmse"] < 0.5 * found["SALib delta"]["rmse"] and found["ours"]["coverage"] > 0.8
+
+
+def test_interactions_and_pawn_have_smaller_errors_than_salib():
+    found = measured("pairs", "interactions, Ishigami, 400 rows", 3)
+    assert found["ours"]["rmse"] < found["SALib hdmr"]["rmse"]
+    found = measured("pawn", "PAWN", 3)
+    assert found["ours"]["rmse"] < 0.03 and found["SALib pawn"]["rmse"] > 0.1
+
+
+def test_the_program_prints_numbers_before_and_now(capsys, monkeypatch, tmp_path):
+    key = "PAWN of three categories, 1000 rows"
+    monkeypatch.setattr(tool, "BEFORE", tmp_path / "before.json")
+    tool.main(["--seeds", "4", "--only", "pawn", "--record"])
+    assert list(json.loads((tmp_path / "before.json").read_text(encoding="utf-8"))) == [key]
+    tool.main(["--seeds", "4", "--only", "pawn", "morris", "repeat", "designs"])
+    text = capsys.readouterr().out
+    assert "before" in text and "SALib pawn" in text
+    assert "Repeated with seed 0: SALib's interval is another one, ours is the same" in text
+    assert "box_behnken, by number of factors: the same rows for 3, 4, 5; pyDOE has more rows for 6, 7" in text
+    assert "pyDOE fails for 24, 25, 26, 27, 32" in text
+
+
+def test_recorded_numbers_belong_to_the_comparisons():
+    recorded = json.loads(tool.BEFORE.read_text(encoding="utf-8"))
+    assert set(recorded) == {name for _, name, _, _ in tool.cases()}
+    assert all(set(numbers) == set(tool.COLUMNS) for numbers in recorded.values())

@@ -1,0 +1,281 @@
+"""Compare the sensitivity estimators with SALib, and the designs with pyDOE, where the truth is known.
+
+    python -m validation.index_estimators [--seeds N] [--only sobol first delta pairs pawn morris designs] [--record]
+
+Each estimator runs on samples of many seeds. The table gives, for each function and estimator: the largest bias and
+root mean square error over the factors, the smallest and mean coverage of the 95 % intervals, the mean half width and
+the time of one analysis. `before` are the numbers of the previous estimators, read from
+`validation/index_estimators_before.json`; `--record` writes that file from the present estimators.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+import warnings
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pydoe
+from SALib.analyze import delta as salib_delta
+from SALib.analyze import hdmr, pawn, rbd_fast
+from SALib.analyze import morris as salib_morris
+from SALib.analyze import sobol as salib_sobol
+from SALib.sample import sobol as sobol_sample
+
+from trackroller.analysis import givendata, indices
+from trackroller.analysis.delta import delta
+from trackroller.analysis.pairs import pairs
+from trackroller.analysis.sobol import sobol
+from trackroller.study.design import arrays
+from trackroller.study.design.sampling import sample
+from validation.known_indices import (
+    Data,
+    category_rows,
+    exact_delta,
+    functions,
+    ishigami,
+    normal_pair,
+    problem,
+    random_rows,
+    saltelli_rows,
+)
+
+BEFORE = Path(__file__).with_name("index_estimators_before.json")
+RESAMPLES = 300
+DELTA_RESAMPLES = 10  # SALib's 100 would take ten times longer and change the mean little
+Estimate = tuple[np.ndarray, np.ndarray, np.ndarray]  # values, lower and upper bounds
+Estimator = Callable[[np.ndarray, np.ndarray, int], Estimate]  # quantiles, output, seed
+Numbers = dict[str, dict[str, dict[str, float]]]  # comparison -> estimator -> numbers
+
+
+def summary(found: list[Estimate], truth: np.ndarray, seconds: float) -> dict[str, float]:
+    """Summarise estimates of many seeds, each of shape (k,), against the truth (k,)."""
+    value, low, high = (
+        np.array([np.broadcast_to(one[i], truth.shape) for one in found], dtype=float) for i in range(3)
+    )
+    inside = ((low <= truth + 1e-9) & (truth - 1e-9 <= high)).mean(axis=0)
+    return {
+        "bias": float(np.abs(value.mean(axis=0) - truth).max()),
+        "rmse": float(np.sqrt(((value - truth) ** 2).mean(axis=0)).max()),
+        "least_coverage": float(inside.min()),
+        "coverage": float(inside.mean()),
+        "half_width": float(((high - low) / 2).mean()),
+        "ms": 1e3 * seconds / len(found),
+    }
+
+
+def measure(estimator: Estimator, data: Callable[[int], Data], truth: np.ndarray, seeds: int) -> dict[str, float]:
+    """Run an estimator on the data of the seeds 0 to `seeds` - 1."""
+    rows = [data(seed) for seed in range(seeds)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of SALib, on bins and resamples
+        estimator(*rows[0], 0)  # imports and caches
+        start = time.process_time()
+        found = [estimator(*rows[seed], seed) for seed in range(seeds)]
+    return summary(found, truth, time.process_time() - start)
+
+
+def our_sobol(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return first-order and total indices of a Saltelli design."""
+    found = sobol(y, unit.shape[1], True, seed, RESAMPLES)
+    value, low, high = (np.append(found["S1" + end], found["ST" + end]) for end in ("", "_low", "_high"))
+    return value, low, high
+
+
+def their_sobol(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return the same by SALib, whose intervals do not repeat with seed 0."""
+    found = salib_sobol.analyze(problem(unit.shape[1]), y, num_resamples=RESAMPLES, seed=seed + 1)
+    return _symmetric(np.append(found["S1"], found["ST"]), np.append(found["S1_conf"], found["ST_conf"]))
+
+
+def our_first(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return first-order indices from given data; whole numbers are categories."""
+    found = givendata.firsts(y, unit, (unit % 1 != 0).any(axis=0), seed)
+    return found["first"], found["first_low"], found["first_high"]
+
+
+def their_first(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return the same by SALib's RBD-FAST alone."""
+    found = rbd_fast.analyze(problem(unit.shape[1]), unit, y, num_resamples=givendata.FAST_RESAMPLES, seed=seed)
+    return _symmetric(np.array(found["S1"], float), np.array(found["S1_conf"], float))
+
+
+def our_delta(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return delta of one factor."""
+    value, low, high = (np.array([v]) for v in delta(y, unit[:, 0], seed=seed)[:3])
+    return value, low, high
+
+
+def their_delta(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return SALib's bias-reduced delta of the plain rows; its `analyze` also computes two further kinds."""
+    size = len(y)
+    classes = int(np.round(min(np.ceil(size ** (2 / (7 + np.tanh((1500 - size) / 500)))), 48)))
+    edges, grid = np.linspace(0, size, classes + 1), np.linspace(y.min(), y.max(), 100)
+    np.random.seed(seed + 1)  # noqa: NPY002 - SALib draws from NumPy's global generator
+    args = (y, grid, unit[:, 0], edges, DELTA_RESAMPLES, 0.95, size, "raw", None, "x", 10)
+    value, half, _ = salib_delta.bias_reduced_delta(*args)
+    return _symmetric(np.array([value]), np.array([half]))
+
+
+def our_pairs(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return the shares of the interactions of three factors."""
+    found = pairs(y, unit, np.ones(3, bool), seed)
+    value, low, high = (found["interaction_share" + end][np.triu_indices(3, 1)] for end in ("", "_low", "_high"))
+    return value, low, high
+
+
+def their_pairs(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return the same by SALib's RS-HDMR."""
+    found = hdmr.analyze(problem(3), unit, y, maxorder=2, K=10, R=max(300, len(y) // 2), seed=seed + 1)
+    return _symmetric(found["S"][3:6], found["S_conf"][3:6])
+
+
+def our_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return PAWN of the last factor, a category."""
+    kind = unit[:, -1].astype(int)
+    value = givendata.pawn(y, kind, noise=False)[0]
+    low, high = givendata.pawn_interval(y, kind, value, seed)
+    return np.array([value]), np.array([low]), np.array([high])
+
+
+def their_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
+    """Return the same by SALib, which has no interval."""
+    return _symmetric(pawn.analyze(problem(1), unit[:, -1:], y)["median"], np.array([np.nan]))
+
+
+ESTIMATORS: dict[str, dict[str, Estimator]] = {
+    "sobol": {"ours": our_sobol, "SALib sobol": their_sobol},
+    "first": {"ours": our_first, "SALib rbd_fast": their_first},
+    "delta": {"ours": our_delta, "SALib delta": their_delta},
+    "pairs": {"ours": our_pairs, "SALib hdmr": their_pairs},
+    "pawn": {"ours": our_pawn, "SALib pawn": their_pawn},
+}
+
+
+def cases() -> Iterator[tuple[str, str, Callable[[int], Data], np.ndarray]]:
+    """Yield the kind of index, the name, the data (from a seed) and the exact values of each comparison."""
+    for name, f in functions().items():
+        rows = partial(saltelli_rows, f, 128)
+        yield "sobol", f"Sobol indices, {name}, 128 blocks", rows, np.append(f.first, f.total)
+        for size in (256, 1024):
+            yield "first", f"first-order index, {name}, {size} rows", partial(random_rows, f, size), f.first
+    v = np.array([1 / 12, 2.0])
+    yield "first", "first-order index, number and category, 400 rows", partial(category_rows, 400), v / v.sum()
+    for size in (400, 2000):
+        for r, factor in ((0.0, 0), (0.1, 0), (0.3, 0), (0.7, 0), (0.7, 3), (0.95, 0), (0.99, 0)):
+            name = f"delta, normal pair r = {r}{', exponential' if factor else ''}, {size} rows"
+            yield "delta", name, partial(normal_pair, size, r, factor), np.array([exact_delta(r)])
+    f = functions()["Ishigami"]
+    for size in (400, 1024):
+        truth = np.array([0.0, f.total[2], 0.0])
+        yield "pairs", f"interactions, Ishigami, {size} rows", partial(random_rows, f, size), truth
+    yield "pawn", "PAWN of three categories, 1000 rows", partial(category_rows, 1000), np.array([1 / 3])
+
+
+def morris_facts(trajectories: int = 40, count: int = 10, lost: float = 0.05) -> list[str]:
+    """Compare elementary effects on complete data, and count the effects left when rows are lost."""
+    design = sample({f"x{i}": {"uniform": [0.0, 1.0]} for i in range(count)}, "morris", trajectories, 1)
+    table = np.stack(list(design.columns.values()), axis=1)
+    y = (table * np.arange(count)).sum(axis=1) + table[:, 0] * table[:, 1] ** 2
+    ours = indices.morris(y, design.unit, design.listed)
+    theirs = salib_morris.analyze(problem(count), table, y, seed=1)
+    apart = max(float(np.abs(ours[n] - np.asarray(theirs[n], float)).max()) for n in ("mu", "mu_star", "sigma"))
+    y[np.random.default_rng(0).random(len(y)) < lost] = np.nan
+    kept = int(indices.morris(y, design.unit, design.listed)["effects_used"].sum())
+    whole = int(np.isfinite(y.reshape(trajectories, -1)).all(axis=1).sum()) * count
+    nothing = np.ma.count(np.ma.masked_invalid(salib_morris.analyze(problem(count), table, y, seed=1)["mu_star"]))
+    return [
+        f"Morris: largest difference from SALib on complete data {apart:.1e}",
+        f"Morris: {lost:.0%} of the rows lost: {kept} of {trajectories * count} effects used, "
+        f"{whole} in complete trajectories; SALib with the NaN gives {nothing} indices",
+    ]
+
+
+def repeat_facts() -> list[str]:
+    """Return whether the interval of each Sobol estimator repeats with the seeds 0 and 1."""
+    y = ishigami(sobol_sample.sample(problem(3), 64, seed=1))
+    out = []
+    for seed in (0, 1):
+        theirs = [salib_sobol.analyze(problem(3), y, seed=seed)["S1_conf"] for _ in range(2)]
+        ours = [sobol(y, 3, True, seed)["S1_low"] for _ in range(2)]
+        same = ["the same" if np.array_equal(*two) else "another one" for two in (theirs, ours)]
+        out.append(f"Repeated with seed {seed}: SALib's interval is {same[0]}, ours is {same[1]}")
+    y[5] = np.nan
+    nothing = salib_sobol.analyze(problem(3), y, seed=1)["S1"]
+    return [*out, f"One NaN among the rows: SALib's first-order indices are {np.round(nothing, 3).tolist()}"]
+
+
+def design_facts() -> list[str]:
+    """Compare the classical designs with pyDOE's, row for row, for each number of factors."""
+    theirs: dict[str, tuple[Callable[[int], np.ndarray], range]] = {
+        "central_composite": (lambda k: pydoe.ccdesign(k, center=(0, 1), face="ccf"), range(1, 9)),
+        "box_behnken": (lambda k: pydoe.bbdesign(k, center=1), range(3, 8)),
+        "plackett_burman": (lambda k: np.concatenate([half := pydoe.pbdesign(k), -half]), range(1, 48)),
+    }
+    out = []
+    for name, (design, counts) in theirs.items():
+        kinds: dict[str, list[int]] = {}
+        for count in counts:
+            ours = getattr(arrays, name)(count)
+            try:
+                found = design(count)
+            except (ValueError, AssertionError, IndexError):
+                kinds.setdefault("pyDOE fails", []).append(count)
+                continue
+            if found.shape != ours.shape:
+                kind = "pyDOE has more rows" if len(found) > len(ours) else "pyDOE has fewer rows"
+            else:
+                kind = "the same rows" if np.array_equal(found, ours) else "as many rows, others or in another order"
+            kinds.setdefault(kind, []).append(count)
+        told = "; ".join(f"{kind} for {', '.join(map(str, found))}" for kind, found in kinds.items())
+        out.append(f"{name}, by number of factors: {told}")
+    return out
+
+
+def _symmetric(value: np.ndarray, half: np.ndarray) -> Estimate:
+    return value, value - half, value + half
+
+
+FACTS: dict[str, Callable[[], list[str]]] = {"morris": morris_facts, "repeat": repeat_facts, "designs": design_facts}
+COLUMNS = ("bias", "rmse", "least_coverage", "coverage", "half_width", "ms")
+
+
+def table(found: Numbers, before: dict[str, dict[str, float]]) -> str:
+    """Return the comparison as text, with the numbers of the previous estimators where there are any."""
+    lines = [f"{'':28}" + "".join(f"{name:>15}" for name in COLUMNS)]
+    for key, rows in found.items():
+        lines.append(key)
+        every = {"before": before[key], **rows} if key in before else rows
+        for who, numbers in every.items():
+            lines.append(f"  {who:26}" + "".join(f"{numbers[name]:15.3f}" for name in COLUMNS))
+    return "\n".join(lines)
+
+
+def main(argv: list[str] | None = None) -> None:
+    """Run the comparison and print it."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", type=int, default=200)
+    parser.add_argument("--only", nargs="+", choices=(*ESTIMATORS, *FACTS), default=(*ESTIMATORS, *FACTS))
+    parser.add_argument("--record", action="store_true", help="write the numbers of the present estimators")
+    args = parser.parse_args(argv)
+    found: Numbers = {}
+    for kind, name, data, truth in cases():
+        if kind in args.only:
+            seeds = args.seeds if kind in ("sobol", "first") else max(2, args.seeds // 2)  # the others are slow
+            found[name] = {who: measure(one, data, truth, seeds) for who, one in ESTIMATORS[kind].items()}
+    before = json.loads(BEFORE.read_text(encoding="utf-8")) if BEFORE.is_file() else {}
+    if found:
+        print(table(found, before))
+    for name in [name for name in FACTS if name in args.only]:
+        print("\n".join(FACTS[name]()))
+    if args.record:
+        numbers = {key: {n: round(v, 5) for n, v in rows["ours"].items()} for key, rows in found.items()}
+        BEFORE.write_text(json.dumps(before | numbers, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
