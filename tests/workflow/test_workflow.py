@@ -29,6 +29,12 @@ def test_study_to_report_then_nothing_and_a_changed_study_only_what_depends_on_i
     assert list((out / "figures").glob("*.svg")) and list((out / "figures").glob("*.png"))
     assert "Nothing to be done" in snakemake(place)
     time.sleep(1.1)
+    (out / "code" / "analysis.sensitivity.txt").write_text("the digest of other code\n")
+    assert (
+        {"sensitivity", "figures", "report"}
+        <= set(started(snakemake(place, "-n")))
+        <= {*("all", "study", "sensitivity", "figures", "report")}
+    )
     (place / "tiny.yaml").write_text((place / "tiny.yaml").read_text().replace("a small study", "other words"))
     again = started(snakemake(place, "-n"))
     assert "solve" not in again and "gather" in again and "report" in again
@@ -106,10 +112,11 @@ rule mine:
     ],
 )
 def test_another_workflow_imports_this_one(place, snakefile, config, own, words):
+    lay_study(place, size=12)
     (place / "config" / "config.yaml").write_text(own)
     (place / "Snakefile").write_text(FOREIGN.format(root=ROOT, snakefile=snakefile, config=config))
     told = started(snakemake(place, *words, snakefile=place / "Snakefile"))
-    assert told == ["mine", "roller_design", "roller_gather"] + 3 * ["roller_solve"]
+    assert told == ["mine", "roller_design", "roller_gather", "roller_solve"]
     assert (place / "mine.txt").read_text() == "3\n"
     with xr.open_dataset(place / "results" / "tiny" / "study.nc") as ds:
         assert int(ds["converged"].sum()) == 12
