@@ -5,7 +5,7 @@ import pytest
 
 import trackroller as tr
 from trackroller import parameters
-from trackroller.roller.dataset import VARIABLES
+from trackroller.roller.dataset import VARIABLES, validity_bit
 
 
 def test_single_case_has_no_case_dimension_and_a_batch_has():
@@ -28,9 +28,17 @@ def test_every_variable_is_labelled():
         assert ds[name].attrs["units"] and ds[name].attrs["long_name"]
         if name in VARIABLES:
             assert ds[name].dims == ("case", *VARIABLES[name].dims)
-    flags = {"regime", "converged", "validity", "contact_model_used"}
+    flags = {"regime", "converged", "validity", "validity_body", "contact_model_used"}
     assert {v.name for v in VARIABLES.values()} == set(ds.data_vars) - flags
     assert ds.regime.attrs["flag_meanings"].split() == list(parameters.REGIMES)
+
+
+def test_validity_flags_name_the_body():
+    """A plastic roller under load or guide exceeds its own strength, not that of the steel; both make the case's flags."""
+    ds = tr.solve([tr.Case(), tr.Case(roller_material="PA6"), tr.Case(guide_material="PA6")])
+    static, body = validity_bit("static"), ds.validity_body.transpose("case", "body").values
+    assert (body & static > 0).tolist() == [[False, False], [True, False], [False, True]]
+    np.testing.assert_array_equal(body[:, 0] | body[:, 1], ds.validity)
 
 
 def test_only_what_is_asked_for():

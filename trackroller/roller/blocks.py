@@ -18,6 +18,7 @@ class Block:
     bits: np.ndarray
     model: np.ndarray
     stopped: np.ndarray
+    bodies: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.regime)
@@ -43,7 +44,8 @@ def join(parts: Sequence[Block]) -> Block:
         np.concatenate([getattr(part, name) for part in parts])
         for name in ("regime", "converged", "bits", "model", "stopped")
     )
-    return Block(values, *plain)
+    flags = [part.bodies for part in parts if part.bodies is not None]
+    return Block(values, *plain, np.concatenate(flags) if len(flags) == len(parts) else None)
 
 
 def _joined(arrays: list[np.ndarray], lengths: list[int]) -> np.ndarray:

@@ -163,13 +163,14 @@ FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 
 
-def _flag(name: str, values: np.ndarray) -> tuple[str, np.ndarray, dict[str, Any]]:
-    if name == "validity":
+def _flag(name: str, values: np.ndarray) -> tuple[str | tuple[str, ...], np.ndarray, dict[str, Any]]:
+    if name in ("validity", "validity_body"):
+        of = " for a body" if name == "validity_body" else ""
         return (
-            "case",
+            ("case", "body")[: values.ndim],
             values.astype(np.int32),
             {
-                "long_name": "validity flags: where an assumption of the model does not hold",
+                "long_name": f"validity flags: where an assumption of the model does not hold{of}",
                 "units": "1",
                 "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
                 "flag_meanings": " ".join(VALIDITY_BITS),
@@ -199,7 +200,8 @@ def build(
     values : mapping of str to numpy.ndarray
         Arrays by their names in `VARIABLES`; the first axis is the case.
     flags : mapping of str to numpy.ndarray
-        Arrays of integers, shape (n,), by their names in `FLAGS`, and `validity` with the flags of `VALIDITY_BITS`.
+        Arrays of integers, shape (n,), by their names in `FLAGS`, and the flags of
+        `VALIDITY_BITS` as `validity`, shape (n,), and `validity_body`, shape (n, 2).
     attrs : mapping
         Global attributes.
     single : bool

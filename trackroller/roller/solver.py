@@ -255,6 +255,8 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }
     flags = {"regime": block.regime, "converged": block.converged, "validity": block.bits}
+    if block.bodies is not None:
+        flags["validity_body"] = block.bodies
     flags["contact_model_used"] = block.model
     if options.stop_if is not None:
         flags["stopped"] = block.stopped

@@ -20,6 +20,7 @@ BOOKKEEPING = {
     "converged",
     "residual",
     "validity",
+    "validity_body",
     "error_estimate",
     "life_error_estimate",
     "reason",

@@ -82,26 +82,27 @@ def validity(table: CaseTable, block: Block) -> None:
     bit = {name: 1 << i for i, name in enumerate(VALIDITY_BITS)}
     r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, r_g, alpha)
-    smallest = np.min(
-        np.abs([table.roller_profile_radius, r_g, r_a / np.cos(alpha), table.guide_curve_radius / np.cos(alpha)]),
-        axis=0,
-    )
+    radii = [[table.roller_profile_radius, r_a / np.cos(alpha)], [r_g, table.guide_curve_radius / np.cos(alpha)]]
+    smallest = np.min(np.abs(radii), axis=1).T
     a = np.max(v["semi_axis_lateral"], axis=1)
     size = np.maximum(a, np.max(v["semi_axis_rolling"], axis=1))
-    strength = np.minimum(table.roller.tensile_strength, table.guide.tensile_strength)
+    strength = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)
+    body = np.zeros((len(table), 2), dtype=np.int32)
 
     def warn(name: str, condition: np.ndarray) -> None:
-        block.bits |= np.where(condition, bit[name], 0).astype(np.int32)
+        """Set a flag where the condition holds: (n,) of the pair of bodies, or (n, 2) of each body."""
+        body[:] |= np.where(condition if condition.ndim == 2 else condition[:, None], bit[name], 0).astype(np.int32)
 
     with np.errstate(invalid="ignore"):
-        warn("half_space", size > 0.3 * smallest)
+        warn("half_space", size[:, None] > 0.3 * smallest)
         # ASSUME: the database holds no yield strength, so R_m stands for it
-        warn("yield", np.max(v["max_pressure"], axis=1) > 1.6 * strength)
+        warn("yield", np.max(v["max_pressure"], axis=1)[:, None] > 1.6 * strength)
         warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
         warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & split_pole(table, v))
         warn("large_slip", np.abs(v["slip"]) > 0.1)
         if "peak_stress" in v:
-            limits = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)[:, None, :]
-            knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)[:, None, :]
-            warn("static", np.any(v["peak_stress"] > limits, axis=(1, 2)))
-            warn("deep_life", np.any(v["peak_stress"] < knee, axis=(1, 2)))
+            knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)
+            warn("static", np.any(v["peak_stress"] > strength[:, None, :], axis=1))
+            warn("deep_life", np.any(v["peak_stress"] < knee[:, None, :], axis=1))
+    block.bodies = body | block.bits[:, None]  # flags of the equilibrium hold for the pair
+    block.bits |= body[:, 0] | body[:, 1]
