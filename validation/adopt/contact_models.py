@@ -1,4 +1,4 @@
-"""Takes the figures of results/contact_models over into docs/figures, for docs/contact-models.md and the README.
+"""Take the figures of results/contact_models over into docs/figures, for docs/contact-models.md and the README.
 
 `snakemake -s validation/Snakefile --cores all contact_models; python -m validation.adopt.contact_models [FOLDER]`
 """

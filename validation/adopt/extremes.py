@@ -1,4 +1,4 @@
-"""Takes results/extremes over into docs/extremes.md, its data and figures.
+"""Take results/extremes over into docs/extremes.md, its data and figures.
 
 `snakemake -s validation/Snakefile --cores all extremes; python -m validation.adopt.extremes`; with `--check` it only
 compares the page with the kept data and ends with 1 if the page is not up to date.

@@ -1,4 +1,4 @@
-"""Takes a measurement of `snakemake tradeoff` over: ladders into the package, page, data and figures into the docs.
+"""Take results/tradeoff over: ladders into the package, page, data and figures into the docs.
 
     python -m validation.adopt.tradeoff [results/tradeoff]
 
@@ -14,9 +14,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+from trackroller.roller import accuracy
 from validation.adopt.common import DATA, FOLDER, copy_figures
 
-LADDERS = FOLDER.parent / "trackroller" / "data" / "accuracy.json"
+LADDERS = Path(accuracy.__file__).with_name("accuracy.json")
 
 
 def adopt(results: Path) -> None:
@@ -25,7 +26,7 @@ def adopt(results: Path) -> None:
     if not all(summary["ladders"].values()):
         raise SystemExit("a ladder is empty: measure all contact models first")
     told = {
-        "made_by": "python -m validation.adopt.tradeoff, from snakemake tradeoff",
+        "made_by": "python -m validation.adopt.tradeoff, from `snakemake -s validation/Snakefile tradeoff`",
         "sample": summary["sample"],
         "ladders": summary["ladders"],
     }

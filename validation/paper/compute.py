@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 REFERENCE = Path(__file__).with_name("paper_reference.json")
-STORED = REFERENCE.with_name("paper_results.json")  # of the last `snakemake paper` taken over into the documentation
+STORED = REFERENCE.with_name("paper_results.json")  # the run that the documentation shows
 # the paper's figures: 7 frictionless and with friction, free; 6 and 8 to 11 with friction, driven
 SCENES = {
     "frictionless": {"friction_coefficient": 1e-4, "motor_force": 0.0},
