@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trackroller.errors import InputError, nearest
+from trackroller.numerics.numbers import read_number
 
 KNOTS = 160  # of an exponential law; the table is off by less than 1e-4 of its drop
 DEFAULTS: dict[str, dict[str, Any]] = {
@@ -101,10 +102,8 @@ def _refuse(part: str, value: object, allowed: str, remedy: str = "") -> None:
 
 def _number(part: str, value: object, allowed: str) -> float:
     try:
-        if isinstance(value, bool):
-            raise TypeError
-        return float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
+        return read_number(value)
+    except ValueError:
         _refuse(part, value, allowed)
         raise AssertionError from None
 
@@ -175,7 +174,7 @@ def table(speed, friction) -> FrictionLaw:
 
 def _list(part: str, values: object, words: str) -> np.ndarray:
     told = f"a list of numbers, {words}"
-    if not isinstance(values, (list, tuple, np.ndarray)) or np.size(values) == 0:
+    if not isinstance(values, (list, tuple, np.ndarray)) or len(values) == 0:
         _refuse(part, values, told)
     return np.array([_number(part, value, told) for value in values])  # type: ignore[attr-defined]
 
@@ -194,7 +193,7 @@ def at_rest(law: Any) -> float | None:
 def _fields(mapping: Mapping[str, Any]) -> dict[str, Any]:
     """The mapping with its defaults; unknown kinds, unknown and missing fields are refused."""
     kind = mapping.get("kind")
-    if kind not in DEFAULTS:
+    if not isinstance(kind, str) or kind not in DEFAULTS:
         close = nearest(str(kind), tuple(DEFAULTS))
         _refuse("kind", kind, f"one of {', '.join(DEFAULTS)}", f"Did you mean {close!r}?" if close else "")
     known = DEFAULTS[str(kind)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from trackroller.errors import InputError
+from trackroller.numerics.numbers import read_number
 
 
 @dataclass(frozen=True)
@@ -82,10 +83,8 @@ def check_number(prop: Property, value: Any, where: str) -> float:
     if prop.name.startswith("scatter"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."
     try:
-        if isinstance(value, bool) or value is None:
-            raise TypeError
-        number = float(value)  # accepts '5e6' too, which YAML 1.1 reads as a text
-    except (TypeError, ValueError, OverflowError):
+        number = read_number(value)
+    except ValueError:
         raise InputError(f"{where}.{prop.name}", value, prop.allowed(), remedy) from None
     if not prop.accepts(number):
         raise InputError(f"{where}.{prop.name}", value, prop.allowed(), remedy)

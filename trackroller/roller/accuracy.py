@@ -19,6 +19,7 @@ from trackroller.contact.settings import Accuracy
 from trackroller.contact.table import stored
 from trackroller.errors import InputError, unknown_name
 from trackroller.halfspace.peak import PeakSettings
+from trackroller.numerics.numbers import read_number
 from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
 
 FORCE_QUANTITIES = ("normal_force", "friction_force", "spin_moment")
@@ -148,10 +149,10 @@ def accuracy_settings(
         if accuracy in PRESETS:
             return PRESETS[accuracy]
         try:
-            accuracy = float(accuracy)
+            accuracy = read_number(accuracy)
         except ValueError:
             raise unknown_name("accuracy", str(accuracy), (*ACCURACIES, "a relative tolerance such as 1e-3")) from None
-    if isinstance(accuracy, bool) or not 0.0 < accuracy < 1.0:
+    if isinstance(accuracy, bool) or not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InputError("accuracy", accuracy, f"one of {', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
     return _for_tolerance(float(accuracy), contact_model, frozenset(outputs))
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from trackroller.contact import friction_laws, profiles
 from trackroller.errors import InputError
+from trackroller.numerics.numbers import read_number
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.point_files import read_points
 
@@ -57,11 +58,11 @@ def number(name: str, value: Any) -> float:
     parameter = PARAMETERS[name]
     if value is None and parameter.allow_missing:
         return math.nan
-    if isinstance(value, bool):
-        raise InputError(name, value, parameter.allowed())
+    if isinstance(value, float) and math.isnan(value):  # the caller knows whether it may be missing
+        return math.nan
     try:
-        return float(value)
-    except (TypeError, ValueError, OverflowError):
+        return read_number(value)
+    except ValueError:
         raise InputError(name, value, parameter.allowed()) from None
 
 

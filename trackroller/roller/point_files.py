@@ -47,7 +47,7 @@ def read_points(name: Any, field: str) -> list[list[float]]:
     ------
     InputError : a path that is not allowed, no such file, or a line without two numbers
     """
-    path = _found(name, field)
+    path = find_beside(name, field)
     rows: list[list[float]] = []
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -75,8 +75,21 @@ def read_points(name: Any, field: str) -> list[list[float]]:
     return rows
 
 
-def _found(name: Any, field: str) -> Path:
-    """Return the path of an existing file in one of the allowed folders."""
+def find_beside(name: Any, field: str) -> Path:
+    """Return the path of a file that a case, study or spectrum file names: the one rule for every such path.
+
+    Parameters
+    ----------
+    name : str
+        Path from the folder of the file that names it, or from the working directory.
+    field : str
+        The key that names it, for messages.
+
+    Raises
+    ------
+    InputError
+        If the path is absolute, holds '..', leads out of both folders, or names no file.
+    """
     folders = [folder for folder in (_beside.get(), Path.cwd()) if folder is not None]
     where = " or ".join(dict.fromkeys(f"below {folder.resolve()}" for folder in folders))
     remedy = f"Put the file {where} and give its path from there."

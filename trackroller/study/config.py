@@ -16,9 +16,9 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.options import check_pairs
-from trackroller.roller.point_files import files_beside
+from trackroller.roller.point_files import files_beside, find_beside
 from trackroller.roller.stop import parse_condition
-from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
+from trackroller.study.design.entries import OPTION_FACTORS, base_value, check_own_name, choice, factor
 from trackroller.study.design.factors import LISTS
 from trackroller.study.design.sampling import METHODS, current_name
 from trackroller.study.goals import Analysis, check, comparisons, directions
@@ -118,6 +118,14 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
         if option.kind == "condition" and checked is not None:
             parse_condition(checked)
         return checked
+
+    @field_validator("samples", "seed", "chunk_size", "levels", "grown_from", mode="before")
+    @classmethod
+    def _whole(cls, value: Any, info: Any) -> Any:
+        for one in value if isinstance(value, (list, tuple)) else (value,):
+            if isinstance(one, (bool, str)):
+                raise InputError(info.field_name, value, "a whole number", "Write digits without quotes.")
+        return value
 
     @field_validator("pareto", mode="before")
     @classmethod
@@ -252,7 +260,10 @@ def load_study(path: str | Path, database: Any = None) -> Study:
     """
     path = Path(path)
     with files_beside(path):
-        return parse_study(parse_mapping(read_text(path, "study file"), "study file"), path, database)
+        data = parse_mapping(read_text(path, "study file"), "study file")
+        if data.get("table") is not None:
+            find_beside(data["table"], "table")
+        return parse_study(data, path, database)
 
 
 def _check_options(study: Study) -> None:
@@ -288,6 +299,8 @@ def _cross_check(study: Study) -> None:
                     "a grid needs values, linspace or logspace",
                     "Or choose a sampled design: lhs, sobol, saltelli, morris.",
                 )
+    for name in study.factors:
+        check_own_name(name, f"factors.{name}")
     check(config, study.factors)
     _check_options(study)
     from trackroller.study.design.build import check_geometry, check_materials

@@ -16,7 +16,7 @@ from trackroller.numerics import expressions
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.fields import own_frictions
 from trackroller.roller.geometry import geometry_problem
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import label, parse
 from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
 from trackroller.study.goals import check_scatter
@@ -82,6 +82,7 @@ def _check_columns(study: Study, design: SampledDesign) -> None:
     used = {name for spec in study.factors.values() for name in expressions.names(spec.get("expression", "0"))}
     own = [name for name in design.columns if name not in known and name not in used]
     for name in own:
+        check_own_name(name, f"table column {name}")
         if nearest(name, known) or len(own) == len(design.columns):
             raise unknown_name("table column", name, known)
 

@@ -19,6 +19,7 @@ from SALib.sample import morris, sobol
 from scipy.stats import qmc
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design import arrays
 from trackroller.study.design.factors import TAIL, Factor, column
@@ -185,7 +186,7 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
     for j, name in enumerate(names):
         cells = [line[j] for line in lines]
         try:
-            columns[name] = column([float(cell) for cell in cells], numeric=True)
+            columns[name] = column([read_number(cell) for cell in cells], numeric=True)
         except ValueError:
             if name in PARAMETERS:
                 raise InputError("table", f"column {name}", PARAMETERS[name].allowed()) from None
@@ -214,8 +215,13 @@ def _table_lines(path: Any) -> tuple[list[str], list[list[str]]]:
     """Return the names of the columns and the lines of cells."""
     if path is None or not Path(path).is_file():
         raise InputError("table", path, "the path of a CSV file with one column a factor")
-    with open(path, newline="", encoding="utf-8-sig") as stream:
-        lines = [line for cells in csv.reader(stream) if any(line := [cell.strip() for cell in cells])]
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as stream:
+            lines = [line for cells in csv.reader(stream) if any(line := [cell.strip() for cell in cells])]
+    except UnicodeDecodeError as exc:
+        raise InputError("table", str(path), f"UTF-8 text (byte {exc.start} is not)", "Save it as UTF-8.") from None
+    except (csv.Error, OSError) as exc:
+        raise InputError("table", str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
     if len(lines) < 2:
         raise InputError("table", str(path), "a CSV with a line of names and at least one case")
     names = lines[0]

@@ -9,14 +9,45 @@ from typing import Any
 from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.numerics import expressions
+from trackroller.numerics.numbers import read_number
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS
+from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
 from trackroller.study.design.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 OPTION_FACTORS = {option.name: tuple(option.values) for option in OPTIONS.values() if option.factor}
+RESERVED = frozenset(  # names of the data set of a study that a factor of its own cannot have
+    (
+        *VARIABLES,
+        *FLAGS,
+        *(dim for v in VARIABLES.values() for dim in v.dims),
+        "component",
+        *CASE_FIELDS,
+        "case",
+        "validity",
+        "reason",
+        "study",
+        "design",
+        "chunk",
+        "level",
+    )
+)
 MAX_LEVELS = 1_000_000
 FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
+
+
+def check_own_name(name: str, where: str) -> None:
+    """Refuse a name of a study's own factor that the data set of results uses for something else.
+
+    Raises
+    ------
+    InputError
+        If `name` is no factor of the program and stands in the results.
+    """
+    if name not in FACTOR_NAMES and name in RESERVED:
+        allowed = "a name that the results do not use for something else"
+        raise InputError(where, name, allowed, f"Rename it, for example {name}_factor.")
 
 
 def choice(value: Any, where: str, options: tuple[str, ...]) -> str:
@@ -112,8 +143,8 @@ def _number(name: str, value: Any, where: str) -> Any:
     if isinstance(value, (list, dict, bool)) or value is None:
         raise InputError(where, value, parameter.allowed())
     try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
+        number = read_number(value)
+    except ValueError:
         remedy = ""
         if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
             remedy = f"Did you mean '{close}'?"
@@ -195,6 +226,6 @@ def _check_count(count: Any, where: str) -> None:
 
 def _to_float(value: Any) -> Any:
     try:
-        return float(value) if isinstance(value, str) else value
+        return read_number(value) if isinstance(value, str) else value
     except ValueError:
         return value

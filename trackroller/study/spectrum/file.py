@@ -26,9 +26,10 @@ import numpy as np
 from trackroller.damage.fatigue import PROBABILITIES
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text
+from trackroller.numerics.numbers import read_number
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
-from trackroller.roller.point_files import files_beside
+from trackroller.roller.point_files import files_beside, find_beside
 
 LOAD_FIELDS = (
     "radial_force",
@@ -84,7 +85,7 @@ class Spectrum:
                 raise unknown_name("spectrum: key", str(key), FILE_FIELDS)
         blocks = values.get("blocks")
         if isinstance(blocks, str):
-            blocks = _table((folder or Path()) / blocks)
+            blocks = _table(find_beside(blocks, "blocks"))
         if not isinstance(blocks, list) or not blocks:
             raise InputError(
                 "blocks",
@@ -153,10 +154,8 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
 def _number(name: str, value: Any, open_lower: bool = False) -> float:
     allowed = f"a finite number {'>' if open_lower else '>='} 0"
     try:
-        if isinstance(value, bool):
-            raise TypeError
-        number = float(value)
-    except (TypeError, ValueError, OverflowError):
+        number = read_number(value)
+    except ValueError:
         raise InputError(name, value, allowed) from None
     if not math.isfinite(number) or number < 0 or (open_lower and number == 0):
         raise InputError(name, value, allowed)
@@ -190,7 +189,10 @@ def _check_names(names: list[str]) -> None:
 def _table(path: Path) -> list[dict[str, Any]]:
     """Blocks of a CSV: a line of names, then one line a block; an empty cell is a value not given."""
     text = read_text(path, "blocks")
-    lines = [line for line in csv.reader(text.splitlines()) if any(cell.strip() for cell in line)]
+    try:
+        lines = [line for line in csv.reader(text.splitlines()) if any(cell.strip() for cell in line)]
+    except csv.Error as exc:
+        raise InputError("blocks", str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
     if len(lines) < 2:
         raise InputError("blocks", str(path), "a CSV with a line of names and at least one block")
     names = [name.strip() for name in lines[0]]

@@ -1,0 +1,35 @@
+"""Read a number that a user wrote, and nothing that only looks like one."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+_TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)
+MAX_LENGTH = 400  # characters of a number
+
+
+def read_number(value: Any) -> float:
+    """Return a number, or a text that is one in the digits 0 to 9, as a float.
+
+    Parameters
+    ----------
+    value : int, float or str
+        What the user wrote.
+
+    Raises
+    ------
+    ValueError
+        If it is no number: true and false, `3_0`, digits of other scripts, `nan`, and numbers too long to mean.
+    """
+    if isinstance(value, bool):
+        raise ValueError("true and false are no numbers")
+    if isinstance(value, str):
+        text = value.strip()
+        if len(text) > MAX_LENGTH or not _TEXT.fullmatch(text):
+            raise ValueError("not a number")
+        return float(text.lstrip(".") if text.lower().endswith("inf") and not text[0].isdigit() else text)
+    try:
+        return float(value)
+    except (TypeError, OverflowError) as exc:
+        raise ValueError(str(exc)) from None
