@@ -33,7 +33,6 @@ MANY_ARGUMENTS |= {
     )
 }
 LONG_FILES = {
-    "trackroller/contact/common.py",
     "trackroller/halfspace/potentials.py",
     "trackroller/report/findings.py",
     "trackroller/report/sentences.py",

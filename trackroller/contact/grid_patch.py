@@ -17,7 +17,7 @@ SLIGHT = 1e-3  # share of the largest pressure below which an element does not c
 class GridPatch(_Rows):
     """n patches on grids of N x M elements over the boxes that they fill; M is a multiple of N.
 
-    It offers everything that `common.Patch` asks for.
+    It offers everything that `protocol.Patch` asks for.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The contact models by name, each a value behind `common.ContactModel`.
+"""The contact models by name, each a value behind `protocol.ContactModel`.
 
 A model gives the contact law of the equilibrium, and the tractions of given patches on a grid.
 """
@@ -11,10 +11,11 @@ from collections.abc import Collection
 import numpy as np
 
 from trackroller.contact import fastsim, kalker, sliding
-from trackroller.contact.common import ContactModel, Elastic, Resultants, SurfaceTractions, Works
+from trackroller.contact.common import Elastic, Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.linear import LARGEST_RATIO
+from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Accuracy
 from trackroller.contact.table.model import TableModel
 from trackroller.errors import unknown_name

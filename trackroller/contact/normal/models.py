@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import kalker
-from trackroller.contact.common import ContactModel, Elastic, Patch, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.fastsim import FastsimSettings
 from trackroller.contact.fastsim import grid as fastsim_grid
 from trackroller.contact.friction_laws import FrictionLaw
@@ -21,6 +21,7 @@ from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import sliding as normal_sliding
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
+from trackroller.contact.protocol import ContactModel, Patch
 from trackroller.errors import InputError
 
 ROUNDS = 3  # solutions of the normal and of the tangential problem in turn, on unlike materials

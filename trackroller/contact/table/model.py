@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.contact.common import ContactModel, Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.protocol import ContactModel
 from trackroller.contact.table import spline as table
 
 

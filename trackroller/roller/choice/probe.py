@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.contact import table as tables
-from trackroller.contact.common import ContactModel, Elastic, Ellipse, Resultants, Slip, _Rows
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, _Rows
+from trackroller.contact.protocol import ContactModel
 from trackroller.contact.table.model import TableModel
 from trackroller.roller.equilibrium import ROLLING, Equilibrium, solve_equilibrium
 from trackroller.roller.stages import mechanics as stages

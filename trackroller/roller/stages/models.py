@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.contact.common import ContactModel, Elastic
+from trackroller.contact.common import Elastic
 from trackroller.contact.drawn_profiles import gap, treats_sides_alike
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.models import contact_model
 from trackroller.contact.normal.models import grid_model
 from trackroller.contact.normal.patches import Patches
+from trackroller.contact.protocol import ContactModel
 from trackroller.roller.case import CaseTable
 from trackroller.roller.options import Options
 

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trackroller.contact.common import ContactModel, Patch, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Resultants, Slip, SurfaceTractions
+from trackroller.contact.protocol import ContactModel, Patch
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import validity_bit

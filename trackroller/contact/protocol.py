@@ -1,0 +1,106 @@
+"""Interfaces of the contact room: what every contact patch offers and what every contact model offers.
+
+The solver uses these two interfaces only and never asks for the class of a patch or of a model. Arrays, units and the
+contact frame are those of `trackroller.contact.common`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
+
+
+class Patch(Protocol):
+    """Interface of n contact patches, elliptical (`common.Ellipse`) or not (`grid_patch.GridPatch`).
+
+    Arrays of shape (n,). `is_hertzian` is True for the ellipses of Hertz's theory, whose pressure follows from the
+    three numbers a, b and p_max, and False where the pressure was solved element by element.
+    """
+
+    is_hertzian: bool
+
+    @property
+    def semi_axis_lateral(self) -> np.ndarray:
+        """Semi-axis a along x_C, or half the width of the box around the patch [mm]."""
+
+    @property
+    def semi_axis_rolling(self) -> np.ndarray:
+        """Semi-axis b along y_C, or half the length of the box around the patch [mm]."""
+
+    @property
+    def max_pressure(self) -> np.ndarray:
+        """Largest pressure p_max [MPa]."""
+
+    @property
+    def normal_force(self) -> np.ndarray:
+        """Normal force F_N [N]."""
+
+    @property
+    def centre(self) -> np.ndarray:
+        """x_C of the middle of the ellipse or box [mm]."""
+
+    @property
+    def pressure_centre(self) -> np.ndarray:
+        """x_C of the resultant of the pressure [mm]."""
+
+    @property
+    def area(self) -> np.ndarray:
+        """Area of the patch [mm^2]."""
+
+    @property
+    def half_extents(self) -> tuple[np.ndarray, np.ndarray]:
+        """Half the width and half the length of the loaded region [mm]."""
+
+    @property
+    def reaches_edge(self) -> np.ndarray:
+        """True where the patch ends at an edge of the material."""
+
+    def take(self, index) -> Any:
+        """Return the patches `index` (integer or boolean array)."""
+
+
+class ContactModel:
+    """Interface of a contact model, with the capabilities that a model declares.
+
+    In all methods `patch` and `slip` are arrays over m patches, `friction` is the coefficient mu (m,) and `rows` (m,)
+    are the numbers of the rollers to which the patches belong. Contact 2 of a roller has a negative `slip.sine`.
+    """
+
+    name = ""  # as in `parameters.CONTACT_MODELS`
+    full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
+    knows_tractions = True  # forces and `surface` come from one solution; if False, `stick` gives the adhesion area
+    refines = False  # `surface` is exact for any number of elements of a refined patch
+    difference_step = 1e-3  # relative step of derivatives, above the noise of the model
+    residual = 1e-7  # relative residual of the equilibrium that the model can reach
+    peak_error = 0.0  # relative error of the peak stress that the model adds, per unit friction coefficient
+
+    def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+        """Return the resultants on the roller, arrays (m,); a cheaper estimate if `fine` is False."""
+        raise NotImplementedError
+
+    def surface(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> SurfaceTractions:
+        """Return the tractions on a grid over each patch."""
+        raise NotImplementedError
+
+    def power(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
+        """Return the dissipation per distance travelled and the part of it that the pressures supply, (m,)."""
+        raise NotImplementedError
+
+    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+        """Return the patches that carry the normal forces of `patch`, with their final pressures."""
+        return patch
+
+    def stick(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return the share of the adhesion area in each patch, (m,) [1]."""
+        return self.surface(patch, slip, friction, rows).stick_share
+
+    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
+        return np.zeros(n), np.ones(n, bool)
+
+    def used(self, n: int) -> np.ndarray:
+        """Return the name of the contact model that gave the forces of each of n rollers, object array (n,)."""
+        return np.full(n, self.name, dtype=object)
