@@ -1,7 +1,8 @@
-"""Preconditioner of the tangential problem: each column of elements along the rolling direction by itself.
+"""Preconditioner of the tangential problem: solve each column of elements along the rolling direction on its own.
 
-A column's own influence is exact, that of the other columns and the turning of the traction are left out, so both
-components of every column are a small dense system. With it GMRES needs about 10 products instead of 60 to 100.
+The influence of a column on itself is exact. The influence of other columns and the change of the traction's direction
+are left out, so each component of each column is a small dense system. GMRES then needs about 10 products instead of
+60 to 100.
 """
 
 from __future__ import annotations
@@ -14,10 +15,19 @@ from trackroller.contact.influence import FAST, LEADING_SHARE
 
 @njit(cache=True)
 def column_slips(own_column, hy):
-    """Slip at distance j (rows ahead, from -(ny-1)) of an element's unit traction in its own column.
+    """Return the slip that the unit traction of one element causes in its own column.
 
-    `own_column` (2, 2 ny - 1 + 3): displacements xx and yy over the distances -(ny-1)-1 .. ny-1+2.
-    Returns (2, 2, 2 ny - 1): component, upwind or blended difference of the leading element, distance.
+    Parameters
+    ----------
+    own_column : ndarray, shape (2, 2 ny + 2)
+        Displacements xx and yy at the distances -ny .. ny + 1 in rows.
+    hy : float
+        Length of an element in the rolling direction.
+
+    Returns
+    -------
+    ndarray, shape (2, 2, 2 ny - 1)
+        Axes: component; upwind difference or blended difference of the leading element; distance -(ny - 1) .. ny - 1.
     """
     count = own_column.shape[1] - 3
     out = np.empty((2, 2, count))
@@ -34,7 +44,7 @@ def column_slips(own_column, hy):
 
 @njit(cache=True)
 def column_ranges(bound):
-    """First row and number of rows with a bound > 0 in each column."""
+    """Return the first row with a bound > 0 in each column, and the number of rows up to the last one."""
     ny, nx = bound.shape
     first, count = np.zeros(nx, np.int64), np.zeros(nx, np.int64)
     for j in range(nx):
@@ -48,9 +58,10 @@ def column_ranges(bound):
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def _factorise(columns, n):
-    """L U in place of a matrix given by its columns, without exchange of rows: their own influence is the largest.
+    """Factorise a matrix into L U in place; `columns` holds the matrix by its columns.
 
-    Two columns at a time, for half the traffic; zero pivots are left out.
+    Rows are not exchanged, because an element's influence on itself is the largest of its row. The loop treats two
+    columns at a time, which halves the memory traffic. Zero pivots are left out.
     """
     for k in range(0, n, 2):
         first = columns[k]
@@ -77,7 +88,7 @@ def _factorise(columns, n):
 
 @njit(cache=True, nogil=True)
 def factorise(slips, derivative, rho, first, count, factors):
-    """Factors (nx, 2, ny, ny), columns first, of 1 - P' + rho P' B for each column and component, P' without its xy."""
+    """Factorise 1 - P' + rho P' B for each column and component into `factors` (nx, 2, ny, ny); P' without xy."""
     ny = derivative.shape[1]
     for j in range(count.size):
         n, top = count[j], first[j] + count[j] - 1
@@ -94,7 +105,7 @@ def factorise(slips, derivative, rho, first, count, factors):
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def apply_inverse(factors, first, count, field, out):
-    """`out` = the preconditioner applied to `field`, both (ny, nx, 2); elements without bound pass unchanged."""
+    """Apply the preconditioner to `field` and write `out`, both (ny, nx, 2); elements with bound 0 stay unchanged."""
     line = np.empty(field.shape[0])
     for j in range(count.size):
         n, start = count[j], first[j]

@@ -1,4 +1,4 @@
-"""The exact theory as the equilibrium calls it: many times for the same patches, each near the last."""
+"""The exact theory for the equilibrium, which solves the same patches many times with small changes of creepage."""
 
 from __future__ import annotations
 
@@ -12,24 +12,30 @@ from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.slip import Creepage
 
-NEAR = 0.3  # change of creepage over the slip in the patch
-# A patch under a law that falls too steeply has several states or none. After so many solutions that did not converge
-# the next ones are cut short: the balance cannot be met there, and its residual is told either way.
+NEAR = 0.3  # largest change of creepage, over the slip in the patch, for which the last solution is a good start
+# Under a friction law that falls too steeply, a patch has several solutions or none. After MISSES solutions without
+# convergence, the next ones stop after SHORT_STEPS steps: the equilibrium cannot be met there, and the residual is
+# reported in any case.
 MISSES, SHORT_STEPS = 3, 4
 
 
 class KalkerLaw:
-    """The contact model as the equilibrium calls it, starting each patch from its last solution.
+    """Exact theory that starts each patch from the patch's last solution.
 
     Parameters
     ----------
-    elastic : combined constants of n rollers, arrays (n,)
-    settings : discretisation of the fine law; the rough one is the table of the exact theory, beyond its reach half
-        the elements without extrapolation
-    travel_speed : of n rollers [mm/s], (n,); that of the settings if not given
+    elastic : Elastic
+        Combined constants of n rollers, arrays (n,).
+    settings : KalkerSettings, optional
+        Discretisation of the fine solution. The rough solution is read from the table of exact solutions. Outside the
+        range of the table it is computed with half the elements and without extrapolation.
+    travel_speed : array_like, shape (n,), optional
+        Travel speed of each roller [mm/s]; default: that of `settings`.
 
-    Contact 2 of a roller is told by its negative contact angle. Starts come from a patch's own past only, so that no
-    number depends on what else is solved.
+    Notes
+    -----
+    A negative sine of the contact angle marks contact 2 of a roller. A patch starts from its own earlier solutions
+    only, so the result of a case does not depend on the other cases.
     """
 
     def __init__(self, elastic: Elastic, settings: KalkerSettings | None = None, travel_speed=None) -> None:
@@ -41,7 +47,7 @@ class KalkerLaw:
         self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
 
     def __call__(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> Resultants:
-        """Resultants on the roller, shape (n,); rough ones where not `fine`: the table's, or of half the elements."""
+        """Return the resultants on the roller, (n,); if not `fine`, from the table or from half the elements."""
         if fine or not ellipse.is_hertzian or self.settings.profile_slip or not self._constant:
             return self.solve(ellipse, slip, friction, rows, fine).resultants
         creep = Creepage.of_slip(slip, self.settings.profile_slip)
@@ -57,7 +63,7 @@ class KalkerLaw:
         return self.settings.law is None or self.settings.law.is_constant
 
     def solve(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> PatchSolution:
-        """Solution of the patches of the rollers `rows`."""
+        """Return the solution of the patches of the rollers `rows`; see `solve_patch` for the units."""
         settings = self.settings
         if not fine:
             settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
@@ -97,20 +103,20 @@ class KalkerLaw:
         return solution
 
     def _near(self, keys, creep: Creepage, ellipse: Ellipse) -> np.ndarray:
-        """Is there a last solution whose creepage differs little from this one? Else the coarse grid starts better."""
+        """Return True where the last solution has nearly the same creepage; otherwise the coarse grid starts better."""
         last = np.array([self._starts[key][1] if key in self._starts else np.inf for key in keys], float)
         size = np.sqrt(ellipse.semi_axis_lateral * ellipse.semi_axis_rolling)
         with np.errstate(invalid="ignore"):
             return np.abs(creep.longitudinal - last) <= NEAR * (np.abs(creep.longitudinal) + np.abs(creep.spin) * size)
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
-        """Of the last fine solution of n rollers: the larger residual of both patches, and if both converged, (n,)."""
+        """Return the larger residual of both patches at the last fine solution, and if both converged, (n,)."""
         both = [[self._states.get((i, k), (0.0, True)) for k in (0, 1)] for i in range(n)]
         values = np.array(both, float).reshape(n, 2, 2)
         return values[:, :, 0].max(axis=1), values[:, :, 1].min(axis=1) > 0
 
     def kept(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray) -> PatchSolution:
-        """As `solve`, but a solution that the last such call found for the same patches is not found again."""
+        """Return the solution as `solve` does; reuse that of the last call of `kept` for the same patches."""
         content = np.stack(
             [
                 rows,

@@ -1,4 +1,4 @@
-"""Compiled loops of Newton's method for stick and slip, over fields (ny, nx, 2); see `kalker_newton`."""
+"""Compiled loops of Newton's method for adhesion and slip over fields (ny, nx, 2); see `kalker.newton`."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from trackroller.numerics.knots import polyline
 
 @njit(cache=True, nogil=True)
 def reals(field):
-    """View of a complex field (ny, nx) as (ny, nx, 2)."""
+    """Return a view of a complex field (ny, nx) as real numbers (ny, nx, 2)."""
     return field.view(np.float64).reshape(field.shape[0], field.shape[1], 2)
 
 
 @njit(cache=True, nogil=True)
 def row_means(field, first, count, out):
-    """Means of each element (weight 1/2) and its neighbours in the rolling direction (1/4), within the patch."""
+    """Average each element (weight 1/2) with its neighbours in the rolling direction (1/4) within the patch."""
     out[:] = field
     for j in range(count.size):
         low, high = first[j], first[j] + count[j] - 1
@@ -31,11 +31,11 @@ def row_means(field, first, count, out):
 
 @njit(cache=True, nogil=True)
 def law_of_slip(slip, height, scale, knots, factors, bound, slope):
-    """Traction bound height f(scale |s|) and its derivative with respect to |s|; f linear between its knots.
+    """Compute the traction bound, height f(scale |s|), and its derivative with respect to |s|.
 
-    `slip` are the `row_means`: friction that falls with the slip of its own element alone would let the slips of
-    neighbours swing against each other, to which the differences of displacements answer far more than to any
-    slip that elements resolve. The bound is of second order in the element size either way.
+    The friction law f is linear between its knots. `slip` is the result of `row_means`. If friction fell with the slip
+    of each single element, the slips of neighbouring elements would oscillate against each other, because differences
+    of displacements react most strongly to such oscillations. The average keeps the second order in the element size.
     """
     for i in range(height.shape[0]):
         for j in range(height.shape[1]):
@@ -46,7 +46,7 @@ def law_of_slip(slip, height, scale, knots, factors, bound, slope):
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def residual(traction, slip, bound, rho, out):
-    """F = tau - P_g(tau - rho s) into `out`; returns its largest component [scaled as tau] and its norm."""
+    """Write F = tau - P_g(tau - rho s) into `out`; return its largest component (scaled as tau) and its norm."""
     largest, square = 0.0, 0.0
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):
@@ -67,10 +67,10 @@ def residual(traction, slip, bound, rho, out):
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
-    """Derivative of P_g at z = tau - rho s: xx, xy, yy into `derivative` (3, ny, nx).
+    """Write the derivative of P_g at z = tau - rho s into `derivative` (3, ny, nx), order xx, xy, yy.
 
-    And n (dg/d|m|) m/|m| of sliding elements, n the direction of z and m the `row_means` of the slip, into `turn`
-    (4, ny, nx: xx, xy, yx, yy).
+    Write n (dg/d|m|) m/|m| of the sliding elements into `turn` (4, ny, nx), order xx, xy, yx, yy. Here n is the
+    direction of z, and m is the `row_means` of the slip.
     """
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):
@@ -97,7 +97,7 @@ def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
 
 @njit(cache=True, nogil=True)
 def find_slits(traction, slip, bound, rho, held):
-    """Sliding elements in gaps of one or two between sticking ones across the rolling direction; how many."""
+    """Mark sliding elements in lateral gaps of one or two between sticking ones in `held`; return their number."""
     ny, nx = bound.shape
     sticks = np.zeros(nx + 4, np.bool_)  # element j at j + 2
     count = 0
@@ -115,7 +115,7 @@ def find_slits(traction, slip, bound, rho, held):
 
 @njit(cache=True, nogil=True)
 def hold(held, slip, rho, value, derivative, turn):
-    """Residual and derivative of `held` elements as if they stuck."""
+    """Set the residual and the derivative of the `held` elements as if they stuck."""
     for i in range(held.shape[0]):
         for j in range(held.shape[1]):
             if held[i, j]:

@@ -1,9 +1,9 @@
-"""Stick and slip on a patch: a semi-smooth Newton method with Krylov steps.
+"""Solve for adhesion and slip on a patch by a semi-smooth Newton method with Krylov steps.
 
 For each element with traction bound g the law of dry friction is the fixed point tau = P_g(tau - rho s), where
-P_g shortens a vector to at most g and s = w + B tau is the slip (Alart & Curnier 1991). Newton's method is the
-active-set method of stick and slip elements; its linear systems are solved by GMRES with fast products B tau.
-Friction that depends on the slip makes g a function of s, whose derivative belongs to Newton's matrix.
+P_g shortens a vector to at most g and s = w + B tau is the slip (Alart & Curnier 1991). Newton's method is here the
+active-set method of sticking and sliding elements. GMRES with fast products B tau solves its linear systems. If
+friction depends on the slip, g is a function of s, and its derivative enters Newton's matrix.
 
 Fields are complex, x + iy, (ny, nx); compiled loops run over their real numbers, (ny, nx, 2).
 """
@@ -20,18 +20,31 @@ from trackroller.contact.kalker.columns import column_ranges, column_slips
 from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, multiply, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
 
-# Where many elements are wrongly thought to slide between sticking ones, Newton's method frees one a step, from the
-# leading edge on, by short steps. After SHORT steps of at most half length they are taken as sticking at once; the
-# residual may rise by RISE for it, and has TRIAL steps to come below where it was, or all is undone.
+# If many elements between sticking ones are wrongly taken as sliding, Newton's method corrects only one of them in each
+# step, from the leading edge on, with short steps. After SHORT steps of at most half length, a leap sets all of them to
+# stick at once. The residual may then rise by the factor RISE. If it does not fall below its former value within TRIAL
+# steps, the leap is undone.
 SHORT, RISE, TRIAL = 2, 8.0, 3
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A patch: influence functions, rigid slip (ny, nx), traction bounds at rest `height` and the friction law.
+    """Tangential problem of one patch.
 
-    scale : slip speed [mm/s] per scaled slip; knots, factors : friction over its value at rest by slip speed
-    rolling : B = -d/dy of the displacements; else the displacements themselves, for a shift from rest
+    Parameters
+    ----------
+    influence : Influence
+        Influence functions of the elements.
+    rigid : ndarray of complex, shape (ny, nx)
+        Scaled rigid slip, x + iy.
+    height : ndarray, shape (ny, nx)
+        Scaled traction bound at rest.
+    scale : float
+        Slip speed per scaled slip [mm/s].
+    knots, factors : ndarray, shape (m,)
+        Slip speeds [mm/s] and friction over its value at rest [1].
+    rolling : bool
+        True: B is -d/dy of the displacements (steady rolling). False: B gives the displacements (shift from rest).
     """
 
     influence: Influence
@@ -45,7 +58,7 @@ class Problem:
 
 @dataclass(frozen=True)
 class _State:
-    """Tractions with their slips, largest component and norm of the friction law's residual."""
+    """Tractions, slips, and the largest component and the norm of the friction law's residual."""
 
     traction: np.ndarray
     slip: np.ndarray
@@ -77,12 +90,12 @@ class _Newton:
         self.value, self.product = np.empty((ny, nx), complex), np.empty((ny, nx), complex)
 
     def multiply(self, field: np.ndarray) -> np.ndarray:
-        """B `field` into the kept array."""
+        """Return B `field` in an array that the next call overwrites."""
         multiply(field, self.operator, self.space.transforms, self.product)
         return self.product
 
     def state(self, traction: np.ndarray, slip: np.ndarray) -> _State:
-        """The state there; its residual and traction bounds are kept."""
+        """Return the state at a traction and slip, and keep its residual and its traction bounds."""
         p = self.problem
         if self.derivative.falls:
             row_means(reals(slip), self.columns.first, self.columns.count, self.mean)
@@ -90,11 +103,11 @@ class _Newton:
         return _State(traction, slip, *residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value)))
 
     def slits(self, at: _State) -> bool:
-        """Are there sliding elements in narrow gaps between sticking ones? They are kept."""
+        """Mark sliding elements in narrow gaps between sticking ones; return True if there are any."""
         return find_slits(reals(at.traction), reals(at.slip), self.bound, self.rho, self.held) > 0
 
     def step(self, at: _State, tolerance: float, leap: bool) -> tuple[np.ndarray, np.ndarray, int]:
-        """Newton's step, the slips it causes and the products it took; with the kept slits sticking if a leap."""
+        """Return Newton's step, the slip that it causes and its number of products; a leap makes the slits stick."""
         slip, d = reals(at.slip), self.derivative
         jacobian(reals(at.traction), slip, self.mean, self.bound, self.slope, self.rho, d.projection, d.turn)
         if leap:
@@ -104,7 +117,7 @@ class _Newton:
         return step, self.multiply(step), products + 1
 
     def search(self, at: _State, step: np.ndarray, change: np.ndarray) -> tuple[_State, float]:
-        """The state along a step, halved until the residual's norm falls, but at most four times; its length."""
+        """Halve the step until the residual's norm falls, at most four times; return the state and the step length."""
         length = 1.0
         while True:
             new = self.state(at.traction - length * step, at.slip - length * change)
@@ -114,18 +127,32 @@ class _Newton:
 
 
 def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int, krylov: int):
-    """Tractions (ny, nx) of the friction law, from the start `traction`.
+    """Solve the friction law on one patch, starting from `traction`.
 
-    Returns tractions, slips, traction bounds at these slips, the residual (largest component of the law's residual),
-    Newton steps and products.
+    Parameters
+    ----------
+    problem : Problem
+        The patch.
+    traction : ndarray of complex, shape (ny, nx)
+        Start, scaled.
+    tolerance : float
+        Largest residual of the friction law in any element, scaled as the traction.
+    limit, krylov : int
+        Limits of Newton steps and of the Krylov space of one step.
+
+    Returns
+    -------
+    tuple
+        Tractions, slips and traction bounds at these slips, (ny, nx) each; largest component of the residual; number
+        of Newton steps; number of products.
     """
     work = _Newton(problem, krylov)
     at = work.state(traction, problem.rigid + work.multiply(traction))
-    before, left, short = at, 0, 0  # the state before a leap, and steps that are left to better it
+    before, left, short = at, 0, 0  # state before a leap; steps left to improve on it
     products, iteration = 1, 0
     while at.largest > tolerance and iteration < limit:
         iteration += 1
-        # far from the solution the step is rough anyway; near it the last ones converge quadratically
+        # Far from the solution a rough linear solution is enough. Near it, a precise one gives quadratic convergence.
         inner = max(0.3 * tolerance / at.largest, min(0.03, 0.1 * at.largest))
         leap = short >= SHORT and not left and work.slits(at)
         step, change, used = work.step(at, inner, leap)

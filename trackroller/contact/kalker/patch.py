@@ -1,8 +1,9 @@
-"""Steady rolling with friction on the elastic half-space: Kalker's exact theory for Hertzian patches.
+"""Kalker's exact theory of steady rolling with friction on the elastic half-space.
 
-Slip per travel speed s = w - du/dy, where w is the rigid slip of the roller against the guide and u the
-displacement difference (Kalker 1990, sections 1.3 and 4.2); the material enters at y = +b. Dry friction in each
-element: |tau| <= mu p, and tau = -mu p s/|s| where it slides. Rectangular elements with constant traction.
+The slip per travel speed is s = w - du/dy. Here w is the rigid slip of the roller against the guide, and u is the
+displacement difference (Kalker 1990, sections 1.3 and 4.2). The material enters the patch at y = +b. Dry friction holds
+in each element: |tau| <= mu p, and tau = -mu p s/|s| where the element slides. Elements are rectangles of constant
+traction.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from trackroller.contact.kalker.cells import cells, unit_cells
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.slip import Creepage
 
-BLOCK = 256  # patches whose tractions are held at once
+BLOCK = 256  # patches that are solved together, to limit the memory for their tractions
 
 
 def _level(
@@ -83,9 +84,9 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         value = value + weights * (value - coarse.forces)
         pressed = pressed + weight * (pressed - coarse.pressure_work)
         work = work + weight * (work - coarse.work - coarse.pressure_work)
-        # observed to be of second order wherever a part of the patch slides
+        # The observed convergence is of second order wherever a part of the patch slides.
         energy = extrapolation.energy(energy, coarse.energy_residual)
-    # the moment is about the nominal point, wherever the patch lies
+    # The moment counts about the nominal point of contact, and the patch may lie beside this point.
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
         Resultants(value[:, 0], value[:, 1], value[:, 2]),
@@ -105,7 +106,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
 
 
 def _full(value, n: int) -> np.ndarray:
-    # always a fresh array of one layout: compiled code is made anew for every other kind
+    # Numba compiles again for each memory layout, so every array gets the same one.
     return np.array(np.broadcast_to(np.asarray(value, float), n), order="C")
 
 
@@ -128,21 +129,38 @@ def solve_patch(
     start: np.ndarray | None = None,
     travel_speed=None,
 ) -> PatchSolution:
-    """Tractions, slip and resultants of n patches in steady rolling with friction.
+    """Solve for tractions, slip and resultants of n patches in steady rolling with friction.
 
     Parameters
     ----------
-    ellipse : Hertzian patches, arrays (n,), or a `GridPatch` with `elements` that divide its own
-    creep : rigid slip, arrays (n,)
-    friction : friction coefficient mu [1], (n,) or scalar; 0 gives no traction
-    elastic : combined constants, arrays (n,) or scalars
-    settings : `KalkerSettings`
-    start : tractions (n, 2, elements, elements) over mu p_max of a nearby solution, to start from
-    travel_speed : [mm/s], (n,) or scalar, for friction laws; that of the settings if not given
+    ellipse : Ellipse or GridPatch
+        Patches, arrays (n,) [mm], [MPa]. The number of elements of a `GridPatch` is a multiple of `settings.elements`.
+    creep : Creepage
+        Rigid slip, arrays (n,) [1], [1/mm].
+    friction : array_like, shape (n,) or ()
+        Friction coefficient mu [1]; 0 gives no traction.
+    elastic : Elastic
+        Combined constants, arrays (n,) or scalars [MPa], [1].
+    settings : KalkerSettings, optional
+        Discretisation and stopping rule.
+    start : ndarray, shape (n, 2, elements, elements), optional
+        Tractions of a similar solution over mu p_max [1], from which the iteration starts.
+    travel_speed : array_like, shape (n,) or (), optional
+        Travel speed for friction laws [mm/s]; default: that of the settings.
 
-    Validity: Hertzian pressure, half-spaces, steady rolling, dry friction. Observed error of the resultants with 40
-    elements and extrapolation (tests/test_kalker.py): about 0.2 % in sliding, 1 to 2 % in full stick, and up to 1 % of
-    mu F_N where a slender patch (b/a below 0.1) holds the spin pole.
+    Returns
+    -------
+    PatchSolution
+        Solution of the n patches. `converged` is False where the residual exceeds its tolerance.
+
+    Notes
+    -----
+    Valid for half-spaces, steady rolling and dry friction. The validation pages state the error of the resultants. It
+    is largest in full adhesion and in slender patches (b/a below 0.1) that contain the spin pole.
+
+    References
+    ----------
+    Kalker, J. J. (1990). Three-Dimensional Elastic Bodies in Rolling Contact. Kluwer.
     """
     settings = settings or KalkerSettings()
     ellipse, friction, elastic = _prepared(ellipse, friction, elastic)
@@ -165,13 +183,13 @@ def solve_patch(
 def resultants(
     ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
 ) -> Resultants:
-    """Friction forces [N] and spin moment [N mm] on the roller, shape (n,); see `solve_patch`."""
+    """Return the friction forces [N] and the spin moment [N mm] on the roller, (n,); see `solve_patch`."""
     settings = settings or KalkerSettings()
     return solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings).resultants
 
 
 def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> SurfaceTractions:
-    """Fields at the element centres of a solution; the pressure is that of Hertz there, 0 outside the ellipse."""
+    """Return the fields of a solution at the element centres, with Hertz's pressure, which is 0 outside the ellipse."""
     n, _, ny, nx = solution.traction.shape
     ellipse, friction, _ = _prepared(ellipse, friction, Elastic(np.ones(n), np.ones(n), np.ones(n)))
     if not ellipse.is_hertzian:
@@ -180,7 +198,7 @@ def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> Surface
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - v[:, None] ** 2, 0.0))
     inside = root > 0
     height, _ = unit_cells(ny, nx)
-    # element means at the rim become values at the centre: the same share of the bound
+    # The solution holds element means. The share of the traction bound at the centre is taken as that of the mean.
     share = np.where(inside, root / np.where(height > 0, height, 1.0), 0.0)
     scale = (friction * ellipse.max_pressure)[:, None, None]
     shear = solution.traction * share * scale[:, None]
@@ -199,7 +217,7 @@ def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> Surface
 
 
 def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> SurfaceTractions:
-    """As `to_tractions`: means over the elements of a patch whose pressure was solved, perhaps with more of them."""
+    """Return the fields on a patch whose pressure was solved; the grid of the pressure may be finer."""
     elements = solution.traction.shape[-1]
     share = solution.traction / np.maximum(patch.heights(elements), 1e-300)[:, None]  # over mu p
     share, slip, stick = (
@@ -216,7 +234,7 @@ def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> Surf
 def tractions(
     ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
 ) -> SurfaceTractions:
-    """Pressure, shear, slip and stick on the grid of elements; see `solve_patch`."""
+    """Return pressure, shear, slip and adhesion on the grid of elements; see `solve_patch`."""
     settings = settings or KalkerSettings()
     solution = solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings)
     return to_tractions(ellipse, friction, solution)

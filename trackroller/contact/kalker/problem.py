@@ -1,4 +1,4 @@
-"""What a rolling problem is given and what its solution tells, for patches in a batch."""
+"""Settings and solution of the rolling contact problem for a batch of patches."""
 
 from __future__ import annotations
 
@@ -12,15 +12,24 @@ from trackroller.contact.friction_laws import FrictionLaw
 
 @dataclass(frozen=True)
 class KalkerSettings:
-    """Discretisation and stopping rule.
+    """Discretisation and stopping rule of the exact theory.
 
-    elements : number along each axis of the ellipse (even if `extrapolate`)
-    tolerance : largest residual of the friction law in any element, over mu p_max; the stopping rule
-    steps, krylov : limits of Newton steps and of the Krylov space of one step
-    extrapolate : resultants from grids with `elements` and half of them
-    profile_slip : rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x
-    law : friction as a function of the slip speed; constant if not given
-    travel_speed : of the roller [mm/s], which turns slips into speeds, where a call does not give its own
+    Parameters
+    ----------
+    elements : int
+        Number along each axis of the patch; even if `extrapolate` is True.
+    tolerance : float
+        Largest residual of the friction law in any element over mu p_max [1], at which the iteration stops.
+    steps, krylov : int
+        Limits of Newton steps and of the Krylov space of one step.
+    extrapolate : bool
+        Extrapolate the resultants from two grids, with `elements` and with half of them.
+    profile_slip : bool
+        Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x.
+    law : FrictionLaw, optional
+        Friction as a function of the slip speed; default: constant friction.
+    travel_speed : float
+        Travel speed of the roller [mm/s], which turns slips into speeds; used where a call gives no travel speed.
     """
 
     elements: int = 40
@@ -35,19 +44,33 @@ class KalkerSettings:
 
 @dataclass(frozen=True)
 class PatchSolution:
-    """Solution of n patches.
+    """Solution of n patches by the exact theory.
 
-    resultants : on the roller, extrapolated if asked for
-    traction, slip : (n, 2, ny, nx), x_C and y_C part, over mu p_max and per travel speed
-    stick : (n, ny, nx) where the surfaces stick
-    stick_fraction : share of the ellipse that sticks [-]
-    friction_energy_per_distance : dissipation per travelled distance [N], from the works of the rigid slip and of
-        the pressures
-    pressure_work : what the pressures add where the tractions move unlike surfaces along the normal [N]
-    energy_residual : relative difference of the dissipation summed over the elements and that work, extrapolated
-    error_estimate : (n, 3) |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation
-    residual, steps, products : largest residual of the friction law over mu p_max, Newton steps, products
-    converged : residual within its tolerance
+    Attributes
+    ----------
+    resultants : Resultants
+        Forces on the roller [N] and spin moment [N mm], (n,); extrapolated if the settings say so.
+    traction, slip : ndarray, shape (n, 2, ny, nx)
+        Lateral and rolling component: traction over mu p_max [1], slip per travel speed [1].
+    stick : ndarray of bool, shape (n, ny, nx)
+        True where the surfaces stick.
+    stick_fraction : ndarray, shape (n,)
+        Share of the adhesion area in the patch [1].
+    friction_energy_per_distance : ndarray, shape (n,)
+        Dissipation per travelled distance [N], from the work of the rigid slip and of the pressures.
+    pressure_work : ndarray, shape (n,)
+        Part of the dissipation that the pressures supply [N]. Tractions on unlike materials move the surfaces along
+        the normal, and the pressures do work on this motion.
+    energy_residual : ndarray, shape (n,)
+        Dissipation summed over the elements, over `friction_energy_per_distance`, less 1 [1]; extrapolated.
+    error_estimate : ndarray, shape (n, 3)
+        |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation.
+    residual : ndarray, shape (n,)
+        Largest residual of the friction law over mu p_max [1].
+    steps, products : ndarray of int, shape (n,)
+        Newton steps, and products with the influence matrix.
+    converged : ndarray of bool, shape (n,)
+        True where the residual is within its tolerance.
     """
 
     resultants: Resultants
@@ -66,16 +89,16 @@ class PatchSolution:
 
     @property
     def works(self) -> Works:
-        """Dissipation summed over the elements, and what the pressures put in."""
+        """Return the dissipation summed over the elements and the part that the pressures supply, (n,) [N]."""
         return Works(self.friction_energy_per_distance * (1.0 + self.energy_residual), self.pressure_work)
 
     def take(self, index) -> PatchSolution:
-        """The patches `index`."""
+        """Return the solution of the patches `index` (integer or boolean array)."""
         return PatchSolution(self.resultants.take(index), *(getattr(self, f.name)[index] for f in fields(self)[1:]))
 
 
 def joined(parts: list[PatchSolution], order) -> PatchSolution:
-    """Solutions one after the other, then taken in an order."""
+    """Join solutions one after the other and return their patches in the order `order` (indices)."""
     rest = [np.concatenate([getattr(p, f.name) for p in parts])[order] for f in fields(PatchSolution)[1:]]
     forces = [np.concatenate([getattr(p.resultants, f.name) for p in parts])[order] for f in fields(Resultants)]
     return PatchSolution(Resultants(*forces), *rest)

@@ -1,7 +1,8 @@
-"""A patch at rest that is shifted: the static counterpart of rolling, on the same elements and by the same method.
+"""Shift of a patch from rest, solved on the same elements and by the same method as steady rolling.
 
-The slip of one step from the unloaded state is S = W + u, W the rigid shift of the roller against the guide and u the
-displacement difference; dry friction holds for S (Kalker 1990, section 4.1; Cattaneo 1938, Mindlin 1949).
+The slip of one step from the state without shear is S = W + u. Here W is the rigid shift of the roller against the
+guide, and u is the displacement difference. Dry friction holds for S (Kalker 1990, section 4.1; Cattaneo 1938;
+Mindlin 1949). Exact solutions are known for this problem, so it verifies the elements and the iteration.
 """
 
 from __future__ import annotations
@@ -19,9 +20,20 @@ from trackroller.contact.kalker.newton import Problem, newton
 
 @dataclass(frozen=True)
 class ShiftSolution:
-    """resultants [N, N, N mm], arrays (1,); traction over mu p_max (2, ny, nx); stick (ny, nx) and its area share [-];
+    """Solution of one shifted patch.
 
-    residual : of the friction law, over mu p_max
+    Attributes
+    ----------
+    resultants : Resultants
+        Forces on the roller [N] and moment [N mm], arrays (1,).
+    traction : ndarray, shape (2, ny, nx)
+        Lateral and rolling component over mu p_max [1].
+    stick : ndarray of bool, shape (ny, nx)
+        True where the surfaces stick.
+    stick_fraction : float
+        Share of the adhesion area in the patch [1].
+    residual : float
+        Largest residual of the friction law over mu p_max [1].
     """
 
     resultants: Resultants
@@ -41,18 +53,33 @@ def shift_patch(
     elements: int = 40,
     tolerance: float = 1e-8,
 ) -> ShiftSolution:
-    """Tractions of one patch after a rigid shift from rest under constant pressure.
+    """Solve for the tractions of one patch after a rigid shift from rest under constant pressure.
 
     Parameters
     ----------
-    ellipse : one Hertzian patch, arrays (1,)
-    lateral, rolling : shift of the roller against the guide along x_C and y_C [mm]
-    turn : rotation about z_C [rad]
-    friction : coefficient mu > 0 [-]
-    elastic : combined constants, scalars or arrays (1,); the coupling constant is not used
-    elements : along each axis
+    ellipse : Ellipse
+        One Hertzian patch, arrays (1,).
+    lateral, rolling : float
+        Shift of the roller against the guide along x_C and y_C [mm].
+    turn : float
+        Rotation of the roller about z_C [rad].
+    friction : float
+        Friction coefficient mu > 0 [1].
+    elastic : Elastic
+        Combined constants, scalars or arrays (1,). The coupling constant is not used.
+    elements : int
+        Elements along each axis.
+    tolerance : float
+        Largest residual of the friction law over mu p_max [1].
 
-    Validity: one step from rest, so that slip never turns on its way; exact for shifts in one direction.
+    Returns
+    -------
+    ShiftSolution
+        Tractions, adhesion area and resultants.
+
+    Notes
+    -----
+    The shift is one step, so the slip keeps its direction during the shift. This is exact for shifts in one direction.
     """
     a, b, p, g, nu = (
         float(np.ravel(v)[0])
