@@ -77,7 +77,8 @@ def integrals(
     Relative error against adaptive quadrature: about 1e-4 at 6 nodes and 1e-8 at 16 (tests/contact/test_sliding.py);
     1e-5 at 12 nodes under smooth laws and laws with few knots (tests/contact/test_friction_laws.py).
     """
-    n, law = np.size(friction), law or constant()
+    n = np.size(friction)
+    law = constant() if law is None or law.is_constant else law  # a fall to 1.0 is none
     given = (
         ellipse.semi_axis_lateral,
         ellipse.semi_axis_rolling,
