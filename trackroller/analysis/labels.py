@@ -149,7 +149,8 @@ def labelled(design: SampledDesign, columns: list[Output], results: list[Estimat
     if "factor_2" in out.dims:
         out = out.assign_coords(factor_2=out["factor"].values)
     if at.size and "sample_size" in out.dims:
-        out = out.assign_coords(sample_size=at)
+        words = {"long_name": "rows of the design, from the first on", "units": "1"}
+        out = out.assign_coords(sample_size=("sample_size", at, words))
     return out
 
 

@@ -23,6 +23,7 @@ from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import material_deviations, robustness
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
+from trackroller.roller.dataset import file_attributes
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.files import write_whole
 from trackroller.study.outputs import case_dims, outputs, read_study, regimes, settings
@@ -174,12 +175,17 @@ def analyse_dataset(
     share = np.array([one.used / max(1, one.total) for one in found])
     unit = _UNIT.get(design.method, "rows")
     notes = [note(column, one.used, one.total, unit) for column, one in zip(columns, found, strict=True)]
-    result["used_share"] = ("output", share)
-    result["reliable"] = ("output", (share >= RELIABLE).astype(np.int8))
-    result["note"] = ("output", np.array(notes, dtype=object))
-    result["take_times"] = ("output", np.array([_times(one.estimates, design.method) for one in found]))
+    times = np.array([_times(one.estimates, design.method) for one in found])
+    for name, values, words in (
+        ("used_share", share, "share of the rows that the indices use"),
+        ("reliable", (share >= RELIABLE).astype(np.int8), f"1 where at least {RELIABLE:g} of the rows are used"),
+        ("note", np.array(notes, dtype=object), "rows left out, and why"),
+        ("take_times", times, "factor on the samples after which the intervals are narrow enough"),
+    ):
+        result[name] = ("output", values, {"long_name": words} | ({} if values.dtype == object else {"units": "1"}))
     regime = regimes(ds, case_dims(ds, design.factors))
     result.attrs = {
+        **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
         "method": design.method,
         "needs": NEEDS[design.method],
         "rows": design.size,

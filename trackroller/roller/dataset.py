@@ -8,10 +8,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller import __version__
 from trackroller.parameters import CONTACT_MODELS, REGIMES
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+def file_attributes(title: str, action: str) -> dict[str, str]:
+    """Return the global attributes that every netCDF file has, for its title and what the program did.
+
+    The history has no time, so that equal results are equal files.
+    """
+    return {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "history": f"{action} by trackroller {__version__}",
+        "source": f"trackroller {__version__}",
+    }
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
-from trackroller import __version__
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
@@ -20,7 +19,7 @@ from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
 from trackroller.roller.choice.choose import choose, in_doubt
-from trackroller.roller.dataset import VARIABLES, build
+from trackroller.roller.dataset import VARIABLES, build, file_attributes
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use
 from trackroller.roller.record import with_inputs
@@ -248,8 +247,7 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         or (name == "error_estimate" and "peak_stress" in options.outputs)
     ]
     attrs: dict[str, Any] = {
-        "Conventions": "CF-1.11",
-        "source": f"trackroller {__version__}",
+        **file_attributes("Forces, stresses and life of track rollers", "solved"),
         **options.attributes(),
         "life_conventions": stages_case.LIFE_CONVENTIONS,
         "sign_conventions": stages.SIGN_CONVENTIONS,

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import netCDF4
 import numpy as np
 
-from trackroller import __version__
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.dataset import file_attributes
 from trackroller.study import provenance, store
 from trackroller.study.design.build import build, case_columns
 from trackroller.study.design.factors import Factor, label
@@ -42,8 +42,7 @@ def write_design(study: Study, folder: StudyFolder, design: xr.Dataset | None = 
     """Write `design.nc`, the cases of a study, and record its checksum."""
     design = build(study) if design is None else design
     title = f"Cases of the parameter study '{study.name}' of locating-bearing track rollers"
-    history = f"drawn by trackroller {__version__}"
-    described = design.assign_attrs({"Conventions": "CF-1.11", "title": title, "history": history} | design.attrs)
+    described = design.assign_attrs(file_attributes(title, "drawn") | design.attrs)
     encoding = {str(name): {"_FillValue": None} for name in described.variables}
     write_whole(folder.design, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
     record_checksum(folder, folder.design)

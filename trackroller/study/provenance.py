@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller import __version__
+from trackroller.roller.dataset import file_attributes
 from trackroller.study.sources import solver_digest
 
 if TYPE_CHECKING:
@@ -62,11 +63,8 @@ def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
     """Return the global attributes of the gathered file for a study that uses the named materials."""
     config = study.config
     told = {
-        "Conventions": "CF-1.11",
-        "title": f"Parameter study '{study.name}' of locating-bearing track rollers",
-        "history": f"solved and gathered by trackroller {__version__}",  # without a time: equal studies, equal files
-        "comment": config.description,
-        "source": f"trackroller {__version__}",
+        **file_attributes(f"Parameter study '{study.name}' of locating-bearing track rollers", "solved and gathered"),
+        "comment": config.description or f"Results of the study {study.name}",
         "study": study.merged(),
         "study_name": study.name,
         "design": config.design,

@@ -19,15 +19,12 @@ import numpy as np
 import xarray as xr
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.dataset import file_attributes
 from trackroller.study.files import StudyFolder, write_whole
 from trackroller.study.identity import chunk_name
 
 FAILED = 3  # value of `regime`
-_ATTRIBUTES = {
-    "Conventions": "CF-1.11",
-    "title": "Solved cases of a parameter study, one row a case",
-    "history": "written by trackroller",
-}
+_ATTRIBUTES = file_attributes("Solved cases of a parameter study, one row a case", "solved")
 
 
 class CorruptFile(Exception):
