@@ -13,10 +13,9 @@ import pytest
 import xarray as xr
 from synthetic_results import PAIRS, grid_study, sampled_study
 
-from trackroller.report import write_report
 from trackroller.report.figures.study import draw_all
 from trackroller.report.findings import occurrence
-from trackroller.report.page import contents, models_used
+from trackroller.report.page import contents, models_used, write_report
 from trackroller.report.tables import regime_table, validity_table
 from trackroller.report.view import StudyView
 

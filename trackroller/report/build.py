@@ -83,6 +83,9 @@ def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> 
 
 
 def has_analysis(sensitivity_nc: str | Path) -> bool:
-    """Return whether the file holds an analysis; otherwise it only says why there is none."""
+    """Return whether the file holds an analysis.
+
+    Otherwise it only says why there is none.
+    """
     with netCDF4.Dataset(sensitivity_nc) as file:
         return len(file.variables) > 0

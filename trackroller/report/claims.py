@@ -99,7 +99,9 @@ def difference_of_medians(first: np.ndarray, second: np.ndarray) -> tuple[float,
 
 
 def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> tuple[np.ndarray, list[Any]]:
-    """Return log10 of an output over (combination of all other factors, level of the factor), NaN where missing.
+    """Return the logarithm of an output for every pair of designs.
+
+    Rows are combinations of all other factors, columns levels of the factor; NaN where a design is missing.
 
     Parameters
     ----------
@@ -123,7 +125,9 @@ def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> 
 
 
 def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:
-    """Compare designs that differ in one factor only, between its ends or between its most different levels.
+    """Compare designs that differ in one factor only.
+
+    Numbers are compared between their ends, categories between their most different levels.
 
     Unlimited values count with their direction. None if there are too few pairs, or if the designs do not pair.
     """
@@ -152,7 +156,7 @@ def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -
 
 
 def class_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:
-    """Compare the third of the designs with the lowest value of a factor to the third with the highest.
+    """Compare the lowest third of the designs along a factor to the highest third.
 
     Designs with the same value of the factor stay in one class. None if a class has fewer than 20 rows.
     """
@@ -168,7 +172,10 @@ def class_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) ->
 
 
 def comparable(view: StudyView, effect: Effect, column: str, rows: np.ndarray) -> bool:
-    """Say whether both classes of a factor hold each category's levels, so that pooling cannot turn the effect."""
+    """Say whether pooling over the categories can be checked.
+
+    It can where both classes of the factor hold rows enough at most levels of each category.
+    """
     x, values = (view.table[c].to_numpy(dtype=float) for c in (effect.factor, column))
     good = rows & np.isfinite(values) & (values > 0)
     ends = good & (x <= effect.low), good & (x >= effect.high)
@@ -193,7 +200,10 @@ def _between(factor: str, x: np.ndarray, logs: np.ndarray, ends: tuple[float, fl
 
 
 def strata(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> list[tuple[str, Any, Effect]]:
-    """Return the same effect within each level of each category: (category, level, effect), where rows suffice."""
+    """Return the same effect within each level of each category.
+
+    Levels with too few rows are left out.
+    """
     found = []
     for category in view.categories:
         if category == effect.factor:
@@ -227,7 +237,7 @@ def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) ->
 
 
 def leading_factor(view: StudyView, column: str, rows: np.ndarray) -> str:
-    """Return the factor whose levels (or thirds) explain most of the variance of the logarithm of an output."""
+    """Return the factor that explains most of the variance of the logarithm of an output."""
     values = view.column(column)
     good = rows & np.isfinite(values) & (values > 0)
     logs = np.log10(values[good])

@@ -59,8 +59,11 @@ def _value(sens: xr.Dataset, key: str, value: float, low: float, high: float) ->
     return plus_minus(max(0.0, value) if key in ("first", "S1", "ST", "main_share") else value, low, high)
 
 
-def measure_table(sens: xr.Dataset, output: str) -> Table:
-    """List every index of every factor on one output; those within chance stand in brackets."""
+def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Table:
+    """List every index of every factor on one output.
+
+    Those within chance stand in brackets.
+    """
     part = sens.sel(output=output)
     shown = [(key, text) for key, text in MEASURES if key in part and np.isfinite(part[key]).any()]
     rows = []
@@ -74,11 +77,15 @@ def measure_table(sens: xr.Dataset, output: str) -> Table:
         rows.append([capital(rank.name), *cells])
     title = f"All measures: {words.of_output(sens, output)}"
     note = f"{HALF}; in brackets: no more than a factor without influence reaches by chance."
+    note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
     return Table(f"measures_{output}", title, ["Factor", *(text for _, text in shown)], rows, note)
 
 
 def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
-    """List every analysed output of an inner/outer design by design point: lives first, the best point on top."""
+    """List every analysed output of an inner/outer design by design point.
+
+    Lives first, the best point on top.
+    """
     names = [str(n) for n in table["output"].values]
     asked = settings(read_study(table)).get("outputs")
     lives = [n for n in names if "life" in n and np.isfinite(table["percentile_value"].sel(output=n)).any()]

@@ -22,7 +22,9 @@ from trackroller.report.view import StudyView
 
 
 def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.ndarray) -> Sentence | None:
-    """Say how an output changes with a factor: between paired designs if there are any, else between classes.
+    """Say how an output changes with a factor.
+
+    Between paired designs if there are any, else between classes.
 
     Parameters
     ----------

@@ -77,7 +77,9 @@ def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> str:
 
 
 def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:
-    """Say how often an event occurs and at which levels of the factors; None if it never does.
+    """Say how often an event occurs and at which levels of the factors.
+
+    None if it never does.
 
     Parameters
     ----------
@@ -199,7 +201,7 @@ def _shared(view: StudyView, name: str, hit: np.ndarray, among: np.ndarray, ends
 
 
 def best_design(view: StudyView) -> Sentence | None:
-    """Name the valid design with the longest life, and what the same roller lasts under the worst conditions."""
+    """Name the valid design with the longest life, and its life under the worst conditions."""
     found = ranked(view)
     if found is None or not view.life:
         return None

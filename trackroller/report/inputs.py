@@ -19,7 +19,7 @@ Table = list[dict[str, Any]]
 
 
 def factor_table(view: StudyView) -> Table:
-    """One row a factor: name, symbol, unit, values as set in the study file (or as found), number of them."""
+    """List the factors: name, symbol, unit, values as set or as found, number of levels."""
     given = view.study.get("factors", {})
     rows = []
     for name in view.factors:
@@ -88,7 +88,7 @@ def _spec(spec: Any) -> str:
 
 
 def base_table(view: StudyView, ds: xr.Dataset) -> Table:
-    """Parameters that are the same in all cases."""
+    """List the parameters that are the same in all cases."""
     rows = []
     for name, p in PARAMETERS.items():
         if name in view.factors or name in view.table:
@@ -117,7 +117,7 @@ def base_table(view: StudyView, ds: xr.Dataset) -> Table:
 
 
 def materials_table(attrs: Mapping[str, Any]) -> Table:
-    """Values of the materials used, as stored in the result."""
+    """List the values of the materials used, as stored in the result."""
     try:
         stored = json.loads(str(attrs.get("materials", "{}")))
     except ValueError:
@@ -143,7 +143,10 @@ def _is_number(value: Any) -> bool:
 
 
 def record_table(attrs: Mapping[str, Any], skip: set[str]) -> list[tuple[str, str]]:
-    """What is needed to repeat the result: every other global attribute, mappings taken apart."""
+    """List the global attributes that are needed to repeat the result.
+
+    Mappings are taken apart.
+    """
     rows = []
     for key, value in attrs.items():
         if key in skip:

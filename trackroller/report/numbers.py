@@ -38,7 +38,9 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float) -> str:
-    """Write a number in at most four figures, thousands as 12,300 and large ones as 1.2·10⁹.
+    """Write a number in at most four figures.
+
+    Thousands are written as 12,300 and large numbers as 1.2·10⁹.
 
     Parameters
     ----------
@@ -68,7 +70,10 @@ def rounded(value: float, figures: int = 3) -> str:
 
 
 def near(value: float, span: float) -> str:
-    """Write a value rounded to a thousandth of the span it lies in: 0.2498 of 0.25 is 0.25, 1.6e-5 of 0.25 is 0."""
+    """Write a value rounded to a thousandth of the span it lies in.
+
+    In a span of 0.25 the value 0.2498 becomes 0.25, and 1.6e-5 becomes 0.
+    """
     if not (span > 0 and math.isfinite(span) and math.isfinite(value)):
         return number(value)
     digits = 2 - math.floor(math.log10(span))
@@ -86,7 +91,9 @@ def count(cases: int) -> str:
 
 
 def share(part: int, whole: int) -> str:
-    """Write a share of cases in percent; only all of them are 100 % and only none of them are 0 %.
+    """Write a share of cases in percent.
+
+    Only all of them are 100 % and only none of them are 0 %.
 
     Parameters
     ----------
@@ -106,7 +113,9 @@ def share(part: int, whole: int) -> str:
 
 
 def plus_minus(value: float, low: float, high: float) -> str:
-    """Write a value with half its 95 % interval, both to two figures of the half: '2.04 ± 0.19'.
+    """Write a value with half its 95 % interval, as '2.04 ± 0.19'.
+
+    Both numbers have two figures of the half.
 
     An interval that is not known (NaN) is left out. Every ± of the report is this half width.
     """
@@ -199,14 +208,17 @@ def level_text(name: str, value: Any, unit: bool = True) -> str:
 
 
 def setting(name: str, value: Any) -> str:
-    """Write a factor and its level: 'friction coefficient 0.3', 'driven −30 N', 'straight'."""
+    """Write a factor and its level, as 'friction coefficient 0.3' or 'driven −30 N'."""
     text = level_text(name, value)
     spoken = name in SPOKEN and not (name == "guide_curve_radius" and text == "straight")
     return text if spoken else "straight track" if name == "guide_curve_radius" else f"{long_name(name)} {text}"
 
 
 def short_levels(names: Sequence[str]) -> list[str]:
-    """Drop from names of pairs the part that all of them share: only what differs tells them apart."""
+    """Drop from names of pairs the part that all of them share.
+
+    Only what differs tells them apart.
+    """
     parts = [_parts(name) for name in names]
     if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
         for keep in (0, 1):

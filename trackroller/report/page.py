@@ -127,7 +127,10 @@ def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
 
 
 def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of the sections: decide, why, where the study ends, contact models."""
+    """Return the tables of the sections.
+
+    Decide, why, where the study ends, contact models.
+    """
     error = friction_error(view)
     decide: list[Table | None] = [best_table(view)]
     front = _guarded(lambda: None, study_pareto, ds)
@@ -140,7 +143,7 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
         decide += _guarded(list, robust_tables, sens, error)
         said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
-        why = [index_table(sens, error), *(measure_table(sens, name) for name in _leading_outputs(sens))]
+        why = [index_table(sens, error), *(measure_table(sens, name, error) for name in _leading_outputs(sens))]
     compared = []
     if models.get("rows"):
         rows = [[name, *cells] for name, cells in models["rows"]]
@@ -228,7 +231,10 @@ def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:
 
 
 def figures(folder: Path) -> list[dict[str, str]]:
-    """Return the figures of a folder as data URIs with captions: those of its indices first, then other files."""
+    """Return the figures of a folder as data URIs with captions.
+
+    Those of its indices first, then other files.
+    """
     listed: list[dict[str, Any]] = []
     for index in sorted(folder.glob("index*.json"), key=lambda p: (p.name != "index.json", p.name)):
         try:

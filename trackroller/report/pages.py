@@ -71,7 +71,10 @@ def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
 
 
 def inline(text: str) -> str:
-    """Text with `code`, *emphasis* and links as HTML, all else escaped; of links only their words stay."""
+    """Text with `code`, *emphasis* and links as HTML, all else escaped.
+
+    Of links only their words stay.
+    """
     text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", html.escape(text, quote=False))
     text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
     return re.sub(r"\*([^*]+)\*", r"<em>\1</em>", text)

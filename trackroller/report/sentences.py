@@ -49,7 +49,10 @@ def robust_design(sens: xr.Dataset) -> bool:
 
 
 def headline(sens: xr.Dataset) -> str:
-    """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
+    """Name the index that ranks the factors of a design.
+
+    ST, mu_star, main_share, effect or first.
+    """
     found = HEADLINES.get(str(sens.attrs.get("method")), "effect" if "effect" in sens else "first")
     if found == "main_share" and not np.isfinite(sens[found]).any() and "first" in sens:
         return "first"
@@ -57,7 +60,10 @@ def headline(sens: xr.Dataset) -> str:
 
 
 def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
-    """Sort the factors of an output by falling size of an index (default: the headline); NaN ones are left out."""
+    """Sort the factors of an output by falling size of an index (default.
+
+    The headline); NaN ones are left out.
+    """
     index = index or headline(sens)
     part = sens.sel(output=output)
     nan = np.full(part.sizes["factor"], np.nan)
@@ -85,7 +91,10 @@ def _times(sens: xr.Dataset, output: str) -> float:
 
 
 def caveat(sens: xr.Dataset, output: str) -> str:
-    """State rows that were left out, and convergence; empty if there is nothing to state."""
+    """State rows that were left out, and convergence.
+
+    Empty if there is nothing to state.
+    """
     part, said, more = sens.sel(output=output), [], _times(sens, output)
     if "reliable" in part and not int(part["reliable"]):
         used = float(part["used_share"]) * 100

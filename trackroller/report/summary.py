@@ -18,7 +18,9 @@ LIVES = ("roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_l
 
 
 def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> list[Line]:
-    """Return the lines of *In short*: a head and its sentences; a line without content is left out.
+    """Return the lines of *In short*: a head and its sentences.
+
+    A line without content is left out.
 
     Parameters
     ----------

@@ -61,14 +61,20 @@ def heading(name: str) -> str:
 
 
 def factor_cell(name: str, value: Any) -> Any:
-    """Return a level for a table: a plain number under a head with its unit, else words."""
+    """Return a level for a table.
+
+    A plain number under a head with its unit, else words.
+    """
     if isinstance(value, str) or name in _SPOKEN or not np.isfinite(value):
         return level_text(name, value)
     return float(value)
 
 
 def best_table(view: StudyView) -> Table | None:
-    """List the best valid designs as columns; where a design differs from the best one, the cell stands out."""
+    """List the best valid designs as columns.
+
+    Where a design differs from the best one, the cell stands out.
+    """
     found = ranked(view)
     if found is None:
         return None

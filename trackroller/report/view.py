@@ -99,7 +99,10 @@ class StudyView:
         return cls(table, tuple(names), base, grid, dict(ds.attrs), _flags(ds), derived, read_study(ds))
 
     def levels(self, name: str, table: pd.DataFrame | None = None) -> list[Any]:
-        """List the values of a factor: numbers in rising order, categories in order of appearance."""
+        """List the values of a factor.
+
+        Numbers in rising order, categories in order of appearance.
+        """
         values = (self.table if table is None else table)[name].dropna().unique()
         return sorted(values.tolist()) if self.numeric(name) else list(values)
 
@@ -108,7 +111,10 @@ class StudyView:
         return bool(np.issubdtype(np.asarray(self.table[name]).dtype, np.number))
 
     def ordered(self, name: str) -> bool:
-        """Say whether more of the factor means something: not for materials, nor for a few drives or curves."""
+        """Say whether more of the factor means something.
+
+        Not for materials, nor for a few drives or curves.
+        """
         spoken = name in SPOKEN and len(self.levels(name)) <= MOST_LEVELS
         return self.numeric(name) and not spoken and bool(np.isfinite(self.table[name]).all())
 
@@ -118,11 +124,16 @@ class StudyView:
         return tuple(f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= MOST_LEVELS)
 
     def behind(self, name: str) -> tuple[str, ...]:
-        """Name the factors that decide a parameter: itself, those it is computed from, or none when it is fixed."""
+        """Name the factors that decide a parameter.
+
+        Itself, those it is computed from, or none when it is fixed.
+        """
         return (name,) if name in self.factors else self.derived.get(name, ())
 
     def held_level(self, name: str) -> Any:
-        """Return the level at which a factor is held: that of the base case, else the middle one.
+        """Return the level at which a factor is held.
+
+        That of the base case, else the middle one.
 
         Of contact models it is the most exact one.
         """
@@ -163,13 +174,19 @@ class StudyView:
         return self.column("regime", 0.0)
 
     def column(self, name: str, missing: float = np.nan) -> np.ndarray:
-        """Return a column of numbers, shape (n,); `missing` everywhere if the study has no such result."""
+        """Return a column of numbers, shape (n,).
+
+        `missing` everywhere if the study has no such result.
+        """
         if name not in self.table:
             return np.full(len(self.table), missing)
         return self.table[name].to_numpy(dtype=float)
 
     def flagged(self, flag: str, body: str = "") -> np.ndarray:
-        """Mark the cases that carry a validity flag, shape (n,); with `body` only where it holds for this body."""
+        """Mark the cases that carry a validity flag, shape (n,).
+
+        With `body` only where it holds for this body.
+        """
         name = f"validity_{body}" if body else "validity"
         bit = 1 << list(self.flags).index(flag)
         return (np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0

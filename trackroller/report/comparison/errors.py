@@ -16,7 +16,7 @@ GOOD = 0.05  # what counts as good enough
 
 @dataclass(frozen=True)
 class Quantity:
-    """Something compared: how its error is measured, its name in a sentence and on an axis, and the results needed."""
+    """A compared quantity: how its error is measured, its names, and the results it needs."""
 
     name: str
     words: str
@@ -86,7 +86,7 @@ QUANTITIES = (
 
 
 def errors(paired: xr.Dataset) -> xr.Dataset:
-    """Error of each cheaper model against the reference where both roll, over `contact_model` and `design`.
+    """Return the error of each cheaper model against the reference where both roll.
 
     `paired`: dataset of `trackroller.report.comparison.pairs`. Errors are relative; those of friction forces are over
     mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick is a difference of shares. The larger error

@@ -21,7 +21,7 @@ DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # what `pairs` computes fr
 
 @dataclass(frozen=True)
 class Groups:
-    """Groups along `name`: place on the axis and text of each, its ends, and the group of every design (n,)."""
+    """Groups along `name`: places, texts and ends, and the group of every design (n,)."""
 
     name: str
     at: np.ndarray
@@ -41,7 +41,10 @@ def factors(ds: xr.Dataset) -> list[str]:
 
 
 def groups(ds: xr.Dataset, name: str, most: int = MAX_LEVELS, bins: int = BINS) -> Groups:
-    """Groups of the designs along a factor, or `spin`, in rising order; categories in order of appearance."""
+    """Sort the designs into groups along a factor, or along `spin`.
+
+    Groups of numbers rise; categories stand in order of appearance.
+    """
     values = ds[name].values
     if values.dtype.kind != "f" or not np.isfinite(values).all():
         return _categories(name, values)
@@ -81,7 +84,10 @@ def span(name: str, low: float, high: float) -> str:
 
 
 def drives(ds: xr.Dataset) -> Groups:
-    """Free rolling, driven and braked designs; each level by itself where there are no more than three."""
+    """Sort the designs into free rolling, driven and braked ones.
+
+    Each level is a group by itself where there are three or fewer.
+    """
     force = ds[DRIVE].values
     if np.unique(force).size <= 3:
         return groups(ds, DRIVE)

@@ -18,6 +18,7 @@ from trackroller.report.comparison.groups import (
     span,
     spin_is_its_own,
 )
+from trackroller.report.comparison.pairs import pairs
 from trackroller.report.numbers import capital, rounded
 
 if TYPE_CHECKING:
@@ -38,7 +39,9 @@ def percent(value: float) -> str:
 
 
 def sentences(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """What the comparison of the models says: of all designs, by friction and drive, by spin and by each other factor.
+    """Return all sentences on the comparison of the contact models.
+
+    They speak of all designs, then of friction and drive, of spin and of each other factor.
 
     Parameters
     ----------
@@ -49,7 +52,7 @@ def sentences(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
 
 
 def overview(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """How it was compared, and one sentence a model; or why nothing can be said."""
+    """Say how the models were compared, and how good each model is; or why nothing can be said."""
     reference, number = paired.attrs["reference"], paired.sizes["design"]
     left = f" {paired.attrs['left']} cases have no partner and are left out." if paired.attrs["left"] else ""
     if not number:
@@ -68,7 +71,7 @@ def overview(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
 
 
 def short(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """One short sentence a model: the shares of the designs within the tolerance."""
+    """Say in one sentence a model which share of the designs is within the tolerance."""
     if not paired.sizes["design"]:
         return overview(paired, tolerance)
     found, said = errors(paired), []
@@ -84,7 +87,7 @@ def short(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
 
 
 def details(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """By friction and drive, by spin, and by every other factor."""
+    """Return the sentences by friction and drive, by spin, and by every other factor."""
     if not paired.sizes["design"]:
         return []
     found, said = errors(paired), []
@@ -98,9 +101,10 @@ def details(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
 
 
 def report_section(ds: xr.Dataset) -> dict[str, Any]:
-    """Contents of the report's section: sentences and a table of errors; {} where there are no models to compare."""
-    from trackroller.report.comparison.pairs import pairs
+    """Return sentences and a table of errors for the report.
 
+    The mapping is empty where there are no models to compare.
+    """
     paired = pairs(ds)
     if paired is None:
         return {}
@@ -190,7 +194,9 @@ def _range(e: np.ndarray) -> str:
 
 
 def levels_kept(along: Groups, e: np.ndarray, tolerance: float = GOOD) -> str:
-    """The levels at which nine of ten designs keep the tolerance, in words; '' if none does.
+    """Name the levels at which nine of ten designs keep the tolerance.
+
+    The text is empty if there is no such level.
 
     Parameters
     ----------
@@ -264,7 +270,7 @@ def _by_spin(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
 
 
 def telling_factors(one: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """Factors, besides friction and drive, over whose levels the share of good designs changes, most of all first."""
+    """Name the factors over whose levels the share of good designs changes, most of all first."""
     varied, found = factors(one), []
     names = [n for n in varied if n not in (FRICTION, DRIVE) and n in one.coords]
     names += ["lean"] if {FRICTION, "contact_angle"} <= set(varied) else []
@@ -304,7 +310,10 @@ def _share(e: np.ndarray, tolerance: float) -> float:
 
 
 def gap(found: xr.Dataset, name: str) -> str:
-    """How far each cheaper model is off in one quantity, for the figures: '' where nothing was measured."""
+    """Say how far each cheaper model is off in one quantity, for a figure.
+
+    The text is empty where nothing was measured.
+    """
     said = []
     for model in map(str, found["contact_model"].values):
         e = _rolling(found[name].sel(contact_model=model)) if name in found else np.empty(0)

@@ -7,12 +7,15 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.lines import Line2D
 
 from trackroller.report.comparison.errors import GOOD, errors, measured
 from trackroller.report.comparison.groups import spin_is_its_own
+from trackroller.report.comparison.pairs import pairs
 from trackroller.report.comparison.words import gap, percent, short, telling_factors
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
+from trackroller.report.figures.panels import capped, mark_unlimited
 from trackroller.report.numbers import capital, with_unit
 
 if TYPE_CHECKING:
@@ -26,14 +29,14 @@ COLUMNS = 3  # factors that the errors are drawn over
 
 
 def drawers(ds: xr.Dataset) -> list[partial[Drawn]]:
-    """What draws each figure of the comparison; none for a study with one contact model or without pairs of cases.
+    """Return the functions that draw the figures of the comparison.
+
+    There are none for a study with one contact model or without pairs of cases.
 
     Parameters
     ----------
     ds : gathered study
     """
-    from trackroller.report.comparison.pairs import pairs
-
     paired = pairs(ds)
     if paired is None or not paired.sizes["design"] or not measured(found := errors(paired)):
         return []
@@ -59,7 +62,7 @@ def _told(shown: Frame, words: str) -> str:
 
 
 def error(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Error of the cheaper models against the reference over friction and drive, all other factors as they vary."""
+    """Draw the error of the cheaper models against the reference over friction and drive."""
     shown = frame(paired)
     wanted = [q for q in measured(found) if q.name not in ("friction_energy_balance", "stick")]
     if shown is None or not wanted:
@@ -93,7 +96,7 @@ def _error_row(shown: Frame, row: Any, found: xr.Dataset, name: str) -> dict[str
 
 
 def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Error of normal force, friction and peak stress over spin and over the factors that matter most besides."""
+    """Draw the error of normal force, friction and peak stress over the factors that matter most."""
     names = ["spin"] if spin_is_its_own(paired) and np.isfinite(paired["spin"]).all() else []
     cheapest = found.isel(contact_model=0)
     names = [*names, *telling_factors(cheapest)][:COLUMNS]
@@ -120,9 +123,7 @@ def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
 
 
 def forces(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Normal and lateral force and spin moment of both contacts by model."""
-    from matplotlib.lines import Line2D
-
+    """Draw normal and lateral force and spin moment of both contacts by model."""
     wanted = [
         (n, label)
         for n, label in (
@@ -155,7 +156,10 @@ def _of_contact(one: xr.Dataset, name: str, contact: int) -> xr.DataArray:
 
 
 def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Friction energy of both contacts per distance: summed over the patches, and what the resultants put in."""
+    """Draw the friction energy of both contacts per distance.
+
+    It is the sum over the patches, and for comparison the work of the resultants.
+    """
     name, balance = "friction_energy_per_distance", "friction_energy_balance"
     shown = frame(paired, hold=True)
     if shown is None or name not in paired:
@@ -184,7 +188,7 @@ def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
 
 
 def stick(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Share of the patch that sticks."""
+    """Draw the share of the patch that sticks."""
     shown = frame(paired, hold=True)
     if shown is None or "stick_area_fraction" not in paired:
         return None
@@ -198,9 +202,7 @@ def stick(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
 
 
 def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Peak von Mises stress of the roller (else of what was asked for) and life."""
-    from trackroller.report.figures.study_life import capped, mark_unlimited
-
+    """Draw peak von Mises stress of the roller (else of the body that was asked for) and life."""
     rows: list[tuple[str, Values]] = []
     shown = frame(paired, hold=True)
     if shown is None:

@@ -34,7 +34,7 @@ WRAP, UPRIGHT = 13, 4  # letters of a line of a category's name, and how many ca
 
 @dataclass(frozen=True)
 class Frame:
-    """What a figure shows: designs, the groups along the axis, the drives of the columns, and what was held."""
+    """Designs of a figure, the groups along its axis, the drives of its columns, and what was held."""
 
     ds: xr.Dataset
     x: Groups
@@ -50,7 +50,10 @@ class Frame:
         return np.ones(self.ds.sizes["design"], bool) if self.columns is None else self.columns.index == column
 
     def bands(self, values: np.ndarray, column: int) -> np.ndarray:
-        """5, 50 and 95 % of the values (n,) in each group of a column, (3, groups); NaN where there are none."""
+        """Return 5, 50 and 95 % of the values (n,) in each group of a column, (3, groups).
+
+        A group without values has NaN.
+        """
         out = np.full((3, len(self.x)), np.nan)
         chosen = self.inside(column) & ~np.isnan(values)
         for k in range(len(self.x)):
@@ -68,7 +71,7 @@ class Frame:
 
 
 def axis_name(ds: xr.Dataset) -> str | None:
-    """What goes along the axis: friction where it varies, else the first factor with an order, else any."""
+    """Choose the factor along the axis: friction, else the first with an order, else any."""
     names = [n for n in factors(ds) if n in ds.coords]
     if FRICTION in names:
         return FRICTION

@@ -65,7 +65,10 @@ class Patch:
         return Path.make_compound_path(*[Path(np.asarray(ring), closed=True) for ring in rings])
 
     def summed(self, values: np.ndarray, axis: int) -> np.ndarray:
-        """Integral of a field or profile over y (axis 0 of a field) or x: of elements, or between points of a grid."""
+        """Integrate a field or profile over y (axis 0 of a field) or x.
+
+        Values of elements are summed; between points of a grid the trapezoidal rule holds.
+        """
         places = self.y if values.ndim == 2 and axis == 0 else self.x
         if self.solved:
             return values.sum(axis=axis) * (places[1] - places[0])
@@ -73,7 +76,10 @@ class Patch:
 
     @property
     def spin_pole(self) -> tuple[float, float] | None:
-        """Where the sliding model lets the surfaces turn on each other [mm]; the others have no such point."""
+        """Place of the spin pole of full sliding [mm].
+
+        The other contact models have no such point.
+        """
         if "spin_pole_lateral" not in self.ds or not _slides(self.ds):
             return None
         return float(self.ds["spin_pole_lateral"]), float(self.ds.get("spin_pole_rolling", 0.0))
@@ -93,7 +99,10 @@ def patches_of(ds: xr.Dataset, *names: str) -> list[Patch]:
 
 
 def framed(x: np.ndarray, y: np.ndarray, field: np.ndarray, rim: float | None = None) -> tuple[np.ndarray, ...]:
-    """x, y and a field with one more row and column of elements on each side: of the value `rim`, or that beside it."""
+    """Return x, y and a field with one more row and column of elements on each side.
+
+    The new elements have the value `rim`, or that of their neighbour.
+    """
     wide = [np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (x, y)]
     return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(field, 1, constant_values=rim)
 
@@ -114,7 +123,10 @@ def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
 
 
 def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
-    """Where one contact `part` bears along 'x' or 'y' [mm], any number of strips; [] if that is not known."""
+    """Return the strips [mm] along 'x' or 'y' in which one contact `part` bears.
+
+    The list is empty if that is not known.
+    """
     semi = {"x": "semi_axis_lateral", "y": "semi_axis_rolling"}[axis]
     if part.attrs.get("normal") == "halfspace" and "pressure" in part:
         return _strips(part, axis)

@@ -26,7 +26,10 @@ FORCES = (
 
 
 def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """Draw peak stress over the fit, coloured by what decides it; filled marks at the surface, hollow ones below."""
+    """Draw peak stress over the fit, coloured by what decides it.
+
+    Filled marks at the surface, hollow ones below.
+    """
     fits = next((f for f in map(view.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
     bodies = [b for b in BODIES if view.has(f"peak_stress_{b}")]
     if not fits or not bodies:

@@ -26,7 +26,10 @@ Pair = tuple[str, str]
 
 
 def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """Draw life over the two numeric factors with most effect; regimes and designs outside the model are marked."""
+    """Draw life over the two numeric factors with most effect.
+
+    Regimes and designs outside the model are marked.
+    """
     if view.life is None or not view.has(view.life[0]):
         return None
     pair = _life_pair(view)

@@ -18,7 +18,9 @@ Entries = list[tuple[str, dict[str, Any]]]
 
 
 def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
-    """Place lives on a logarithmic axis: unlimited ones lie one decade above the longest finite one.
+    """Place lives on a logarithmic axis.
+
+    Unlimited ones lie one decade above the longest finite one.
 
     Parameters
     ----------
@@ -54,7 +56,9 @@ def mark_unlimited(axes: Axes, height: float | None) -> None:
 
 
 def marks(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any], filled: Any) -> None:
-    """Draw marks, filled where `filled` (n,) says so and hollow elsewhere; more than 500 of them as pixels.
+    """Draw marks, filled where `filled` (n,) says so and hollow elsewhere.
+
+    More than 500 of them as pixels.
 
     Parameters
     ----------

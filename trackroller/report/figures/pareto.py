@@ -35,7 +35,9 @@ def _label(front: xr.Dataset, name: str) -> str:
 
 
 def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
-    """Draw all allowed designs and the Pareto set: a panel for the first goal over each other one.
+    """Draw all allowed designs and the Pareto set.
+
+    A panel for the first goal over each other one.
 
     Parameters
     ----------

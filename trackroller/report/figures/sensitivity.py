@@ -59,7 +59,10 @@ def title(sens: xr.Dataset, output: str) -> str:
 
 
 def tornado(sens: xr.Dataset, output: str) -> Drawn:
-    """Draw bars of the headline index with 95 % intervals, the largest on top; of Sobol indices both."""
+    """Draw bars of the headline index with 95 % intervals, the largest on top.
+
+    Of Sobol indices both.
+    """
     index = words.headline(sens)
     ranks = words.order(sens, output)[:MAX_BARS]
     if not ranks:
@@ -225,7 +228,10 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
 
 
 def interactions(sens: xr.Dataset, output: str) -> Drawn:
-    """Draw a heat map of two-factor interactions, main effects on the diagonal; None where no interaction is found."""
+    """Draw a heat map of two-factor interactions, main effects on the diagonal.
+
+    None where no interaction is found.
+    """
     part = sens.sel(output=output)
     name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
     if not name or not np.isfinite(part[name].values).any():

@@ -36,6 +36,7 @@ from trackroller.report.view import StudyView
 log = logging.getLogger(__name__)
 Draw = Callable[[], "tuple[Any, style.FigureInfo] | None"]
 OF_CASES = (by_factor, life_map, stress_against_fit, woehler, forces_against_axial, regime_map)
+FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
 
 
@@ -66,7 +67,8 @@ def draw_all(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) 
         for draw in jobs:
             info = _saved(draw, Path(out_dir))
             if info is not None:
-                about = any(name in info.name or name in info.caption for name in ("friction power", *FRICTION_OUTPUTS))
+                told = f"{info.name} {info.caption} {info.sentence}"
+                about = any(name in told for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
                 infos.append(replace(info, sentence=f"{info.sentence} {error.text}") if error and about else info)
     style.write_index(infos, Path(out_dir))
     return infos

@@ -79,7 +79,10 @@ def look() -> Iterator[None]:
 
 
 def palette(count: int) -> list[Any]:
-    """Return `count` colours that colour-blind readers tell apart; after eight they repeat."""
+    """Return `count` colours that colour-blind readers tell apart.
+
+    After eight they repeat.
+    """
     colours = seaborn.color_palette("colorblind")
     dark = [colours[i] for i in (0, 1, 2, 3, 4, 5, 7, 9)]
     return [dark[i % len(dark)] for i in range(max(count, 1))]
@@ -129,7 +132,10 @@ def _set_title(figure: Figure) -> None:
 
 
 def log_ticks(axis: Any, low: float, high: float) -> None:
-    """Set ticks of a logarithmic axis: decades when there are many, 1-2-5 with plain numbers when there are few."""
+    """Set ticks of a logarithmic axis.
+
+    Decades when there are many, 1-2-5 with plain numbers when there are few.
+    """
     axis.set_minor_formatter(NullFormatter())
     decades = math.log10(high / low) if low > 0 and high > low else 0.0
     if not 0 < decades <= 1.6:
