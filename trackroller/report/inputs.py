@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, unit_text
 from trackroller.report.view import StudyView
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 Table = list[dict[str, Any]]
 

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    import xarray as xr
+import xarray as xr
 
 GOOD = 0.05  # what counts as good enough
 
@@ -92,8 +89,6 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
     mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick is a difference of shares. The larger error
     of both contacts and bodies counts.
     """
-    import xarray as xr
-
     reference = str(paired.attrs["reference"])
     ref, parts = paired.sel(contact_model=reference), []
     for model in (str(m) for m in paired["contact_model"].values if m != reference):

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from trackroller.report.numbers import level_text, long_name, number, rounded, short_levels
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MAX_LEVELS = 12  # as many are told apart
 BINS = 8

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.parameters import EXACTNESS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.geometry import curvatures, rolling_radius
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import flat, read_study
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MODEL = "contact_model"
 INPUTS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, "material_pair", *(o for o in OPTION_FACTORS if o != MODEL))
@@ -116,8 +114,6 @@ def _matched_rows(ds: xr.Dataset, columns: Mapping[str, np.ndarray], models: lis
 def _sorted_out(
     ds: xr.Dataset, order: tuple[str, ...], models: list[str], rows: np.ndarray, columns: Mapping[str, np.ndarray]
 ) -> xr.Dataset:
-    import xarray as xr
-
     data: dict[str, Any] = {}
     lacking = rows < 0
     for name in RESULTS:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.report.comparison.errors import GOOD, errors, measured
 from trackroller.report.comparison.groups import (
@@ -20,9 +21,6 @@ from trackroller.report.comparison.groups import (
 )
 from trackroller.report.comparison.pairs import pairs
 from trackroller.report.numbers import capital, rounded
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM", "auto": "The model chosen by auto"}
 MOST = 0.9  # share of the designs of a level that counts as the level

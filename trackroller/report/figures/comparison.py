@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from trackroller.report.comparison.errors import GOOD, errors, measured
@@ -17,10 +19,6 @@ from trackroller.report.figures import style
 from trackroller.report.figures.comparison_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
 from trackroller.report.figures.panels import capped, mark_unlimited
 from trackroller.report.numbers import capital, with_unit
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 Drawn = tuple["Figure", style.FigureInfo] | None
 Values = Callable[["xr.Dataset"], "xr.DataArray"]

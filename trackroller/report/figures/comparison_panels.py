@@ -5,19 +5,17 @@ from __future__ import annotations
 import json
 import textwrap
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from trackroller.parameters import PARAMETERS
 from trackroller.report.comparison.groups import DERIVED, DRIVE, FRICTION, Groups, drives, factors, groups
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, factor_label, level_text, long_name
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 # told apart by dash and mark as much as by colour
 LOOKS: dict[str, dict[str, Any]] = {

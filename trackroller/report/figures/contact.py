@@ -8,15 +8,14 @@ from __future__ import annotations
 import logging
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
 from trackroller.report.figures.contact_sections import sections
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 log = logging.getLogger(__name__)
 

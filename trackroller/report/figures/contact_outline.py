@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
+from contourpy import contour_generator
+from matplotlib.path import Path
 
 from trackroller.parameters import CONTACT_MODELS
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.path import Path
 
 SLIGHT = 1e-3  # of the largest pressure: less is left over from the solution, not a load
 
@@ -53,13 +50,9 @@ class Patch:
     @property
     def outline(self) -> Path:
         """The edge of the patch: an ellipse, or the closed lines around its loaded elements."""
-        from matplotlib.path import Path
-
         if not self.solved:
             circle = Path.unit_circle()
             return Path(np.asarray(circle.vertices) * np.array([self.a, self.b]), circle.codes)
-        from contourpy import contour_generator
-
         x, y, loaded = framed(self.x, self.y, self.inside.astype(float), 0.0)
         rings = contour_generator(x, y, loaded).lines(0.5)
         return Path.make_compound_path(*[Path(np.asarray(ring), closed=True) for ring in rings])

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import matplotlib
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.ticker import MaxNLocator
 
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, framed, patches_of
 from trackroller.report.numbers import REGIME_LABELS, number, rounded
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # a longer ellipse than this is not drawn to scale
@@ -37,8 +39,6 @@ def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[A
 
     Wide patches lie one above the other, tall ones stand side by side.
     """
-    from matplotlib.ticker import MaxNLocator
-
     boxes, count = np.array([p.box for p in patches]), len(patches)
     (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     a, b = 0.5 * (right - left), 0.5 * (front - rear)
@@ -65,8 +65,6 @@ def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[A
 
 def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
     """Filled contours cut along the edge of the patch, and this edge."""
-    from matplotlib.patches import PathPatch
-
     levels = np.linspace(0, top, 17)
     x, y, shown = framed(patch.x, patch.y, values) if patch.solved else (patch.x, patch.y, values)
     image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
@@ -79,15 +77,10 @@ def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -
 
 def _light(name: str = "YlGnBu", end: float = 0.62) -> Any:
     """The lighter part of a colour map, on which black arrows are seen."""
-    import matplotlib
-    from matplotlib.colors import ListedColormap
-
     return ListedColormap(matplotlib.colormaps[name](np.linspace(0, end, 64)))
 
 
 def _bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
-    from matplotlib.ticker import MaxNLocator
-
     bar = figure.colorbar(image, ax=axes, location="bottom", aspect=35, pad=0.02, ticks=MaxNLocator(6))
     bar.set_label(label)
 

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import widths
 from trackroller.report.figures.contact_patch import case_text
 from trackroller.report.numbers import rounded
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 PLANES = (
     ("von_mises_xz", "xz_x", "xz_z", "x", "lateral"),
@@ -40,8 +39,6 @@ def sections(ds: xr.Dataset, contact: int) -> tuple[Figure, style.FigureInfo] | 
     for i, body in enumerate(bodies):
         for j, plane in enumerate(PLANES):
             image = _section(grid[2 * i + j], part.sel(body=body), body, plane, top)
-    from matplotlib.ticker import MaxNLocator
-
     bar = figure.colorbar(image, ax=list(grid), location="bottom", aspect=35, pad=0.01, ticks=MaxNLocator(6))
     bar.set_label("Von Mises stress [MPa]")
     flat = (
