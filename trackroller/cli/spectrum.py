@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def run_spectrum(path: Path, as_json: bool, out: Path | None) -> None:
+def run_spectrum(path: Path, json: bool, out: Path | None) -> None:
     """Solve the blocks of a spectrum file; print tables, JSON or write netCDF."""
     target = None if out is None else writable(out)
     dataset = solve_spectrum(load_spectrum(path))
     if target is not None:
         write_result(dataset, target)
-    if as_json:
+    if json:
         print(as_json(dataset))
     elif out is None:
         print_spectrum(dataset)
