@@ -9,6 +9,7 @@ import numpy as np
 
 from trackroller.cli.case import writable, write_result
 from trackroller.parameters import REGIMES
+from trackroller.report.sheet.text import as_json
 from trackroller.study.spectrum.damage import BODIES, summary
 from trackroller.study.spectrum.solve import load_spectrum, solve_spectrum
 
