@@ -3,22 +3,37 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
+CI_STAMP := $(VENV)/.ci-ready
 STUDY ?= config/studies/default.yaml
 CORES ?= all
 SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile validation/rules
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
-.PHONY: env study validate test test-quick lint docs test-slurm test-long clean-results
+.PHONY: env env-ci lock study validate test test-quick lint docs test-slurm test-long clean-results
 
 env: $(STAMP)
+
+# pins every package with its hashes; needs uv (pip install uv) and a network
+COMPILE := uv pip compile --python-version 3.11 --universal --generate-hashes --no-annotate --no-header -q
+lock:
+	$(COMPILE) pyproject.toml requirements.in -o requirements.lock
+	$(COMPILE) requirements-ci.in -c requirements.lock -o requirements-ci.lock
+	$(BIN)/python -m validation.licences --write
 
 $(STAMP): requirements.lock pyproject.toml
 	@echo "Setting up $(VENV): this happens once and takes some minutes."
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --disable-pip-version-check -q -r requirements.lock
+	$(BIN)/python -m pip install --disable-pip-version-check -q --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install --disable-pip-version-check -q --no-deps --no-build-isolation -e .
 	@echo "Compiling the solver: about a minute, once."
 	$(BIN)/python -c "import trackroller as tr; tr.solve(tr.Case(), outputs=('friction_work', 'life', 'tractions', 'subsurface'))"
+	touch $@
+
+# what the site and CI need beyond it
+env-ci: $(CI_STAMP)
+
+$(CI_STAMP): $(STAMP) requirements-ci.lock
+	$(BIN)/python -m pip install --disable-pip-version-check -q --require-hashes -r requirements-ci.lock
 	touch $@
 
 # ends with the path of the report and how long it took; progress in cases instead of lists of files
@@ -47,7 +62,7 @@ lint: $(STAMP)
 	$(BIN)/python -m validation.house
 
 # the site in site/: generated pages must be up to date, and no link may be dead
-docs: $(STAMP)
+docs: $(CI_STAMP)
 	$(BIN)/python docs/generate.py --check
 	$(BIN)/python docs/api.py --check
 	$(BIN)/mkdocs build --strict --quiet

@@ -9,6 +9,7 @@ from pathlib import Path
 import yaml
 
 import trackroller as tr
+from validation import licences
 
 ROOT = Path(__file__).parents[2]
 
@@ -31,3 +32,8 @@ def test_the_contributing_page_lists_every_folder_of_the_package():
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     rooms = {path.parent.name for path in (ROOT / "trackroller").glob("*/__init__.py")}
     assert rooms == set(re.findall(r"^\| `(\w+)/`", text, re.M))
+
+
+def test_the_licence_of_every_locked_package_is_listed(monkeypatch):
+    monkeypatch.setattr("sys.argv", ["licences"])
+    assert licences.main() == 0, "run: python -m validation.licences --write"
