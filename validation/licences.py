@@ -16,7 +16,7 @@ PAGE = ROOT / "LICENCES.md"
 LOCKS = ("requirements.lock", "requirements-ci.lock")
 HEAD = """# Licences of the dependencies
 
-Made by `make lock` from the metadata of the packages. trackroller itself is under the MIT licence and ships none of them.
+Made by `make lock` from the metadata of the packages. trackroller is under the MIT licence and ships none of them.
 
 | package | licence |
 | --- | --- |
