@@ -13,7 +13,7 @@ from synthetic_results import grid_study
 from trackroller.report.choices import pareto
 from trackroller.report.decisions import robust_tables
 from trackroller.report.effects import effect_of
-from trackroller.report.findings import occurrence, valid_designs
+from trackroller.report.findings import best_design, occurrence, ranked, valid_designs
 from trackroller.report.known_errors import friction_error
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.page import contents
@@ -204,3 +204,12 @@ def test_pairs_agree_with_a_closed_form():
         "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold in the median of 6 pairs of valid "
         "designs that differ in nothing else, in all of them."
     )
+
+
+def test_scattering_values_of_an_inner_outer_design_are_not_offered_as_a_choice():
+    ds = grid_study()
+    assert ranked(StudyView.of(ds)) is not None
+    ds.attrs["study"] = ds.attrs["study"].replace("design: grid", "design: inner_outer")
+    view = StudyView.of(ds)
+    assert view.study["design"] == "inner_outer" and ranked(view) is None and best_design(view) is None
+    assert "best_designs" not in {t.name for t in contents(ds)["decide"]}

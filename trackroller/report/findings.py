@@ -233,8 +233,11 @@ def best_design(view: StudyView) -> Sentence | None:
 def ranked(view: StudyView) -> np.ndarray | None:
     """Return the valid cases by falling life (else by rising peak stress), or None when nothing ranks them.
 
-    Of a study with several contact models only the most exact one ranks: a model is no design.
+    Of a study with several contact models only the most exact one ranks: a model is no design. The cases of an
+    inner/outer design do not rank, because nobody can choose the values that scatter: its design points do, by B10.
     """
+    if view.study.get("design") in ("inner_outer", "nested"):
+        return None
     rows, columns = view.valid.copy(), [f"peak_stress_{b}" for b in BODIES if view.has(f"peak_stress_{b}")]
     if "contact_model" in view.factors:
         rows &= (view.table["contact_model"] == view.held_level("contact_model")).to_numpy()

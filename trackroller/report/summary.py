@@ -30,7 +30,7 @@ def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> lis
     """
     lines = [
         ("Valid designs", [valid_designs(view), stopped(view)]),
-        ("What decides", [decides(sens)]),
+        ("Best design point" if sens is not None and words.robust_design(sens) else "What decides", [decides(sens)]),
         ("Best", [best_design(view)]),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
         ("How sure", [friction_error(view), *accuracy(view), *(Sentence("models", text) for text in models)]),

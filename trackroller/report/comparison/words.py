@@ -39,8 +39,6 @@ def percent(value: float) -> str:
 def sentences(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
     """Return all sentences on the comparison of the contact models.
 
-    They speak of all designs, then of friction and drive, of spin and of each other factor.
-
     Parameters
     ----------
     paired : dataset of `trackroller.report.comparison.pairs`
@@ -308,10 +306,7 @@ def _share(e: np.ndarray, tolerance: float) -> float:
 
 
 def gap(found: xr.Dataset, name: str) -> str:
-    """Say how far each cheaper model is off in one quantity, for a figure.
-
-    The text is empty where nothing was measured.
-    """
+    """Say how far each cheaper model is off in one quantity; '' if that is not known."""
     said = []
     for model in map(str, found["contact_model"].values):
         e = _rolling(found[name].sel(contact_model=model)) if name in found else np.empty(0)
