@@ -14,7 +14,7 @@ from trackroller.report import findings, known_errors
 from trackroller.report.effects import effect_of
 from trackroller.report.view import StudyView
 
-STUDIES = 200
+STUDIES = 150
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")
 NUMBER = r"(−?[\d,]+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?)"
 PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -215,7 +215,7 @@ def check_classes(raw, said):
     count = (raw.valid & np.isfinite(raw.column(v["column"]))).sum()
     assert abs(len(low) - count / 3) <= 1 + sum(raw.columns[v["factor"]] == v["low"])
     parts = [third_ratio(raw, v, rows) for rows in in_categories(raw, v["factor"], raw.valid)]
-    parts = [np.median(b) - np.median(a) for a, b in parts if min(len(a), len(b)) >= 20]
+    parts = [np.median(b) - np.median(a) for a, b in parts if min(len(a), len(b)) >= 8]
     if said.kind == "classes":
         rises = re.search(r" (lengthens|raises) ", said.text) is not None
         assert rises == (step > 0) and all(p * step >= 0 for p in parts)
@@ -346,7 +346,7 @@ def test_no_sentence_on_a_random_study_is_false(part):
     for seed in range(part * STUDIES // 5, (part + 1) * STUDIES // 5):
         kinds += sentences_of(seed)
     wanted = {"valid", "cases", "only", "frequent", "best", "pairs", "pairs_both", "classes_none", "surface"}
-    assert wanted <= set(kinds) and sum(kinds.values()) > 500, kinds
+    assert wanted <= set(kinds) and sum(kinds.values()) > 380, kinds
 
 
 def test_an_interval_of_a_ratio_of_medians_covers_the_truth():
