@@ -13,7 +13,7 @@ import numpy as np
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import constant
 from trackroller.contact.grid_patch import GridPatch
-from trackroller.contact.kalker import batch, extrapolation
+from trackroller.contact.kalker import batch, extrapolation, subgrid
 from trackroller.contact.kalker.cells import cells, unit_cells
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.slip import Creepage
@@ -56,13 +56,25 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
     first = np.zeros((n, 2, half, half))
     if started:
         first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
-    report = _level(ellipse, creep, friction, elastic, travel, settings, first).report
+    found = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
-        (low, _), (high, _) = cells(ellipse, half), cells(ellipse, settings.elements)
-        low, high = np.broadcast_to(low, (n, half, half)), np.broadcast_to(high, (n, *traction.shape[2:]))
-        for i in range(n):
-            batch.refine(first[i], low[i], high[i], traction[i])
-    return report
+        height, _ = cells(ellipse, settings.elements)
+        traction[:] = subgrid.shares(cells(ellipse, half)[0], found.traction, found.slip, found.report.own_slip, 2)
+        traction *= height if height.ndim == 2 else height[:, None]
+    return found
+
+
+def _forces(ellipse: Ellipse, friction, settings: KalkerSettings, found: batch.Found) -> np.ndarray:
+    """Return the resultants (n, 3) of one grid: integrals between the centres, or sums over the elements."""
+    if not (settings.law or constant()).is_constant or not friction.size:
+        return found.report.forces
+    elements = found.traction.shape[-1]
+    height, _ = cells(ellipse, elements)
+    share = subgrid.shares(height, found.traction, found.slip, found.report.own_slip)
+    finer = ellipse if ellipse.is_hertzian else ellipse.refined(subgrid.PARTS, subgrid.PARTS)
+    between, _ = cells(finer, subgrid.PARTS * elements)
+    bound = (friction * ellipse.max_pressure)[:, None]
+    return bound * subgrid.forces(share, between, ellipse.semi_axis_lateral, ellipse.semi_axis_rolling)
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -73,20 +85,18 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
     found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = found.report
-    value, error = fine.forces, np.full((n, 3), np.nan)
+    value, limit, error = _forces(ellipse, friction, settings, found), np.zeros((n, 3)), np.full((n, 3), np.nan)
     pressed = fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
-        error = np.abs(value - coarse.forces)
-        middle = Creepage(creep.longitudinal + creep.spin * ellipse.centre, creep.lateral, creep.spin)
-        weights = extrapolation.weights(ellipse, middle, friction, elastic, elements, fine.stick_fraction)
-        weight = weights[:, 0]
-        value = value + weights * (value - coarse.forces)
-        pressed = pressed + weight * (pressed - coarse.pressure_work)
-        work = work + weight * (work - coarse.work - coarse.pressure_work)
-        # The observed convergence is of second order wherever a part of the patch slides.
-        energy = extrapolation.energy(energy, coarse.energy_residual)
-    # The moment counts about the nominal point of contact, and the patch may lie beside this point.
+        error = value - _forces(ellipse, friction, settings, coarse)
+        limit, report = extrapolation.WEIGHT * error, coarse.report
+        pressed = pressed + extrapolation.WEIGHT * (pressed - report.pressure_work)
+        work = work + extrapolation.WEIGHT * (work - report.work - report.pressure_work)
+        # observed to be of second order wherever a part of the patch slides
+        energy = extrapolation.energy(energy, report.energy_residual)
+    value = value + limit
+    # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
         Resultants(value[:, 0], value[:, 1], value[:, 2]),
@@ -97,7 +107,9 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         work,
         pressed,
         energy,
-        error,
+        limit,
+        np.abs(error),
+        fine.own_slip,
         fine.residual,
         fine.steps,
         fine.products,

@@ -33,6 +33,7 @@ class TableModel(ContactModel):
 
     def __init__(self, elastic: Elastic, exact: ContactModel) -> None:
         self.elastic, self.exact = elastic, exact
+        self.correction = exact.correction
         self._beyond = np.zeros(np.shape(elastic.coupling), bool)  # rollers outside the table's range
 
     def _table(self, ellipse: Ellipse, slip: Slip, friction, rows) -> table.TableSolution:
@@ -51,6 +52,10 @@ class TableModel(ContactModel):
     def surface(self, ellipse: Ellipse, slip: Slip, friction, rows) -> SurfaceTractions:
         """Return the tractions of the exact solver on a grid over each patch."""
         return self.exact.surface(ellipse, slip, friction, rows)
+
+    def shares(self, ellipse: Ellipse, slip: Slip, friction, rows):
+        """Return the tractions of the exact solver over their bound, see `ContactModel.shares`."""
+        return self.exact.shares(ellipse, slip, friction, rows)
 
     def stick(self, ellipse: Ellipse, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""
@@ -79,4 +84,5 @@ class TableModel(ContactModel):
 
     def used(self, n: int) -> np.ndarray:
         """Return the name of the model that gave the forces of each of n rollers."""
-        return np.where(self._beyond, self.exact.name, self.name).astype(object)
+        beyond = self._beyond if self.correction is None else self._beyond | self.correction.beyond
+        return np.where(beyond, self.exact.name, self.name).astype(object)

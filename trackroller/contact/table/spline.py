@@ -31,6 +31,7 @@ TABLE = "kalker_table.npz"
 HALF_WAY = 4.0  # r at rho = 1/2
 RATIOS = (0.05, 20.0)  # of b/a
 LARGEST_COUPLING = 1.5  # of |K|/mu
+LARGEST_SLIP = 1e100  # r where friction can bend nothing
 FIELDS = ("lateral", "driving", "spin", "stick")
 
 
@@ -173,9 +174,7 @@ def solve_patch(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic
     """
     xi, phi, mu = (np.asarray(v, float) for v in (longitudinal, spin, friction))
     d = normalise(ellipse, xi, phi, mu, elastic)
-    edge = 1.0 + 1e-9
-    known = (d.g >= RATIOS[0] / edge) & (d.g <= RATIOS[1] * edge) & (np.abs(d.kappa) <= LARGEST_COUPLING)
-    known |= ~np.isfinite(d.g * d.kappa)  # no patch: NaN stays NaN
+    known = _held(d)
     rows = np.flatnonzero(known)
     unit = np.full((len(FIELDS), known.size), np.nan)
     inside = Dimensionless(*(np.broadcast_to(getattr(d, f.name), known.shape)[rows] for f in fields(d)))
@@ -185,6 +184,41 @@ def solve_patch(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic
     forces = Resultants(capacity * unit[0], capacity * unit[1], capacity * c * unit[2])
     work = -(xi * forces.driving_force + phi * forces.spin_moment)
     return TableSolution(forces, np.clip(unit[3], 0.0, 1.0), work, known)
+
+
+def _held(d: Dimensionless) -> np.ndarray:
+    """Return which patches lie in the table's range, (n,); where there is no patch NaN stays NaN."""
+    edge = 1.0 + 1e-9
+    held = (d.g >= RATIOS[0] / edge) & (d.g <= RATIOS[1] * edge) & (np.abs(d.kappa) <= LARGEST_COUPLING)
+    return held | ~np.isfinite(d.g * d.kappa)
+
+
+def nearest_forces(
+    ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the forces of the nearest patch that the table holds, and the place of the slip.
+
+    Parameters are those of `solve_patch`. A patch outside the range takes the forces at the end of the range.
+
+    Returns
+    -------
+    F_T/(mu N), F_A/(mu N) and M_R/(mu N c), (3, n); r_x/(4 + r) in (-1, 1), (n,); which patches the table holds, (n,).
+    NaN where there is no patch.
+    """
+    d = normalise(ellipse, *(np.asarray(v, float) for v in (longitudinal, spin, friction)), elastic)
+    d = Dimensionless(*np.broadcast_arrays(*(getattr(d, f.name) for f in fields(d))))
+    along, across = (np.clip(v, -LARGEST_SLIP, LARGEST_SLIP) for v in (d.along, d.across))
+    place = along / (HALF_WAY + np.hypot(along, across))
+    there = np.isfinite(d.g * place)
+    near = Dimensionless(
+        np.where(there, np.clip(d.g, *RATIOS), 1.0),
+        d.poisson,
+        np.where(there, along, 0.0),
+        np.where(there, across, 0.0),
+        np.clip(np.where(there, d.kappa, 0.0), -LARGEST_COUPLING, LARGEST_COUPLING),
+        d.c11,
+    )
+    return np.where(there, unit_forces(near)[:3], np.nan), place, _held(d)
 
 
 def unit_forces(d: Dimensionless) -> np.ndarray:
