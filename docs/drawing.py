@@ -120,8 +120,8 @@ def side_view(axes: Axes, case: Case) -> None:
     axes.set_ylim(-3.2, 41.5)
 
 
-def draw(target: Path = TARGET) -> None:
-    """Write the drawing as SVG with text as text."""
+def draw(target: Path = TARGET) -> Path:
+    """Write the drawing as SVG with text as text, and return its path."""
     plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "scene", "font.size": 10, "font.family": "sans-serif"})
     figure, (front, side) = plt.subplots(1, 2, figsize=(9.4, 5.4), width_ratios=(26, 30))
     front_view(front, Case())
@@ -138,6 +138,8 @@ def draw(target: Path = TARGET) -> None:
     )
     figure.tight_layout(rect=(0, 0.03, 1, 1))
     figure.savefig(target, metadata={"Date": None}, facecolor="white")
+    plt.close(figure)
+    return target
 
 
 if __name__ == "__main__":

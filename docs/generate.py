@@ -1,4 +1,4 @@
-"""Writes docs/parameters.md, docs/tradeoff.md and the presets in docs/accuracy.md from tables and measured data.
+"""Write docs/parameters.md, docs/validation/tradeoff.md and the presets in docs/validation/accuracy.md.
 
 `python docs/generate.py` writes; with `--check` it only compares and ends with 1 if a page is not up to date.
 """
@@ -22,7 +22,7 @@ USES = {"preview": "a first look", "standard": "studies", "reference": "to check
 HEAD = """# Parameters, options and results
 
 *Made by `python docs/generate.py` from `trackroller/parameters/` and `trackroller/roller/dataset.py`; do not edit.
-What the quantities mean physically is told in [theory.md](theory.md).*
+The [theory](theory.md) derives the quantities.*
 """
 
 
@@ -49,7 +49,7 @@ def _range(parameter: p.Parameter) -> str:
 
 
 def _option(option: p.Option) -> tuple[str, str, str, str]:
-    """Row of an option: its words with their meanings, its default, and the contact models that it is for."""
+    """Return the row of an option: values with meanings, default, and the contact models that use it."""
     values = "; ".join(f"`{word}`: {meaning}" for word, meaning in option.values.items())
     number = "a number in (0, 1)"
     other = {"accuracy": number, "tolerance": number, "condition": "a condition", "switch": "true, false"}
@@ -65,7 +65,7 @@ def _option(option: p.Option) -> tuple[str, str, str, str]:
 
 
 def render() -> str:
-    """The whole page."""
+    """Return the text of docs/parameters.md."""
     lines = [HEAD, "## Parameters of a case\n"]
     lines += _table(
         ("name", "symbol", "unit", "default", "allowed", "meaning"),
@@ -110,14 +110,14 @@ def render() -> str:
         + ".",
         "`stopped` (with `stop_if`): 1 where the condition holds.\n",
     ]
-    lines += ["### validity\n", "`validity` is a sum of bits; 0 means that nothing is to be said.\n"]
+    lines += ["### validity\n", "`validity` is a sum of bits; 0 means that no warning applies.\n"]
     bits = [(1 << i, f"`{name}`", meaning) for i, (name, meaning) in enumerate(VALIDITY_BITS.items())]
     lines += _table(("bit", "name", "meaning"), bits)
     return "\n".join(lines).rstrip() + "\n"
 
 
 def presets() -> str:
-    """The table of presets."""
+    """Return the table of accuracy presets."""
     heads = (
         "preset",
         "tolerance of the peak",
@@ -137,25 +137,25 @@ def presets() -> str:
 
 
 def pages() -> dict[Path, str]:
-    """Every page that is made, whole or in part, and its text."""
-    accuracy = FOLDER / "accuracy.md"
+    """Return the path and the text of each page that this program writes, whole or in part."""
+    accuracy = FOLDER / "validation" / "accuracy.md"
     before, _, rest = accuracy.read_text(encoding="utf-8").partition(START)
     found = {FOLDER / "parameters.md": render(), accuracy: f"{before}{START}{presets()}{END}{rest.partition(END)[2]}"}
-    return found | {FOLDER / "tradeoff.md": tradeoff()}
+    return found | {FOLDER / "validation" / "tradeoff.md": tradeoff()}
 
 
 def tradeoff() -> str:
-    """The measured trade-off, from the data that validation/adopt/tradeoff.py took over."""
+    """Return the page on error against cost, from the data that `validation.adopt.tradeoff` copied."""
     summary, figures = (
         json.loads((FOLDER / "data" / name).read_text(encoding="utf-8"))
         for name in ("tradeoff.json", "tradeoff_figures.json")
     )
     made_by = "made by docs/generate.py from docs/data/tradeoff.json"
-    return markdown(tradeoff_page.blocks(summary, figures), made_by)
+    return markdown(tradeoff_page.blocks(summary, figures), made_by, "../figures")
 
 
 def main(check: bool) -> int:
-    """Write the pages, or tell which are not up to date."""
+    """Write the pages, or print which pages are not up to date."""
     stale = [page for page, text in pages().items() if not page.is_file() or page.read_text(encoding="utf-8") != text]
     for page in stale:
         if check:

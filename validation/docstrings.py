@@ -1,13 +1,14 @@
 """Check the docstrings of public functions and classes by numpydoc's rules: `python -m validation.docstrings`.
 
-Public are the names of `trackroller.__all__` and those of the reference page (`docs/api.py`). The command ends with
-1 if a docstring breaks a rule.
+Public are the names of `trackroller.__all__` and those of the reference page (`docs/reference.md`). The command ends
+with 1 if a docstring breaks a rule.
 """
 
 from __future__ import annotations
 
 import importlib
 import importlib.util
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
@@ -62,19 +63,29 @@ STILL_TO_WRITE = frozenset(
     trackroller.study.spectrum.solve.solve_spectrum
     """.split()
 )
-API = Path(__file__).resolve().parents[1] / "docs" / "api.py"
+REFERENCE = Path(__file__).resolve().parents[1] / "docs" / "reference.md"
 
 
 def public_names() -> list[str]:
     """Return the dotted names of all public functions, classes and methods, each where it is defined."""
-    spec = importlib.util.spec_from_file_location("docs_api", API)
-    if spec is None or spec.loader is None:
-        raise FileNotFoundError(API)
-    page = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(page)
     listed = [("trackroller", name) for name in trackroller.__all__ if not name.startswith("__")]
-    listed += [(module, name) for _, parts in page.PARTS for module, names in parts for name in names]
+    listed += [split_name(name) for name in reference_names()]
     return sorted(set(_defined(listed)))
+
+
+def reference_names() -> list[str]:
+    """Return the dotted names that the reference page shows."""
+    return re.findall(r"^::: (\S+)$", REFERENCE.read_text(encoding="utf-8"), re.M)
+
+
+def split_name(dotted: str) -> tuple[str, str]:
+    """Return the module and the name inside it of a dotted name, such as `Study.design`."""
+    parts = dotted.split(".")
+    for end in range(len(parts) - 1, 0, -1):
+        module = ".".join(parts[:end])
+        if importlib.util.find_spec(module) is not None:
+            return module, ".".join(parts[end:])
+    raise ModuleNotFoundError(dotted)
 
 
 def _defined(listed: list[tuple[str, str]]) -> Iterator[str]:

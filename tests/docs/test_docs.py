@@ -1,7 +1,12 @@
-"""The documentation says what is so: code blocks run, tables are those of the code, links lead somewhere."""
+"""The documentation is true: code blocks run and print what they show, tables match the code, links are alive."""
 
 from __future__ import annotations
 
+import contextlib
+import importlib
+import importlib.util
+import inspect
+import io
 import re
 import shlex
 import shutil
@@ -15,24 +20,30 @@ ROOT = Path(__file__).parents[2]
 DOCS = sorted((ROOT / "docs").rglob("*.md"))
 PAGES = [p for p in (ROOT / "README.md", *DOCS) if p.is_file()]
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.M | re.S)
+OUTPUT = re.compile(r"\A\n```text\n(.*?)^```", re.M | re.S)  # right after a Python block: what it prints
 COMMENT = re.compile(r"<!--\s*(not run|file):[ \t]*([^\n]*?)[ \t]*-->\s*\Z")
 PROMISE = re.compile(r"#\s*(cases \d+, \d+ of them solved already)")
 FIGURES = "plot"  # drawing is proved elsewhere and takes its time
 LARGEST_STUDY = 60
 
 
-def blocks(page: Path) -> list[tuple[str, str, str, str]]:
-    """Language, code, kind of the comment right before it ('not run', 'file' or '') and the comment's text."""
+def blocks(page: Path) -> list[tuple[str, str, str, str, str]]:
+    """Return of each block: language, code, kind and text of the comment before it, and the output shown after it.
+
+    The kind is 'not run', 'file' or ''.
+    """
     text = page.read_text(encoding="utf-8")
     found = []
     for hit in BLOCK.finditer(text):
         mark = COMMENT.search(text[: hit.start()])
-        found.append((hit[1], hit[2], mark[1] if mark else "", mark[2] if mark else ""))
+        output = OUTPUT.match(text[hit.end() + 1 :])
+        shown = output[1] if output and hit[1] == "python" else ""
+        found.append((hit[1], hit[2], mark[1] if mark else "", mark[2] if mark else "", shown))
     return found
 
 
 def file_of(code: str, name: str) -> str:
-    """Where a YAML block belongs: as its comment says, else by what it holds."""
+    """Return the file of a YAML block: as its comment says, otherwise by its keys."""
     if name:
         return name
     if re.search(r"^(factors|design):", code, re.M):
@@ -41,7 +52,7 @@ def file_of(code: str, name: str) -> str:
 
 
 def small(code: str) -> str:
-    """A study with fewer levels, so that a test can solve it."""
+    """Return a study with fewer levels, so that a test can solve it."""
     return re.sub(r"(linspace: \[[^\],]+, [^\],]+, )\d+\]", r"\g<1>2]", code)
 
 
@@ -50,7 +61,7 @@ def commands(code: str) -> list[str]:
     return [line for line in lines if line.startswith("trackroller ")]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
 def test_every_code_block_runs(page, tmp_path, monkeypatch):
     """In the order of the page, in an empty folder, as a reader would do it."""
     from typer.testing import CliRunner
@@ -61,7 +72,8 @@ def test_every_code_block_runs(page, tmp_path, monkeypatch):
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("TRACKROLLER_MATERIALS", raising=False)
-    for language, code, mark, text in blocks(page):
+    names = {"__name__": "__docs__"}  # the blocks of a page share their names
+    for language, code, mark, text, shown in blocks(page):
         if mark == "not run":
             assert text, f"{page.name}: say why a block is not run"
         elif language == "yaml":
@@ -73,7 +85,9 @@ def test_every_code_block_runs(page, tmp_path, monkeypatch):
         elif language == "csv":
             (tmp_path / text).write_text(code, encoding="utf-8")
         elif language == "python":
-            exec(compile(code, f"{page.name}", "exec"), {"__name__": "__docs__"})
+            with contextlib.redirect_stdout(io.StringIO()) as printed:
+                exec(compile(code, f"{page.name}", "exec"), names)
+            assert not shown or printed.getvalue() == shown, f"{page.name} prints\n{printed.getvalue()}"
         elif language == "bash":
             for line in commands(code):
                 words = shlex.split(line, comments=True)[1:]
@@ -87,7 +101,7 @@ def test_every_code_block_runs(page, tmp_path, monkeypatch):
 
 
 def test_tables_are_those_of_the_code():
-    """docs/parameters.md and the presets in docs/accuracy.md are what docs/generate.py makes."""
+    """The generated tables of parameters, presets and trade-off are up to date."""
     words = [sys.executable, str(ROOT / "docs" / "generate.py"), "--check"]
     done = subprocess.run(words, capture_output=True, text=True)
     assert done.returncode == 0, f"run: python docs/generate.py\n{done.stderr}"
@@ -102,21 +116,85 @@ def test_links_between_pages_lead_to_files():
 
 
 def test_the_command_is_installed():
-    """The pages call it `trackroller`."""
+    """The pages call the command `trackroller`."""
     assert shutil.which("trackroller") or (Path(sys.executable).parent / "trackroller").exists()
 
 
-def test_python_interface_is_that_of_the_code():
-    done = subprocess.run([sys.executable, str(ROOT / "docs" / "api.py"), "--check"], check=False)
-    assert done.returncode == 0, "run: python docs/api.py"
+def resolved(dotted: str) -> object:
+    """Return the object that a dotted name of the reference page stands for."""
+    parts = dotted.split(".")
+    end = max(n for n in range(1, len(parts)) if is_module(".".join(parts[:n])))
+    thing: object = importlib.import_module(".".join(parts[:end]))
+    for part in parts[end:]:
+        thing = getattr(thing, part)
+    return thing
+
+
+def is_module(name: str) -> bool:
+    try:
+        return importlib.util.find_spec(name) is not None
+    except ModuleNotFoundError:  # its parent is no package
+        return False
+
+
+def test_the_reference_shows_every_public_name():
+    """Every name of the package and public functions of every room stand in the reference, each with a docstring."""
+    import trackroller as tr
+
+    shown = re.findall(r"^::: (\S+)$", (ROOT / "docs" / "reference.md").read_text(encoding="utf-8"), re.M)
+    assert len(shown) == len(set(shown))
+    public = {f"trackroller.{name}" for name in tr.__all__ if not name.startswith("__")} - {"trackroller.report"}
+    assert public | {"trackroller.report.write"} <= set(shown)
+    things = {name: resolved(name) for name in shown}
+    assert all(len(inspect.getdoc(thing) or "") > 40 for thing in things.values())
+    rooms = {getattr(thing, "__module__", "trackroller.study").split(".")[1] for thing in things.values()}
+    assert rooms >= {"errors", "materials", "halfspace", "contact", "damage", "roller", "study", "analysis", "report"}
+
+
+def test_the_site_has_every_page_once():
+    """The navigation of the site lists each page of docs/ exactly once."""
+    named = re.findall(r"([\w/-]+\.md)$", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"), re.M)
+    assert sorted(named) == sorted(page.relative_to(ROOT / "docs").as_posix() for page in DOCS)
+
+
+def test_the_drawing_is_that_of_the_program(tmp_path):
+    """docs/figures/scene.svg is what docs/drawing.py draws."""
+    spec = importlib.util.spec_from_file_location("drawing", ROOT / "docs" / "drawing.py")
+    drawing = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(drawing)
+    kept = drawing.TARGET.read_text(encoding="utf-8")
+    assert drawing.draw(tmp_path / "scene.svg").read_text(encoding="utf-8") == kept, "run: python docs/drawing.py"
+
+
+def test_the_readme_fits_on_two_screens():
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 600
+
+
+GENERATED = {"parameters.md", "reference.md", "validation/tradeoff.md", "validation/extremes.md", "validation/paper.md"}
+
+
+def test_the_written_pages_stay_short():
+    """All pages that people write, validation included, hold at most 12,000 words."""
+    pages = [page for page in DOCS if page.relative_to(ROOT / "docs").as_posix() not in GENERATED]
+    assert sum(len(page.read_text(encoding="utf-8").split()) for page in pages) <= 12_000
+
+
+def test_files_that_the_pages_name_exist():
+    """Paths of the repository and modules of `python -m` that a page names are there."""
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        for path in re.findall(r"[` ]((?:trackroller|validation|tests|docs|workflow|profiles)/[\w./-]+\.\w+)\b", text):
+            assert (ROOT / path).exists(), f"{page.name}: {path}"
+        for module in re.findall(r"python -m ([\w.]+)", text):
+            assert is_module(module), f"{page.name}: {module}"
 
 
 def test_errors_of_the_dimensionless_table_are_those_it_states():
-    """Every kind of error that the table was measured for stands in the page, rounded."""
+    """The page states every measured error of the table of exact solutions, rounded."""
     from trackroller.contact import table
 
     stated = table.stored().errors
-    text = (ROOT / "docs" / "contact-models.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "validation" / "contact-models.md").read_text(encoding="utf-8")
     rows = {
         "like_force": "bodies of one kind",
         "unlike_force": "unlike bodies, abs",

@@ -1,4 +1,4 @@
-"""What the scripts share that take results of a workflow over into the documentation, `validation/adopt/*.py`."""
+"""Share between the programs that copy results of the validation into the documentation (`validation/adopt/*.py`)."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pathlib import Path
 from PIL import Image
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs"
-DATA, FIGURES = FOLDER / "data", FOLDER / "figures"
+DATA, FIGURES, PAGES = FOLDER / "data", FOLDER / "figures", FOLDER / "validation"
+PICTURES = "../figures"  # as the pages name the folder of figures
 
 
 def copy_figures(results: Path, names: Iterable[str], colours: int | None = None) -> None:
-    """PNGs of `results/figures`; with few colours, where asked for, so that the repository stays small."""
-
+    """Copy PNGs of `results/figures`; `colours` reduces the palette so that the repository stays small."""
     for name in names:
         source, kept = results / "figures" / f"{name}.png", FIGURES / f"{name}.png"
         if colours is None:
@@ -26,8 +26,8 @@ def copy_figures(results: Path, names: Iterable[str], colours: int | None = None
 
 
 def main(target: str, page: Callable[[], str], adopt: Callable[[Path], None]) -> None:
-    """Adopt `results/TARGET` or the folder given and write `TARGET.md`; `--check` ends with 1 if it is out of date."""
-    words, path = sys.argv[1:], FOLDER / f"{target}.md"
+    """Adopt `results/TARGET` or the given folder and write its page; `--check` ends with 1 if the page is out of date."""
+    words, path = sys.argv[1:], PAGES / f"{target}.md"
     if "--check" in words:
         raise SystemExit(path.read_text(encoding="utf-8") != page())
     DATA.mkdir(exist_ok=True)

@@ -1,4 +1,4 @@
-"""Take the figures of results/contact_models over into docs/figures, for docs/contact-models.md and the README.
+"""Copy the figures of results/contact_models to docs/figures, for docs/validation/contact-models.md and the README.
 
 `snakemake -s validation/Snakefile --cores all contact_models; python -m validation.adopt.contact_models [FOLDER]`
 """

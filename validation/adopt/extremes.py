@@ -1,4 +1,4 @@
-"""Take results/extremes over into docs/extremes.md, its data and figures.
+"""Take results/extremes over into docs/validation/extremes.md, its data and figures.
 
 `snakemake -s validation/Snakefile --cores all extremes; python -m validation.adopt.extremes`; with `--check` it only
 compares the page with the kept data and ends with 1 if the page is not up to date.
@@ -10,7 +10,7 @@ import json
 from pathlib import Path
 
 from trackroller.report.pages import markdown
-from validation.adopt.common import DATA, copy_figures, main
+from validation.adopt.common import DATA, PICTURES, copy_figures, main
 from validation.extremes.page import blocks, read
 
 KEPT = DATA / "extremes.json"
@@ -20,7 +20,7 @@ MADE_BY = "made by validation/adopt/extremes.py from docs/data/extremes.json"
 def page() -> str:
     """The page from the kept data."""
     kept = json.loads(KEPT.read_text(encoding="utf-8"))
-    return markdown(blocks(kept["record"], kept["figures"]), MADE_BY)
+    return markdown(blocks(kept["record"], kept["figures"]), MADE_BY, PICTURES)
 
 
 def adopt(results: Path) -> None:

@@ -1,4 +1,4 @@
-"""Take results/paper over into docs/paper.md: `python -m validation.adopt.paper [results/paper]`.
+"""Take results/paper over into docs/validation/paper.md: `python -m validation.adopt.paper [results/paper]`.
 
 Run `snakemake -s validation/Snakefile --cores all paper` first.
 With `--check` it only compares the page with its data and ends with 1 if it is not up to date.
@@ -11,7 +11,7 @@ import shutil
 from pathlib import Path
 
 from trackroller.report.pages import markdown
-from validation.adopt.common import DATA, copy_figures, main
+from validation.adopt.common import DATA, PICTURES, copy_figures, main
 from validation.paper.compute import STORED, stored
 from validation.paper.page import blocks
 
@@ -21,7 +21,7 @@ MADE_BY = "made by validation/adopt/paper.py from validation/paper/paper_results
 def page() -> str:
     """The page from the data in the repository."""
     figures = json.loads((DATA / "paper_figures.json").read_text(encoding="utf-8"))
-    return markdown(blocks(stored(), figures), MADE_BY)
+    return markdown(blocks(stored(), figures), MADE_BY, PICTURES)
 
 
 def adopt(results: Path) -> None:
