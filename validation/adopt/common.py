@@ -26,7 +26,7 @@ def copy_figures(results: Path, names: Iterable[str], colours: int | None = None
 
 
 def main(target: str, page: Callable[[], str], adopt: Callable[[Path], None]) -> None:
-    """Adopt `results/TARGET` or the given folder and write its page; `--check` ends with 1 if the page is out of date."""
+    """Adopt `results/TARGET` or the given folder and write its page; `--check` ends with 1 if it is out of date."""
     words, path = sys.argv[1:], PAGES / f"{target}.md"
     if "--check" in words:
         raise SystemExit(path.read_text(encoding="utf-8") != page())

@@ -1,6 +1,6 @@
 """Where full sliding will do: its error against the exact theory over friction, drive, contact angle and size.
 
-    python -m validation.benchmarks.contact_spin [--accuracy standard]    the tables of docs/validation/contact-models.md
+    python -m validation.benchmarks.contact_spin [--accuracy standard]   tables of docs/validation/contact-models.md
 
 540 rollers on a straight guide: friction 0.02 to 0.5, contact angle 12 to 75 deg, axis distance 15 to 1000 mm, pressed
 by 200 N, free, with 30 N of axial force, and driven by 6 N. Spin is phi rho (`report.comparison.pairs.spin`).
