@@ -6,6 +6,7 @@ with 1 if a docstring breaks a rule.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import importlib.util
 import re
@@ -83,8 +84,9 @@ def split_name(dotted: str) -> tuple[str, str]:
     parts = dotted.split(".")
     for end in range(len(parts) - 1, 0, -1):
         module = ".".join(parts[:end])
-        if importlib.util.find_spec(module) is not None:
-            return module, ".".join(parts[end:])
+        with contextlib.suppress(ModuleNotFoundError):  # raised where the parent is a module, not a package
+            if importlib.util.find_spec(module) is not None:
+                return module, ".".join(parts[end:])
     raise ModuleNotFoundError(dotted)
 
 
