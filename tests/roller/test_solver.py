@@ -34,7 +34,7 @@ def test_every_variable_is_labelled():
 
 
 def test_validity_flags_name_the_body():
-    """A plastic roller under load or guide exceeds its own strength, not that of the steel; both make the case's flags."""
+    """A plastic body exceeds its own strength, not that of the steel; the case has the flags of both."""
     ds = tr.solve([tr.Case(), tr.Case(roller_material="PA6"), tr.Case(guide_material="PA6")])
     static, body = validity_bit("static"), ds.validity_body.transpose("case", "body").values
     assert (body & static > 0).tolist() == [[False, False], [True, False], [False, True]]

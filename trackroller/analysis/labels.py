@@ -9,7 +9,7 @@ import xarray as xr
 from scipy.stats import rankdata
 
 from trackroller.analysis.indices import Estimates, constant
-from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output
 
@@ -53,7 +53,7 @@ def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
     How many cases each regime has, and which regimes were left out.
     """
     counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
-    words = {name: name.replace("_", " ").replace("lift off", "lift-off") for name in REGIMES}
+    words = dict(zip(REGIMES, REGIME_LABELS, strict=True))
     text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
     left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
     if not left:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.cli.case import writable, write_result
-from trackroller.parameters import REGIMES
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report.sheet.text import as_json
 from trackroller.study.spectrum.damage import BODIES, summary
 from trackroller.study.spectrum.solve import load_spectrum, solve_spectrum
@@ -41,7 +41,7 @@ def print_spectrum(ds: xr.Dataset) -> None:
         table.add_column(f"{body} peak [MPa]", justify="right")
         table.add_column(f"{body} damage [-]", justify="right")
     for i, name in enumerate(ds["block"].values):
-        cells = [str(name), f"{float(ds['distance'][i]):g}", REGIMES[int(ds["regime"][i])].replace("_", " ")]
+        cells = [str(name), f"{float(ds['distance'][i]):g}", REGIME_LABELS[int(ds["regime"][i])]]
         for body in BODIES:
             track = _track(ds, body)
             for variable in ("peak_stress", "damage"):

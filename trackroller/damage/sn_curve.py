@@ -48,6 +48,27 @@ class SNCurve(NamedTuple):
     n_k: ArrayLike
 
 
+def curve_of(material: Any) -> SNCurve:
+    """Return the S-N curve of a material.
+
+    Parameters
+    ----------
+    material : Material or MaterialArrays
+        One material, or the columns of n materials.
+
+    Returns
+    -------
+    SNCurve
+        Values of the shape that the material has.
+    """
+    return SNCurve(
+        material.tensile_strength,
+        material.fatigue_limit,
+        material.cycles_at_tensile_strength,
+        material.cycles_at_fatigue_limit,
+    )
+
+
 def or_points(place: int) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Let a function that takes an `SNCurve` at a place (an int) take the curve's four values there as well."""
 

@@ -7,18 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report.claims import FEW, Sentence
-from trackroller.report.numbers import (
-    REGIME_LABELS,
-    count,
-    level_text,
-    listing,
-    long_name,
-    number,
-    quantity,
-    setting,
-    share,
-)
+from trackroller.report.numbers import count, level_text, listing, long_name, number, quantity, setting, share
 from trackroller.report.view import BODIES, MOST_LEVELS, OUTSIDE, StudyView
 
 CONDITIONS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity", "guide_curve_radius")

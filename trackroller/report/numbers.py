@@ -9,7 +9,6 @@ from typing import Any
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 from trackroller.study.design.levels import short
 
-REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")
 UNITS = {
     "1": "–",
     "-": "–",

@@ -30,7 +30,7 @@ _CONTACT = {
     ),
 }
 _LIFE = {
-    "elementary": "Miner elementary: the Woehler line runs on below the fatigue limit. Miner (1945): Cumulative "
+    "elementary": "Miner elementary: the S-N curve runs on below the fatigue limit. Miner (1945): Cumulative "
     "damage in fatigue. Journal of Applied Mechanics 12, A159–A164",
     "haibach": "Haibach: slope 2k − 1 below the fatigue limit. Haibach (2006): Betriebsfestigkeit. Springer",
     "unlimited": "Miner original: unlimited life below the fatigue limit. Miner (1945): Cumulative damage in fatigue. "

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.claims import Sentence
 from trackroller.report.findings import best_design, occurrence, valid_designs
 from trackroller.report.known_errors import accuracy, friction_error
-from trackroller.report.numbers import REGIME_LABELS, capital, count
+from trackroller.report.numbers import capital, count
 from trackroller.report.view import StudyView
 
 Line = tuple[str, list[Sentence]]

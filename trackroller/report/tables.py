@@ -9,20 +9,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import PARAMETERS, REGIME_LABELS
 from trackroller.report.findings import FLAG_WORDS, OF_BODY, occurrence, ranked
-from trackroller.report.numbers import (
-    REGIME_LABELS,
-    capital,
-    count,
-    level_text,
-    life,
-    long_name,
-    plain,
-    rounded,
-    share,
-    unit_text,
-)
+from trackroller.report.numbers import capital, count, level_text, life, long_name, plain, rounded, share, unit_text
 from trackroller.report.view import BODIES, StudyView
 
 BEST = 5  # designs in the table of the best

@@ -13,7 +13,7 @@ import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_yaml
-from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
 
 BOOKKEEPING = {
     "regime",
@@ -46,7 +46,6 @@ DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
     "drilling_torque": ("drilling_torque", {}, "sum", "natural", "drilling torque"),
     "slip": ("slip", {}, "sum", "natural", "longitudinal creepage"),
 }
-_REGIME_WORDS = {"rolling": "rolling", "full_slip": "full slip", "lift_off": "lift-off", "failed": "failed"}
 _JOIN: dict[str, Any] = {"min": np.nanmin, "max": np.nanmax, "sum": np.nansum}
 
 
@@ -176,7 +175,7 @@ def _usable(
             raise unknown_name("analysis.keep", name, REGIMES)
     usable = np.isin(regime, [REGIMES.index(name) for name in keep])
     lost = {
-        _REGIME_WORDS[n]: int((regime == i).sum())
+        REGIME_LABELS[i]: int((regime == i).sum())
         for i, n in enumerate(REGIMES)
         if n not in keep and (regime == i).any()
     }
@@ -249,6 +248,6 @@ def outputs(
         found.append(Output(name, values, units, words, on, lost | why))
     for i, name in enumerate(REGIMES):
         if i and (regime == i).any() and not unlimited:
-            words = f"occurrence of {_REGIME_WORDS[name].replace('failed', 'failure')}"
+            words = f"occurrence of {REGIME_LABELS[i].replace('failed', 'failure')}"
             found.append(Output(name, (regime == i).astype(float), "1", words, "natural"))
     return found

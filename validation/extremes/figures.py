@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures.style import (
     REGIME_COLOURS,
     REGIME_HATCHES,
@@ -20,7 +21,6 @@ from trackroller.report.figures.style import (
     save,
     write_index,
 )
-from trackroller.report.numbers import REGIME_LABELS
 
 Record = dict[str, Any]
 CHECKS = {

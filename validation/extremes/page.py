@@ -35,7 +35,7 @@ NOTES = (
     "where by more than 1e-9, by no more than a few times what the residual said.",
     "Where a patch reaches beyond the equator of the guide contour the slip is constant there (an assumption), the "
     "torque jumps, and a balance inside the jump has no solution: failed.",
-    "A life beyond the largest number of a computer is inf; the Woehler line has no end.",
+    "A life beyond the largest number of a computer is inf; the S-N curve has no end.",
     "`fastsim` ends at an ellipticity of 50, `kalker` where its elements get too slender (about 1000): failed beyond.",
     "Very slender patches with the spin pole inside (a/b above 50): the search may miss a ridge of up to 5 % of the "
     "peak; the estimate owns it, `reference` finds it.",

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.parameters import EXACTNESS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.geometry import curvatures, rolling_radius
+from trackroller.roller.geometry import contact_geometry
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import flat, read_study
 
@@ -171,16 +171,25 @@ def _with_life(ds: xr.Dataset) -> xr.Dataset:
 
 
 def spin(inputs: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Spin of a design, phi rho with phi = sin(alpha)/r_A and 4/rho = k_x + k_y [1], shape (n,).
+    """Return the dimensionless spin of designs, phi rho with phi = sin(alpha)/r_A and 4/rho = k_x + k_y.
 
-    How much the direction of slip turns over a patch: the spin creepage phi [1/mm] times the radius of curvature rho
-    [mm] by Kalker (1990), "Three-Dimensional Elastic Bodies in Rolling Contact"; over the friction coefficient it says
-    how far elastic slip is saturated. Independent of load and stiffness.
+    Parameters
+    ----------
+    inputs : mapping of str to numpy.ndarray
+        Columns of `geometry.contact_geometry`, shape (n,).
+
+    Returns
+    -------
+    numpy.ndarray
+        phi rho [1], shape (n,).
+
+    Notes
+    -----
+    phi [1/mm] is the spin creepage and rho [mm] is the radius of curvature of Kalker (1990), "Three-Dimensional Elastic
+    Bodies in Rolling Contact". Their product over the friction coefficient says how close the patch is to full sliding.
+    It does not depend on load and stiffness.
     """
-    alpha = np.deg2rad(inputs["contact_angle"])
-    r_a = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
     with np.errstate(divide="ignore", invalid="ignore"):
-        k_x, k_y = curvatures(
-            inputs["roller_profile_radius"], inputs["guide_profile_radius"], inputs["guide_curve_radius"], r_a, alpha
-        )
-        return np.asarray(np.sin(alpha) / r_a * 4.0 / (k_x + k_y))
+        found = contact_geometry(inputs)
+        curvature = found.curvature_lateral + found.curvature_rolling
+        return np.asarray(np.sin(found.contact_angle) / found.rolling_radius * 4.0 / curvature)

@@ -13,9 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.ticker import MaxNLocator
 
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, framed, patches_of
-from trackroller.report.numbers import REGIME_LABELS, number, rounded
+from trackroller.report.numbers import number, rounded
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # a longer ellipse than this is not drawn to scale

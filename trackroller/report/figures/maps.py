@@ -14,11 +14,12 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report.claims import classes
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import sampled
 from trackroller.report.findings import extremes
-from trackroller.report.numbers import REGIME_LABELS, capital, factor_label, level_text, long_name, rounded, with_unit
+from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
 from trackroller.report.view import MOST_LEVELS, StudyView
 
 MAX_TICKS = 9

@@ -8,10 +8,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report import choices
 from trackroller.report.figures import style
 from trackroller.report.findings import CONDITIONS
-from trackroller.report.numbers import REGIME_LABELS, capital, factor_label, listing, long_name, plain, with_unit
+from trackroller.report.numbers import capital, factor_label, listing, long_name, plain, with_unit
 from trackroller.report.view import StudyView
 from trackroller.study.design.entries import OPTION_FACTORS
 

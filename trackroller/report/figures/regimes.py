@@ -9,12 +9,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report.claims import classes
 from trackroller.report.figures import style
 from trackroller.report.figures.maps import MAX_TICKS, Pair, tick_text
 from trackroller.report.figures.panels import sampled
 from trackroller.report.findings import occurrence
-from trackroller.report.numbers import REGIME_LABELS, capital, factor_label, long_name
+from trackroller.report.numbers import capital, factor_label, long_name
 from trackroller.report.view import MOST_LEVELS, StudyView
 
 BINS = 8

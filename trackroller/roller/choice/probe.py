@@ -1,7 +1,7 @@
-"""What `contact_model="auto"` finds out about a case before it chooses: its forces by the table of the exact theory.
+"""Solve a case by the table of exact solutions before `contact_model="auto"` chooses a contact model.
 
-The table takes microseconds a patch, so that the forces of a cheaper model can be compared with the exact ones case by
-case instead of being guessed. Materials more unlike than the table reaches are looked up at its end.
+The table takes microseconds a patch. The forces of a cheaper model are therefore compared with the exact forces case by
+case. Materials that differ more than the table covers are looked up at the end of the table.
 """
 
 from __future__ import annotations
@@ -22,30 +22,30 @@ if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable
     from trackroller.roller.options import Options
 
-FARTHEST_POLE = 3.0  # over the half-width; farther away it makes no difference
+FARTHEST_POLE = 3.0  # of |x_spin|/a; a spin pole farther away changes nothing
 
 
 class NearestInTable(TableModel):
-    """The table's answer for the nearest coupling |K|/mu that it holds; NaN outside its range of ellipticities."""
+    """Contact model that reads the table at the nearest coupling |K|/mu; NaN outside its range of axis ratios."""
 
     def __init__(self, elastic: Elastic) -> None:
         super().__init__(elastic, ContactModel())
 
     def look_up(self, ellipse: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tables.TableSolution:
-        """Resultants, stick and dissipation of patches, arrays (m,)."""
+        """Return resultants, adhesion share and dissipation of m patches from the table."""
         most = (1.0 - 1e-9) * tables.LARGEST_COUPLING * friction
         elastic = self.elastic.take(rows)
         near = replace(elastic, coupling=np.clip(elastic.coupling, -most, most))
         return tables.solve_patch(ellipse, slip.longitudinal, slip.spin, friction, near)
 
     def law(self, ellipse, slip, friction, rows, fine) -> Resultants:
-        """Resultants on the roller, shape (m,)."""
+        """Return the resultants on the roller, (m,)."""
         return self.look_up(ellipse, slip, friction, rows).resultants
 
 
 @dataclass(frozen=True)
 class Probe(_Rows):
-    """n rollers by the table. Arrays (n, 2) by contact, or (n,)."""
+    """Solution of n rollers by the table; arrays (n, 2) by contact, or (n,)."""
 
     regime: np.ndarray
     converged: np.ndarray
@@ -60,11 +60,11 @@ class Probe(_Rows):
 
     @property
     def rolls(self) -> np.ndarray:
-        """Which rollers roll, (n,)."""
+        """Return True for the rollers in the regime rolling, (n,)."""
         return self.regime == ROLLING
 
     def numbers(self) -> np.ndarray:
-        """ln of the larger share that sticks, |x_spin|/a of the nearer pole, larger |F_T|/(mu F_N); shape (n, 3)."""
+        """Return ln of the larger adhesion share, |x_spin|/a of the nearer pole, the larger |F_T|/(mu F_N), (n, 3)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             grip = np.abs(self.lateral_force / self.normal_force).max(axis=1) / self.friction
             return np.stack(
@@ -85,22 +85,27 @@ def _solve(table: CaseTable, options: Options, model: str) -> tuple[Any, Equilib
 
 
 def probe(table: CaseTable, options: Options) -> Probe:
-    """Forces, creepages and stick of n rollers by the table; about 0.3 ms of processor time each."""
+    """Return forces, spin poles and adhesion shares of n rollers by the table.
+
+    Parameters
+    ----------
+    table : CaseTable
+        The n cases.
+    options : Options
+        Options of the solution; contact model and accuracy are replaced.
+
+    Returns
+    -------
+    Probe
+        Arrays of n rollers.
+    """
     scene, balance = _solve(table, options, "kalker_table")
     loads, n, f = scene.loads, len(table), balance.forces
-    two = lambda v: np.concatenate([v, v])  # noqa: E731
-    sine = np.sin(loads.contact_angle)
-    shape = type(loads.shape)(two(loads.shape.lateral), two(loads.shape.rolling), two(loads.shape.pressure))
-    slip = Slip(
-        np.concatenate([sine, -sine]),
-        two(np.cos(loads.contact_angle)),
-        two(loads.guide_profile_radius),
-        two(loads.rolling_radius),
-        two(balance.shift),
-    )
-    patches, rows = shape.at(balance.normal_force.T.reshape(-1)), np.tile(np.arange(n), 2)
-    stick, rolling = np.zeros(2 * n), np.flatnonzero(two(balance.regime == ROLLING))
-    found = scene.model.look_up(patches.take(rolling), slip.take(rolling), two(loads.friction)[rolling], rows[rolling])
+    rows = np.tile(np.arange(n), 2)
+    patches, slip = loads.contacts(balance.normal_force.T.reshape(-1), balance.shift[rows], rows)
+    stick, rolling = np.zeros(2 * n), np.flatnonzero(balance.regime[rows] == ROLLING)
+    own = rows[rolling]
+    found = scene.model.look_up(patches.take(rolling), slip.take(rolling), loads.friction[own], own)
     stick[rolling] = found.stick_fraction
     a, b = patches.semi_axis_lateral, patches.semi_axis_rolling
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -120,9 +125,25 @@ def probe(table: CaseTable, options: Options) -> Probe:
 
 
 def force_error(table: CaseTable, options: Options, model: str, exact: Probe) -> np.ndarray:
-    """Difference of the forces of `model` from the table's, (n,); 0 where both slip or lift off, inf where only one.
+    """Return the relative difference between the forces of a model and those of the table.
 
-    The largest of: normal force, relative; lateral and driving force over F_N; spin moment over F_N sqrt(a b).
+    Parameters
+    ----------
+    table : CaseTable
+        The n cases.
+    options : Options
+        Options of the solution.
+    model : str
+        Name of the contact model.
+    exact : Probe
+        Result of `probe` for the same cases.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n,)
+        Largest difference of: normal force, relative; lateral and driving force over F_N; spin moment over
+        F_N sqrt(a b) [1]. It is 0 where both solutions slip or lift off, and inf where their regimes differ or one
+        did not converge.
     """
     own = _solve(table, options, model)[1]
     with np.errstate(divide="ignore", invalid="ignore"):

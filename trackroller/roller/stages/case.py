@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from trackroller.roller.options import Options
 
 LIFE_CONVENTIONS = (
-    "Woehler line N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is "
-    "taken as the amplitude (as published); below sigma_D: elementary runs the line on, haibach uses the slope 2k - 1, "
+    "S-N curve N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is taken "
+    "as the amplitude (as published); below sigma_D: elementary continues the curve, haibach uses the slope 2k - 1, "
     "unlimited gives inf; roller: one overrolling per revolution; guide: overrollings per hour are the user's input"
 )
 
 
 def finish(table: CaseTable, block: Block, options: Options) -> None:
-    """Add friction power, life and validity flags to a block."""
+    """Add friction power, life and validity flags to the results of a block, in place."""
     v = block.values
     if "friction_work" in options.outputs:
         v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
@@ -35,20 +35,17 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 
 
 def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
-    """Add overrollings and hours to failure, from the peak stress."""
+    """Add overrollings and hours to failure and their relative error to the results `v`, from the peak stress.
+
+    The relative error of the life is the exponent of the S-N curve times the relative error of the stress.
+    """
     per_body, errors = [], []
-    for j, m in enumerate((table.roller, table.guide)):
-        column = lambda a: a[:, None]  # noqa: E731
-        line = (
-            column(m.tensile_strength),
-            column(m.fatigue_limit),
-            column(m.cycles_at_tensile_strength),
-            column(m.cycles_at_fatigue_limit),
-        )
-        per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], *line, rule=options.life_rule))
-        exponent = fatigue.woehler_exponent(*line)
-        if options.life_rule == "haibach":  # the flatter line below the fatigue limit
-            exponent = np.where(v["peak_stress"][:, :, j] < line[1], 2.0 * exponent - 1.0, exponent)
+    for j, material in enumerate((table.roller, table.guide)):
+        curve = fatigue.SNCurve(*(np.asarray(value)[:, None] for value in fatigue.curve_of(material)))
+        per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], curve, rule=options.life_rule))
+        exponent = fatigue.woehler_exponent(curve)
+        if options.life_rule == "haibach":  # The curve is flatter below the fatigue limit.
+            exponent = np.where(v["peak_stress"][:, :, j] < curve.fatigue_limit, 2.0 * exponent - 1.0, exponent)
         errors.append(exponent * v["error_estimate"][:, :, j])
     v["life_cycles"] = np.stack(per_body, axis=2)
     v["life_error_estimate"] = np.stack(errors, axis=2)
@@ -60,7 +57,7 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
-    """Return True where the slip of the sliding model vanishes apart from its spin pole, (n,); see `pole_split`."""
+    """Return True where the slip of the sliding model vanishes away from its spin pole, (n,); see `pole_split`."""
     alpha = np.deg2rad(table.contact_angle)
     split = [
         pole_split(
@@ -95,7 +92,7 @@ def validity(table: CaseTable, block: Block) -> None:
 
     with np.errstate(invalid="ignore"):
         warn("half_space", size[:, None] > 0.3 * smallest)
-        # ASSUME: the database holds no yield strength, so R_m stands for it
+        # ASSUME: R_m replaces the yield strength, which the database does not have.
         warn("yield", np.max(v["max_pressure"], axis=1)[:, None] > 1.6 * strength)
         warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
         warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & split_pole(table, v))
@@ -104,5 +101,5 @@ def validity(table: CaseTable, block: Block) -> None:
             knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)
             warn("static", np.any(v["peak_stress"] > strength[:, None, :], axis=1))
             warn("deep_life", np.any(v["peak_stress"] < knee[:, None, :], axis=1))
-    block.bodies = body | block.bits[:, None]  # flags of the equilibrium hold for the pair
+    block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]

@@ -19,15 +19,6 @@ BODIES = ("roller", "guide")
 _BCB, _CB = ("block", "contact", "body"), ("contact", "body")
 
 
-def _line(material: Material) -> tuple[float, float, float, float]:
-    return (
-        material.tensile_strength,
-        material.fatigue_limit,
-        material.cycles_at_tensile_strength,
-        material.cycles_at_fatigue_limit,
-    )
-
-
 def running_cycles(overrollings: np.ndarray, stress: np.ndarray, regime: np.ndarray) -> np.ndarray:
     """Cycles of each track, shape (block, contact, body): none for the contact that has lifted off.
 
@@ -60,7 +51,7 @@ def damage_per_shift(
         if probability == 0.5 or t_n or t_s:
             life[..., i] = fatigue.life_cycles(
                 stress[..., i],
-                *_line(material),
+                fatigue.curve_of(material),
                 rule,
                 failure_probability=probability,
                 scatter_cycles=t_n,
