@@ -1,43 +1,47 @@
-"""Materials and friction coefficients: what a body is made of, and the database of them.
+"""Materials, friction coefficients, and the database that holds them.
 
-`load_database()` reads the built-in file and, over it, the user's own (see `load_database` for where it is
-looked for). Every value carries its unit, its source and a `placeholder` mark for a guess without a source.
+`load_database()` reads the built-in file and then the user's own file, whose values replace built-in ones. Every value
+has a unit and a source. The mark `placeholder` says that a value is a guess without a source.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from trackroller.materials.database import MaterialDatabase
+from trackroller.materials.edit import add_material
+from trackroller.materials.file import find_user_file, read_database
 from trackroller.materials.material import Material
 
 __all__ = ["Material", "MaterialDatabase", "add_material", "builtin_database", "load_database"]
 
 
 def load_database(user_file: Path | str | None = None) -> MaterialDatabase:
-    """The built-in database with the user's own file over it.
+    """Return the built-in database, changed and extended by the user's own file.
 
-    The user's file is `user_file`, else the file the environment variable TRACKROLLER_MATERIALS names, else
-    `config/materials.yaml` of the working directory if it is there. It may add materials, change single
-    values of built-in ones and add friction pairs. Files are read again only when they have changed.
+    Parameters
+    ----------
+    user_file : pathlib.Path or str, optional
+        The user's file. Default: the file that the environment variable TRACKROLLER_MATERIALS names, otherwise
+        `config/materials.yaml` in the working directory if this file exists.
 
-    Raises `InputError` naming file, material, field and value.
+    Returns
+    -------
+    MaterialDatabase
+        The database. A file is read again only after it has changed.
+
+    Raises
+    ------
+    InputError
+        If a file is missing or wrong; the error names file, material, field and value.
+
+    Notes
+    -----
+    The user's file may add materials, change single values of built-in materials, and add friction pairs.
     """
-    from trackroller.materials.file import find_user_file, read_database
-
     return read_database(find_user_file(user_file))
 
 
 def builtin_database() -> MaterialDatabase:
-    """The built-in database alone, whatever files the user has."""
-    from trackroller.materials.file import read_database
-
+    """Return the built-in database without the user's file."""
     return read_database(None)
-
-
-def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
-    """Write a material into the user's file; see `trackroller.materials.edit.add_material`."""
-    from trackroller.materials.edit import add_material as add
-
-    return add(path, name, replace=replace, **values)

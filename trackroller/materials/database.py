@@ -15,9 +15,16 @@ from trackroller.parameters import FRICTION_LEVELS
 
 @dataclass(frozen=True)
 class MaterialDatabase:
-    """Materials by name and friction coefficients by pair; made by `load_database`.
+    """Materials by name and friction coefficients by pair; `load_database` makes it.
 
-    `files` are the files it was read from, built-in first.
+    Parameters
+    ----------
+    materials : mapping of str to Material
+        Materials by name.
+    friction_table : mapping of frozenset of str to mapping of str to FrictionValue
+        Friction coefficients of each pair of names or families, by level.
+    files : tuple of str
+        Files from which the database was read, the built-in file first.
     """
 
     materials: Mapping[str, Material]
@@ -25,7 +32,7 @@ class MaterialDatabase:
     files: tuple[str, ...] = ()
 
     def names(self) -> tuple[str, ...]:
-        """Names of all materials."""
+        """Return the names of all materials."""
         return tuple(self.materials)
 
     def __iter__(self) -> Iterator[str]:
@@ -35,15 +42,28 @@ class MaterialDatabase:
         return name in self.materials
 
     def families(self) -> tuple[str, ...]:
-        """Families of the materials and of the friction table, sorted."""
+        """Return the families of the materials and of the friction table, sorted."""
         known = {m.family for m in self.materials.values() if m.family}
         return tuple(sorted(known | {part for pair in self.friction_table for part in pair}))
 
     def material(self, material: str | Mapping[str, Any] | Material) -> Material:
-        """The material of that name, or the inline material of a mapping.
+        """Return the material of a name, or make a material from a mapping.
 
-        A mapping has the fields of `Material`; `like: NAME` takes what is not given from another material.
-        Raises `InputError` for an unknown name, a missing or an impossible value.
+        Parameters
+        ----------
+        material : str, mapping or Material
+            A name, or a mapping with the fields of `Material`. The entry `like: NAME` in a mapping takes missing values
+            from another material. A `Material` is returned as it is.
+
+        Returns
+        -------
+        Material
+            The material.
+
+        Raises
+        ------
+        InputError
+            For an unknown name, a missing value or an impossible value.
         """
         if isinstance(material, Material):
             return material
@@ -61,20 +81,25 @@ class MaterialDatabase:
         return self.materials[material]
 
     def friction(self, first: str | Material, second: str | Material, level: str = "typical") -> FrictionValue:
-        """Friction coefficient of a pair, given by materials, material names or families, in either order.
-
-        A pair that names a material stands over the pair of the families.
+        """Return the friction coefficient of two bodies, in either order.
 
         Parameters
         ----------
-        first, second : the two bodies
-        level : 'typical', 'upper' or 'lower'
+        first, second : str or Material
+            The two bodies: material, name of a material, or family.
+        level : str
+            "typical", "upper" or "lower".
 
         Returns
         -------
-        FrictionValue with value [-], source and placeholder mark.
+        FrictionValue
+            Friction coefficient [1], its source and its placeholder mark. An entry for a material has priority over an
+            entry for the material's family.
 
-        Raises `InputError` for an unknown pair or level, saying how to give the coefficient.
+        Raises
+        ------
+        InputError
+            For an unknown pair or level; the error says how to give the coefficient.
         """
         if level not in FRICTION_LEVELS:
             raise unknown_name("friction level", level, FRICTION_LEVELS)
@@ -87,7 +112,7 @@ class MaterialDatabase:
         raise self._unknown_pair(names, level)
 
     def _names_of(self, body: str | Material) -> tuple[str, ...]:
-        """Keys of a body for the friction table: its own name before its family."""
+        """Return the keys of a body in the friction table: its name first, then its family."""
         if isinstance(body, Mapping):
             body = self.material(body)
         if isinstance(body, str) and body in self.materials:
@@ -103,8 +128,8 @@ class MaterialDatabase:
         label = tuple(body[-1] for body in names)
         known = ", ".join("-".join(sorted(p) if len(p) == 2 else [*p, *p]) for p in self.friction_table)
         remedy = (
-            "Give friction_coefficient in the case, add the pair under `friction:` of your materials"
-            " file, or give the material a `family` that has one."
+            "Give friction_coefficient in the case, add the pair under `friction:` in your materials file, "
+            "or give the material a `family` that has a friction coefficient."
         )
         for body in names:
             if body[-1] not in self.families() and (close := nearest(body[-1], self.families())):

@@ -1,4 +1,4 @@
-"""Writes a material into the user's file: comments stay, and the file is never half-written."""
+"""Write a material into the user's file, keep the file's comments, and never leave a half-written file."""
 
 from __future__ import annotations
 
@@ -27,21 +27,35 @@ FIELDS = (*NUMBERS, *TEXTS, "source", "placeholder")
 
 
 def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
-    """Write a material into the user's file and return it as it will be read.
-
-    Comments, order and every other entry of the file stay. The file is written beside and then put in
-    place at once, after the new text has been read back and checked. A missing file is made.
+    """Write a material into the user's file and return the material as the file now defines it.
 
     Parameters
     ----------
-    path : the user's materials file
-    name : of the material; the name of a built-in one changes single values of it
-    replace : change the values given here of a material that stands in the file already
-    values : fields of `Material` as numbers in its units or as mappings with value, unit, source,
-        placeholder, note; `family`, `description`, `like`; `source`, `placeholder` and `note` for all
-        values given as numbers
+    path : pathlib.Path or str
+        The user's materials file; it is created if it does not exist.
+    name : str
+        Name of the material. With the name of a built-in material, the entry changes single values of it.
+    replace : bool
+        Allow to change a material that the file already contains.
+    **values
+        Fields of `Material`, each a number in the unit of the field, or a mapping with value, unit, source, placeholder
+        and note. Also `family`, `description` and `like`, and `source`, `placeholder` and `note` for all values that
+        are given as numbers.
 
-    Raises `InputError` naming field, value and remedy; the file is then as it was.
+    Returns
+    -------
+    Material
+        The new material.
+
+    Raises
+    ------
+    InputError
+        If a value is wrong or the file cannot be written; the file is then unchanged.
+
+    Notes
+    -----
+    Comments, order and all other entries of the file are kept. The new text is checked and written to a temporary file,
+    which then replaces the old file in one step.
     """
     path = Path(os.path.realpath(Path(path).expanduser()))
     if not isinstance(name, str) or not name.strip():
@@ -56,7 +70,9 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
         )
     text = read_text(path, "materials file") if path.exists() else HEADER
     builtin = read_database(None)
-    build_database(text, str(path), over=builtin)  # a file that is broken already is not touched
+    build_database(
+        text, str(path), over=builtin
+    )  # raises an error, so that a file that was broken before stays unchanged
     text = _with_entry(text, path, name, _entry(values), replace)
     material = build_database(text, str(path), over=builtin).material(name)
     _write_at_once(path, text)
@@ -64,7 +80,7 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
 
 
 def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Plain entry of the file; every number becomes a mapping with unit, source and placeholder mark."""
+    """Return the entry for the file; every number becomes a mapping with unit, source and placeholder mark."""
     common = {"source": values.get("source", "user's own"), "placeholder": values.get("placeholder", False)}
     note = {"note": values["note"]} if "note" in values else {}
     entry: dict[str, Any] = {key: values[key] for key in ("description", "family", "like") if key in values}
@@ -79,7 +95,7 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
-    """A number as short as it can be written; what is none is left for the check to refuse by name."""
+    """Return a number in its shortest form; anything else unchanged, because the later check names the field."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -90,7 +106,7 @@ def _plain(value: Any) -> Any:
 
 
 def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace: bool) -> str:
-    """The text with the material in it."""
+    """Return the text of the file with the material in it."""
     editor = YAML()
     editor.preserve_quotes = True
     editor.width = 4096
@@ -98,7 +114,7 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     block = _block(entry)
     data = editor.load(text)
     if data is None or data.get("materials") is None:
-        # nothing to hang comments on: the text itself is kept and the section written behind it
+        # ruamel.yaml would drop the comments of a file without entries, so the section is appended to the text.
         head = text if data is None else _without_empty_section(text)
         out = io.StringIO()
         editor.dump(CommentedMap({"materials": CommentedMap({_text(name): block})}), out)
@@ -108,8 +124,8 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
         raise InputError(
             f"{path}: materials.{name}",
             name,
-            "the file has a material of this name already",
-            "Take another name, or replace its values (replace=True).",
+            "a name that the file does not use already",
+            "Choose another name, or replace the values (replace=True).",
         )
     if name in materials:
         for key, value in block.items():
@@ -122,14 +138,14 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
 
 
 def _append(materials: Any, name: Any, block: Any) -> None:
-    """Add at the end of the section, in block style even if the user's mapping is `{}`."""
+    """Add an entry at the end of the section, in block style even if the section is written as `{}`."""
     if not materials:
         materials.fa.set_block_style()
     materials[name] = block
 
 
 def _without_empty_section(text: str) -> str:
-    """The text without its line `materials:` that holds nothing, so that it can be written anew."""
+    """Return the text without an empty `materials:` line, which is then written again with an entry."""
     lines = text.splitlines(keepends=True)
     for i, line in enumerate(lines):
         if line.split("#")[0].rstrip() in ("materials:", "materials: null", "materials: ~"):
@@ -140,7 +156,7 @@ def _without_empty_section(text: str) -> str:
 
 
 def _block(entry: Mapping[str, Any]) -> Any:
-    """Entry as ruamel's mappings, each value on one line."""
+    """Return the entry as mappings of ruamel.yaml, with each value on one line."""
     block = CommentedMap()
     for key, value in entry.items():
         if isinstance(value, Mapping):
@@ -153,14 +169,14 @@ def _block(entry: Mapping[str, Any]) -> Any:
 
 
 def _text(value: Any) -> Any:
-    """A text in quotes where YAML 1.1 would read something else, such as 1.4301, yes or 1:30."""
+    """Return a text, in quotes where YAML 1.1 would not read it as text, such as 1.4301, yes or 1:30."""
     if not isinstance(value, str):
         return value
     return DoubleQuotedScalarString(value) if needs_quotes(value) else value
 
 
 def _write_at_once(path: Path, text: str) -> None:
-    """Write beside and put in place in one step, so that a reader sees the old file or the new one."""
+    """Write a temporary file and rename it, so that a reader sees the whole old file or the whole new one."""
     beside = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -173,8 +189,8 @@ def _write_at_once(path: Path, text: str) -> None:
         os.chmod(beside, mode)
         os.replace(beside, path)
     except OSError as error:
-        allowed = f"it must be in a folder that can be written ({error.strerror})"
-        remedy = "Give another path, or the right to write there."
+        allowed = f"a file in a folder that can be written ({error.strerror})"
+        remedy = "Give another path, or allow writing to this folder."
         raise InputError("materials file", str(path), allowed, remedy) from None
     finally:
         if beside is not None and os.path.exists(beside):

@@ -1,4 +1,4 @@
-"""Turns the entries of a file or of a case into materials and friction coefficients, checked and with sources."""
+"""Check the entries of a file or of a case and turn them into materials and friction coefficients."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ FRICTION = Property("friction_coefficient", "mu", "-", "friction coefficient", 0
 
 
 def _scaled(number: Any, factor: float) -> Any:
-    """The number in the unit of the property; anything else as it is, to be refused by name later."""
+    """Return the number in the unit of the property; anything else unchanged, because the later check names it."""
     try:
         return number if isinstance(number, bool) else float(number) * factor
     except (TypeError, ValueError):
@@ -38,7 +38,17 @@ def _scaled(number: Any, factor: float) -> Any:
 
 
 class EntryParser:
-    """Turns entries of one file into values; knows the file for messages and its table of sources."""
+    """Turn the entries of one file into values, materials and friction coefficients.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file in error messages.
+    origin : str
+        Name of the file that each value keeps as its origin.
+    sources : mapping of str to str
+        Full references by their short names.
+    """
 
     def __init__(self, file: str, origin: str, sources: Mapping[str, str]) -> None:
         self.file = file
@@ -46,19 +56,39 @@ class EntryParser:
         self.sources = sources
 
     def source(self, text: str) -> str:
-        """The full reference of a source, or of several with ', ' between, else the text itself."""
+        """Return the full reference of a source, or of several separated by ', '; otherwise the text itself."""
         parts = text.split(", ")
         return "; ".join(self.sources[p] for p in parts) if all(p in self.sources for p in parts) else text
 
     def value(self, prop: Property, entry: Any, where: str) -> Value:
-        """A value from a number or from a mapping of value, unit, source, placeholder, note."""
+        """Return a checked value with its unit and source.
+
+        Parameters
+        ----------
+        prop : Property
+            Unit and bounds of the value.
+        entry : number or mapping
+            The number, or a mapping with value, unit, source, placeholder and note.
+        where : str
+            Place of the entry, for messages.
+
+        Returns
+        -------
+        Value
+            The value in the unit of the property.
+
+        Raises
+        ------
+        InputError
+            If a key is unknown, the unit does not fit, or the number lies outside its bounds.
+        """
         field = f"{where}.{prop.name}"
         if not isinstance(entry, Mapping):
             entry = {"value": entry}
         for key in entry:
             if key not in VALUE_KEYS:
-                if entry[key] is None:  # {source: a, b} is read as a key b without a value
-                    raise InputError(field, str(key), "it stands alone in the mapping", "Quote texts with a comma.")
+                if entry[key] is None:  # YAML reads {source: a, b} as a key b without a value.
+                    raise InputError(field, str(key), "a key with a value", "Put texts that contain a comma in quotes.")
                 raise unknown_name(f"{field}: key", str(key), VALUE_KEYS)
         if "value" not in entry:
             remedy = f"Write {{value: ..., unit: {prop.unit}}}."
@@ -79,7 +109,28 @@ class EntryParser:
         )
 
     def material(self, name: Any, entry: Any, known: Mapping[str, Material]) -> Material:
-        """A material from its entry, over the known one of the same name or the one that `like` names."""
+        """Return the material of an entry.
+
+        Parameters
+        ----------
+        name : str
+            Name of the material.
+        entry : mapping
+            Fields of the material. Missing values come from the known material that `like` names, otherwise from the
+            known material of the same name.
+        known : mapping of str to Material
+            Materials by name.
+
+        Returns
+        -------
+        Material
+            The checked material.
+
+        Raises
+        ------
+        InputError
+            If a field is unknown, missing or wrong.
+        """
         if not isinstance(name, str) or not name.strip():
             raise InputError(
                 f"{self.file}: materials", name, "a material's name must be a text", f'Put it in quotes: "{name}".'
@@ -110,7 +161,7 @@ class EntryParser:
                 where,
                 given,
                 f"it lacks {', '.join(missing)}",
-                "Give them, or write `like: NAME` to take them from another.",
+                "Give these values, or write `like: NAME` to take them from another material.",
             )
         return self._made(name, entry, base, records, where)
 
@@ -142,7 +193,7 @@ class EntryParser:
             raise InputError(f"{where}.{field}", error.value, error.allowed, error.remedy) from None
 
     def friction(self, entry: Any) -> tuple[frozenset[str], dict[str, FrictionValue]]:
-        """Pair and levels of one entry of the friction list."""
+        """Return the pair of names and the friction coefficients by level of one entry of the friction list."""
         where = f"{self.file}: friction"
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, "an entry must look like {pair: [metal, PA6], typical: 0.2}")
@@ -171,11 +222,11 @@ class EntryParser:
 
 
 def inline_material(entry: Mapping[str, Any], known: Mapping[str, Material]) -> Material:
-    """Material from the mapping of a case, see `MaterialDatabase.material`."""
+    """Return the material that a mapping in a case describes; see `MaterialDatabase.material`."""
     entry = dict(entry)
     name = entry.pop("name", None) or "inline"
     entry = {key: value for key, value in entry.items() if value is not None}
     parser = EntryParser("case", "case", {})
-    # a name that is in the database as well shall not lend its values unasked
+    # A mapping inherits from a known material only if it asks for it by `like`, not because both have the same name.
     lenders = {key: known[key] for key in known if key != name or entry.get("like") == name}
     return parser.material(name, entry, lenders)

@@ -1,4 +1,4 @@
-"""Reads material files: parses, checks and lays the user's file over the built-in one."""
+"""Read material files: the built-in file, and the user's file, whose values replace built-in ones."""
 
 from __future__ import annotations
 
@@ -21,9 +21,23 @@ SECTIONS = ("sources", "materials", "friction")
 
 
 def find_user_file(argument: Path | str | None = None) -> Path | None:
-    """The user's file: the argument, else what TRACKROLLER_MATERIALS names, else config/materials.yaml.
+    """Return the path of the user's materials file, or None if there is no such file.
 
-    Raises `InputError` if the argument or the variable names a file that is not there.
+    Parameters
+    ----------
+    argument : pathlib.Path or str, optional
+        Path that the user gave. Default: the value of the environment variable TRACKROLLER_MATERIALS, otherwise
+        `config/materials.yaml` in the working directory.
+
+    Returns
+    -------
+    pathlib.Path or None
+        Resolved path.
+
+    Raises
+    ------
+    InputError
+        If the argument or the environment variable names a file that does not exist.
     """
     named = argument if argument is not None else os.environ.get(ENVIRONMENT) or None
     if named is None:
@@ -34,14 +48,14 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
         raise InputError(
             field,
             str(named),
-            "it must name a YAML file that is there",
+            "the path of a YAML file that exists",
             "Correct the path, or leave it out to use the built-in materials.",
         )
     return path.resolve()
 
 
 def read_database(user_file: Path | None) -> MaterialDatabase:
-    """Database of the built-in file with the user's over it; kept until a file changes."""
+    """Return the built-in database with the values of the user's file; both are cached until the file changes."""
     if user_file is None:
         return _cached(None, 0, 0)
     stat = os.stat(user_file)
@@ -61,15 +75,26 @@ def _builtin_text() -> str:
 
 
 def build_database(text: str, file: str, over: MaterialDatabase | None = None) -> MaterialDatabase:
-    """Database from the text of a file, laid over another one.
+    """Return the database of a file's text, based on another database.
 
     Parameters
     ----------
-    text : YAML with the sections sources, materials and friction, each optional
-    file : what to call the file in messages and as origin of its values
-    over : the database that gives what the file leaves out
+    text : str
+        YAML with the sections sources, materials and friction, each optional.
+    file : str
+        Name of the file in messages and as the origin of its values.
+    over : MaterialDatabase, optional
+        Database whose values are used where the file gives none.
 
-    Raises `InputError` naming file, material, field, value and what to do.
+    Returns
+    -------
+    MaterialDatabase
+        Materials and friction coefficients of both.
+
+    Raises
+    ------
+    InputError
+        If the text is wrong; the error names file, material, field, value and remedy.
     """
     sections = _sections(text, file)
     materials = dict(over.materials) if over else {}
@@ -85,7 +110,7 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
 
 
 def _sections(text: str, file: str) -> dict[str, Any]:
-    """The checked sections of a file, empty where it has none."""
+    """Return the checked sections of a file; a missing section is empty."""
     data = parse_yaml(text, f"materials file {file}")
     data = {} if data is None else data
     if not isinstance(data, Mapping):

@@ -1,4 +1,4 @@
-"""A material: its constants and the Woehler line, each value with unit, source and mark."""
+"""A material with its elastic constants and its S-N curve; each value has a unit, a source and a mark."""
 
 from __future__ import annotations
 
@@ -14,23 +14,37 @@ from trackroller.materials.properties import PROPERTIES, Value, check_number
 
 @dataclass(frozen=True)
 class Material:
-    """A material with the Woehler line through (N_Rm, R_m) and (N_k, sigma_D).
+    """A material whose S-N curve runs through (N_Rm, R_m) and (N_k, sigma_D).
 
     Parameters
     ----------
-    name : what the user calls it
-    youngs_modulus : E [MPa], > 0
-    poisson_ratio : nu [-], 0 to 0.5
-    tensile_strength : R_m [MPa]
-    fatigue_strength_ratio : sigma_D/R_m [-], between 0 and 1
-    cycles_at_tensile_strength, cycles_at_fatigue_limit : N_Rm < N_k [-]
-    family : group the friction table speaks of ('metal', 'PA6', 'POM' or the user's own; '' unknown)
-    scatter_in_cycles : T_N = N_90/N_10 [-], failure probabilities in percent; None: not known
-    scatter_in_stress : T_S = S_90/S_10 [-]; None: not known
-    description : a few words
-    records : unit, source and mark of each value, as far as known
+    name : str
+        Name of the material.
+    youngs_modulus : float
+        E > 0 [MPa].
+    poisson_ratio : float
+        nu from 0 to 0.5 [1].
+    tensile_strength : float
+        R_m [MPa].
+    fatigue_strength_ratio : float
+        sigma_D/R_m between 0 and 1 [1].
+    cycles_at_tensile_strength, cycles_at_fatigue_limit : float
+        N_Rm < N_k [1].
+    family : str
+        Group in the friction table: "metal", "PA6", "POM" or the user's own; "" if unknown.
+    scatter_in_cycles : float, optional
+        T_N = N_90/N_10 [1]; the index is the failure probability in percent. None: not known.
+    scatter_in_stress : float, optional
+        T_S = S_90/S_10 [1]. None: not known.
+    description : str
+        A short description.
+    records : mapping of str to Value
+        Unit, source and mark of each value, as far as known.
 
-    Raises `InputError` naming material, field, value and what to do.
+    Raises
+    ------
+    InputError
+        If a value is wrong; the error names material, field, value and remedy.
     """
 
     name: str
@@ -63,26 +77,26 @@ class Material:
 
     @property
     def fatigue_limit(self) -> float:
-        """Fatigue limit sigma_D [MPa] at N_k cycles."""
+        """Return the fatigue limit sigma_D [MPa] at N_k cycles."""
         return self.fatigue_strength_ratio * self.tensile_strength
 
     @property
     def woehler_exponent(self) -> float:
-        """Exponent k of the S-N curve [-], positive."""
+        """Return the exponent k > 0 of the S-N curve [1]."""
         cycles = self.cycles_at_fatigue_limit / self.cycles_at_tensile_strength
         return -math.log(cycles) / math.log(self.fatigue_strength_ratio)
 
     @property
     def shear_modulus(self) -> float:
-        """G = E / (2 (1 + nu)) [MPa]."""
+        """Return the shear modulus G = E / (2 (1 + nu)) [MPa]."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
 
     @property
     def placeholders(self) -> tuple[str, ...]:
-        """Names of the values that are guesses without a source."""
+        """Return the names of the values that are guesses without a source."""
         return tuple(name for name, record in self.records.items() if record.placeholder)
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain numbers and texts; usable as an inline material."""
+        """Return plain numbers and texts, which a case accepts as a material."""
         values = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "records"}
         return {key: value for key, value in values.items() if value not in (None, "")}

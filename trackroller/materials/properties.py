@@ -1,4 +1,4 @@
-"""The numbers of a material: symbol, unit, meaning and physical bounds, and a value with its source."""
+"""Declare the numbers of a material: symbol, unit, meaning and physical bounds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,19 @@ from trackroller.numerics.numbers import read_number
 
 @dataclass(frozen=True)
 class Property:
-    """A number of a material: symbol, unit, factors to it from other units, physical bounds."""
+    """One number of a material.
+
+    Parameters
+    ----------
+    name, symbol, unit, meaning : str
+        Name of the field, its symbol, its unit ("-" for 1), and its meaning in words.
+    lower, upper : float
+        Physical bounds in this unit.
+    closed : bool
+        True if the bounds themselves are allowed.
+    optional : bool
+        True if a material may leave the number out.
+    """
 
     name: str
     symbol: str
@@ -24,14 +36,14 @@ class Property:
     optional: bool = False
 
     def allowed(self) -> str:
-        """What is accepted, in words."""
+        """Return a sentence that says which values are allowed."""
         low, high = ("<=", "<=") if self.closed else ("<", "<")
         top = f" {high} {self.upper:g}" if math.isfinite(self.upper) else ""
         unit = "" if self.unit == "-" else f" {self.unit}"
         return f"{self.meaning} must be a finite number with {self.lower:g} {low} {self.symbol}{top}{unit}"
 
     def accepts(self, value: float) -> bool:
-        """Is the value physically possible?"""
+        """Return True if a value is physically possible."""
         if not math.isfinite(value):
             return False
         if self.closed:
@@ -39,7 +51,7 @@ class Property:
         return self.lower < value < self.upper
 
 
-# The upper bounds of E and R_m lie above every solid: they catch a value given in Pa.
+# No solid reaches the upper bounds of E and R_m. They detect a value that was given in Pa.
 _PROPERTIES = (
     Property("youngs_modulus", "E", "MPa", "Young's modulus", 0.0, 2e6),
     Property("poisson_ratio", "nu", "-", "Poisson's ratio", 0.0, 0.5, closed=True),
@@ -51,7 +63,7 @@ _PROPERTIES = (
     Property("scatter_in_stress", "T_S", "-", "scatter of strength S_90/S_10", 1.0, 1e3, True, True),
 )
 PROPERTIES: dict[str, Property] = {p.name: p for p in _PROPERTIES}
-# Other ways to give the S-N curve; they are turned into the properties above (see `trackroller.materials.sn_curve`).
+# Other ways to give the S-N curve; `trackroller.materials.sn_curve` turns them into the properties above.
 _ALTERNATIVES = (
     Property("fatigue_limit", "sigma_D", "MPa", "fatigue limit", 0.0, 2e5),
     Property("woehler_exponent", "k", "-", "exponent of the S-N curve", 0.0, 1e3),
@@ -62,7 +74,7 @@ REQUIRED = tuple(p.name for p in _PROPERTIES if not p.optional)
 
 @dataclass(frozen=True)
 class Value:
-    """A number with its unit, source, `placeholder` mark, remark, and the file it comes from."""
+    """A number with its unit, source, `placeholder` mark, note, and the file that defines it."""
 
     value: float
     unit: str
@@ -78,7 +90,27 @@ class FrictionValue(Value):
 
 
 def check_number(prop: Property, value: Any, where: str) -> float:
-    """The value as a float inside its bounds; raises `InputError` naming `where` it stands."""
+    """Return a value as a float if it lies within its bounds.
+
+    Parameters
+    ----------
+    prop : Property
+        The bounds.
+    value : Any
+        The value as given.
+    where : str
+        Place of the value, for messages.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InputError
+        If the value is not a number or lies outside its bounds.
+    """
     remedy = f"Give {prop.name} in {prop.unit}." if prop.unit != "-" else "Correct the value."
     if prop.name.startswith("scatter"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."

@@ -1,4 +1,4 @@
-"""The database as rows of text, for lists on a screen."""
+"""Rows of text that list the material database on a screen."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
 
 
 def material_rows(database: MaterialDatabase) -> list[dict[str, str]]:
-    """One row a material for a list: name, family, its values as texts, number of placeholders, origin."""
+    """Return one row for each material: name, family, values, number of placeholders, origin, description."""
     rows = []
     for material in database.materials.values():
         row = {"name": material.name, "family": material.family or "-"}
@@ -23,7 +23,7 @@ def material_rows(database: MaterialDatabase) -> list[dict[str, str]]:
 
 
 def material_details(database: MaterialDatabase, name: str) -> list[dict[str, str]]:
-    """One row a value of a material: field, symbol, value, unit, source, mark, note, origin."""
+    """Return one row for each value of a material: field, symbol, value, unit, source, mark, note, origin."""
     material = database.material(name)
     rows = []
     for prop in PROPERTIES.values():
@@ -38,7 +38,7 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
 
 
 def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
-    """One row a pair and level of the friction table."""
+    """Return one row for each pair and level of the friction table."""
     rows = []
     for pair, levels in database.friction_table.items():
         names = sorted(pair) if len(pair) == 2 else [*pair, *pair]
