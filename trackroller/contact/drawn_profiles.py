@@ -1,4 +1,4 @@
-"""Cross-sections and gaps beside one contact from the profiles that a case tells (see `profiles.canonical`)."""
+"""Make the cross-sections and the gap of one contact from the profiles of a case (see `profiles.canonical`)."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, p
 from trackroller.contact.profiles import FEWEST
 from trackroller.errors import ShapeError
 
-ASIDE, FIRST = 0.2, 5e-4  # of that radius: bodies that meet so far from it and so much earlier touch elsewhere
-INTERLOCK = 0.01  # of the guide's profile radius, by which shapes may overlap beside the nominal contact
-ASTRAY = 2.5  # times further or nearer to the middle than the nominal contact a drawn one may be
-NARROWEST, WIDEST = 5e-3, 50.0  # extent of points about the contact, over the guide's profile radius
+# These limits are ratios to the profile radius of the guide, except ASTRAY.
+INTERLOCK = 0.01  # largest overlap of the shapes beside the nominal contact
+# Bodies that overlap by more than FIRST at a distance of more than ASIDE from the nominal contact touch elsewhere.
+ASIDE, FIRST = 0.2, 5e-4
+NARROWEST, WIDEST = 5e-3, 50.0  # smallest and largest extent of points about the contact
+ASTRAY = 2.5  # largest ratio between the distances of drawn and nominal contact from the middle
 
 
 @lru_cache(maxsize=256)
@@ -25,17 +27,33 @@ def _parsed(text: str) -> dict[str, Any]:
 
 
 def cross_section(text: str, body: str, radius: float, alpha: float, guide_radius: float, side: int) -> CrossSection:
-    """The cross-section of one body beside one contact.
+    """Return the cross-section of one body beside one contact.
 
     Parameters
     ----------
-    text : canonical JSON of the profile, '' for the circle of `radius` [mm]
-    body : 'guide_profile' or 'roller_profile'
-    alpha : contact angle [rad]; guide_radius : nominal r_C,G [mm], which places the contact beside the middle
-    side : 1 or 2, the contact
+    text : str
+        Canonical JSON of the profile; "" for the circle of `radius`.
+    body : str
+        "guide_profile" or "roller_profile".
+    radius : float
+        Profile radius of the body [mm].
+    alpha : float
+        Contact angle [rad].
+    guide_radius : float
+        Nominal r_C,G [mm], from which the distance of the contact from the middle follows.
+    side : int
+        Number of the contact, 1 or 2.
 
-    Without edges of its own, a circle ends at the middle of the guide, where the other flank begins, and at the
-    guide's equator. Raises `ShapeError` if a drawn curve has nowhere the inclination of the contact.
+    Returns
+    -------
+    CrossSection
+        The cross-section. A circle without given edges ends at the middle of the guide, where the other flank begins,
+        and at the guide's equator.
+
+    Raises
+    ------
+    ShapeError
+        If a drawn curve does not have the inclination of the contact anywhere, or is too narrow or too wide.
     """
     told: dict[str, Any] = _parsed(text) if text else {"arc": radius}
     middle, equator = -guide_radius * math.sin(alpha), guide_radius * math.cos(alpha)
@@ -88,7 +106,7 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
     u, w = x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
     u, w = _single_valued(u, w)
     apex = _touching_point(u, w, noise, body, alpha)
-    # back in the picture, where the nominal geometry has its contact too
+    # `place` is the distance from the middle of the guide, which compares with that of the nominal contact.
     place = apex * math.cos(alpha) + float(np.interp(apex, u, w)) * math.sin(alpha)
     if not nominal / ASTRAY < place < nominal * ASTRAY:
         raise ShapeError(
@@ -103,7 +121,7 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
 
 
 def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSection:
-    """The shape, if more than a speck of it is flat enough to bear; heights in other units are not."""
+    """Return the shape; refuse it if nearly all of it is too steep for contact, as heights in other units are."""
     low, high = shape.limits
     if high - low > NARROWEST * guide_radius:
         return shape
@@ -112,12 +130,12 @@ def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSe
         f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact",
         f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least, beside a "
         f"guide_profile_radius of {guide_radius:g} mm",
-        "Give x and z in mm; smooth what is noise (`smooth`).",
+        "Give x and z in mm. If the points are noisy, give `smooth`.",
     )
 
 
 def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The longest stretch in which the turned curve runs outward."""
+    """Return the longest part of the turned curve in which u increases."""
     breaks = np.flatnonzero(np.diff(u) <= 0)
     starts, ends = np.concatenate([[0], breaks + 1]), np.concatenate([breaks + 1, [u.size]])
     k = int(np.argmax(ends - starts))
@@ -125,7 +143,7 @@ def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _touching_point(u, w, noise, body: str, alpha: float) -> float:
-    """Where the curve is parallel to the tangent plane; the place nearest to the apex of a parabola through it."""
+    """Return the u where the curve is parallel to the tangent plane, nearest to the apex of a fitted parabola."""
     from trackroller.contact.cross_sections import smoothed
 
     if u.size < FEWEST:
@@ -151,7 +169,7 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
 
 
 def _nowhere_parallel(u, w, body: str, alpha: float, smooth: tuple | None = None) -> ShapeError:
-    """The error of points without a contact, or of the curve if `smooth` (noise, slopes that it left) lost it."""
+    """Return the error for points without a contact, or for smoothing `smooth` = (noise, slopes) that removed it."""
     steps = np.diff(w) / np.diff(u) if u.size > 1 else np.full(1, math.tan(alpha))
     angle = math.degrees(alpha)
     points = angle - np.degrees(np.arctan(steps))
@@ -168,7 +186,7 @@ def _nowhere_parallel(u, w, body: str, alpha: float, smooth: tuple | None = None
         )
     upside_down = points.min() <= -angle <= points.max()
     remedy = (
-        "It is inclined so the other way round: z counts from the guide towards the roller's axis."
+        "The curve is inclined the other way round: z counts from the guide towards the roller's axis."
         if upside_down
         else "Draw more of it, or use frame: contact."
     )
@@ -185,9 +203,31 @@ def gap(
     guide_curve_radius: float,
     side: int,
 ) -> Gap:
-    """The gap beside contact `side` of profiles in canonical JSON ('': the circle); lengths mm, angle rad.
+    """Return the gap of the undeformed bodies at one contact.
 
-    Beside a parabola the other body, if not drawn, is a parabola too. Raises `ShapeError` for shapes that interlock.
+    Parameters
+    ----------
+    guide, roller : str
+        Profiles in canonical JSON; "" for the circle. If one body is a parabola, the circle of the other one becomes a
+        parabola as well.
+    guide_radius, roller_radius : float
+        Profile radii r_C,G and r_C,TR [mm].
+    alpha : float
+        Contact angle [rad].
+    rolling_radius, guide_curve_radius : float
+        r_A and r_Curve [mm].
+    side : int
+        Number of the contact, 1 or 2.
+
+    Returns
+    -------
+    Gap
+        The gap.
+
+    Raises
+    ------
+    ShapeError
+        If the shapes overlap or touch far from the nominal contact.
     """
     if '"parabola"' in guide + roller:
         guide = guide or json.dumps({"parabola": guide_radius})
@@ -205,7 +245,7 @@ def gap(
 
 
 def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> None:
-    """`ShapeError` (its remedy with `more`) for bodies that overlap, or touch far from the nominal contact."""
+    """Refuse bodies that overlap or touch far from the nominal contact; `more` extends the remedy."""
     x = np.linspace(*found.limits, 801)
     lateral = found.lateral(x)
     first, depth = float(x[np.argmin(lateral)]), float(-lateral.min())
@@ -213,20 +253,26 @@ def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> 
         raise ShapeError(
             body,
             f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward",
-            "shapes that touch at the nominal contact, give or take what load and wear can close",
-            "Compare both profiles (and the radii of those not drawn) beside that point." + more,
+            "shapes that touch at the nominal contact and overlap by no more than load and wear can close",
+            "Compare both profiles, and the radius of a profile that is not drawn, beside that point." + more,
         )
     if depth > FIRST * guide_radius and abs(first) > ASIDE * guide_radius:
         raise ShapeError(
             body,
             f"shapes that touch {first:.3g} mm outward of the nominal contact, {depth:.3g} mm before they touch there",
-            f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it: all lever arms rest on it",
-            "Make the groove wider than the guide there, or mend contact_angle and the nominal radii." + more,
+            f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it, because all lever arms refer to it",
+            "Make the groove wider than the guide there, or correct contact_angle and the nominal radii." + more,
         )
 
 
 def treats_sides_alike(text: str) -> bool:
-    """Does the profile treat both contacts alike (one mirrors the other)?"""
+    """Return True if both contacts have the same profile, mirrored.
+
+    Parameters
+    ----------
+    text : str
+        Profile in canonical JSON; "" for the circle.
+    """
     told = _parsed(text) if text else {}
     if told.get("frame") != "section":
         return True

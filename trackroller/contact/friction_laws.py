@@ -1,7 +1,8 @@
 """Friction coefficient as a function of the local slip speed, for contact models that solve for the slip.
 
-A law is kept as a table that is linear between its knots, so that every contact model reads one form. It scales the
-friction coefficient of the case, which holds at rest; a case that gives none takes that of a law that tells its own.
+Every law is stored as a table that is linear between its knots, so that contact models read one form only. The law
+scales the friction coefficient of the case, which holds at rest. If a case gives no friction coefficient, the first
+value of a measured law (kind `table`) is used.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from trackroller.errors import InputError, nearest
 from trackroller.numerics.numbers import read_number
 
-KNOTS = 160  # of an exponential law; the table is off by less than 1e-4 of its drop
+KNOTS = 160  # of an exponential law; the error of the table is below 1e-4 of the drop in friction
 DEFAULTS: dict[str, dict[str, Any]] = {
     "constant": {},
     "linear": {"speed": None, "lowest": 0.0},
@@ -26,7 +27,7 @@ DEFAULTS: dict[str, dict[str, Any]] = {
 
 
 class Knots(NamedTuple):
-    """A law as compiled code takes it: `factor` (m,) at the slip speeds `speed` (m,); m = 1 is constant friction."""
+    """A law for compiled code: `factor` (m,) [1] at slip speeds `speed` (m,); m = 1 is constant friction."""
 
     speed: np.ndarray
     factor: np.ndarray
@@ -34,9 +35,16 @@ class Knots(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FrictionLaw:
-    """Friction over its value at rest: `factor` (m,) at slip speeds `speed` (m,) [mm/s], linear in between.
+    """Friction over its value at rest, as a function of the slip speed that is linear between knots.
 
-    `form` is the mapping the law was made from, see `law_of`; two laws are equal if their tables are.
+    Parameters
+    ----------
+    speed : numpy.ndarray, shape (m,)
+        Slip speeds at the knots [mm/s].
+    factor : numpy.ndarray, shape (m,)
+        Friction over its value at rest [1].
+    form : mapping
+        Mapping that describes the law, see `law_of`. Two laws are equal if their tables are equal.
     """
 
     speed: np.ndarray
@@ -44,27 +52,27 @@ class FrictionLaw:
     form: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     def __call__(self, speed) -> np.ndarray:
-        """Factor on the friction coefficient at slip speeds [mm/s], any shape; constant beyond the last knot."""
+        """Return the factor on the friction coefficient at slip speeds [mm/s] of any shape."""
         return np.interp(speed, self.speed, self.factor)
 
     @property
     def knots(self) -> Knots:
-        """The law for compiled code, slip speeds in mm/s."""
+        """Return the law for compiled code, slip speeds in mm/s."""
         return Knots(self.speed, self.factor)
 
     @property
     def is_constant(self) -> bool:
-        """Whether the factor is 1 at every speed."""
+        """Return True if the factor is 1 at every speed."""
         return bool(np.all(self.factor == 1.0))
 
     @property
     def at_high_speed(self) -> float:
-        """Factor beyond the last knot [-]."""
+        """Return the factor beyond the last knot [1]."""
         return float(self.factor[-1])
 
     @property
     def steepest_fall(self) -> float:
-        """Largest fall of the factor by slip speed [s/mm], 0 if it falls nowhere."""
+        """Return the steepest decrease of the factor with the slip speed, >= 0 [s/mm]."""
         falls = -np.diff(self.factor) / np.diff(self.speed)
         return float(max(0.0, falls.max(initial=0.0)))
 
@@ -80,19 +88,19 @@ class FrictionLaw:
         return hash(self._content())
 
     def as_dict(self) -> dict[str, Any]:
-        """The mapping that `law_of` makes this law from, all its fields written out."""
+        """Return the mapping from which `law_of` makes this law, with all its fields."""
         if self.is_constant:
             return {"kind": "constant"}
         return dict(self.form) or {"kind": "table", "speed": self.speed.tolist(), "friction": self.factor.tolist()}
 
     @property
     def json(self) -> str:
-        """Canonical text of `as_dict`: equal laws of one kind give equal text."""
+        """Return the canonical JSON text of `as_dict`; equal laws of one kind give equal text."""
         return json.dumps(self.as_dict(), sort_keys=True, separators=(",", ":"))
 
 
 def constant() -> FrictionLaw:
-    """Coulomb's law, factor 1 at every speed."""
+    """Return Coulomb's law, with the factor 1 at every speed."""
     return FrictionLaw(np.zeros(1), np.ones(1), {"kind": "constant"})
 
 
@@ -124,12 +132,24 @@ def _checked_speed(speed: object) -> float:
 
 
 def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
-    """1 - (1 - lowest) v / speed, then constant.
+    """Return the law 1 - (1 - lowest) v / speed, constant beyond `speed`.
 
     Parameters
     ----------
-    speed : slip speed at which the lowest friction is reached [mm/s]
-    lowest : friction left there over that at rest [-]
+    speed : float
+        Slip speed at which the lowest friction is reached, > 0 [mm/s].
+    lowest : float
+        Lowest friction over friction at rest, from 0 to 1 [1].
+
+    Returns
+    -------
+    FrictionLaw
+        The law.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
     """
     speed, lowest = _checked_speed(speed), _checked_share(lowest)
     form = {"kind": "linear", "speed": speed, "lowest": lowest}
@@ -137,12 +157,28 @@ def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
 
 
 def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
-    """lowest + (1 - lowest) exp(-v / speed) (Polach 2005; Vollebregt & Schuttelaars 2012).
+    """Return the law lowest + (1 - lowest) exp(-v / speed).
 
     Parameters
     ----------
-    speed : slip speed at which the falling part has dropped to 1/e [mm/s]
-    lowest : friction at high speed over that at rest [-]
+    speed : float
+        Slip speed at which the falling part has decreased to 1/e, > 0 [mm/s].
+    lowest : float
+        Friction at high speed over friction at rest, from 0 to 1 [1].
+
+    Returns
+    -------
+    FrictionLaw
+        The law.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range.
+
+    References
+    ----------
+    Polach (2005); Vollebregt & Schuttelaars (2012).
     """
     speed, lowest = _checked_speed(speed), _checked_share(lowest)
     part = np.linspace(0.0, 1.0, KNOTS) ** 1.5 * 12.0
@@ -151,9 +187,24 @@ def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
 
 
 def table(speed, friction) -> FrictionLaw:
-    """A measured law: friction coefficients (m,) at slip speeds (m,) [mm/s], taken relative to the first.
+    """Return a measured law from friction coefficients at slip speeds.
 
-    Raises `InputError` unless the speeds rise from 0 and the friction is >= 0, with the first > 0.
+    Parameters
+    ----------
+    speed : sequence of float, length m
+        Slip speeds that rise from 0 [mm/s].
+    friction : sequence of float, length m
+        Friction coefficients >= 0, the first one > 0 [1]. The law takes them relative to the first one.
+
+    Returns
+    -------
+    FrictionLaw
+        The law.
+
+    Raises
+    ------
+    InputError
+        If the lists do not meet these conditions.
     """
     speeds = _list("speed", speed, "slip speeds in mm/s")
     values = _list("friction", friction, "friction coefficients")
@@ -180,18 +231,24 @@ def _list(part: str, values: object, words: str) -> np.ndarray:
 
 
 def at_rest(law: Any) -> float | None:
-    """The friction coefficient at rest that a law itself tells: a table's first one, None for other laws.
+    """Return the friction coefficient at rest of a measured law.
 
     Parameters
     ----------
-    law : a mapping, its JSON text, a `FrictionLaw` or None, see `law_of`
+    law : mapping, str, FrictionLaw or None
+        See `law_of`.
+
+    Returns
+    -------
+    float or None
+        First friction coefficient of the table [1]; None for laws of other kinds.
     """
     form = law_of(law).form
     return float(form["friction"][0]) if form.get("kind") == "table" else None
 
 
 def _fields(mapping: Mapping[str, Any]) -> dict[str, Any]:
-    """The mapping with its defaults; unknown kinds, unknown and missing fields are refused."""
+    """Return the fields of a mapping with defaults; refuse unknown kinds, and unknown or missing fields."""
     kind = mapping.get("kind")
     if not isinstance(kind, str) or kind not in DEFAULTS:
         close = nearest(str(kind), tuple(DEFAULTS))
@@ -208,15 +265,24 @@ def _fields(mapping: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def law_of(mapping: Mapping[str, Any] | FrictionLaw | str | None) -> FrictionLaw:
-    """The law of a mapping as it stands in a case or study file.
+    """Return the friction law of a mapping from a case or study file.
 
     Parameters
     ----------
-    mapping : `{kind: constant}`; `{kind: linear, speed: v, lowest: f}`; `{kind: exponential, speed: v, lowest: f}`;
-        `{kind: table, speed: [0, ...], friction: [...]}` with slip speeds in mm/s; the JSON text of such a mapping;
-        or None or an empty mapping for constant
+    mapping : mapping, str, FrictionLaw or None
+        One of `{kind: constant}`, `{kind: linear, speed: v, lowest: f}`, `{kind: exponential, speed: v, lowest: f}` and
+        `{kind: table, speed: [0, ...], friction: [...]}` with slip speeds in mm/s. JSON text of such a mapping is
+        accepted. None and an empty mapping stand for constant friction.
 
-    Raises `InputError` that names `friction_law` and the part that is wrong.
+    Returns
+    -------
+    FrictionLaw
+        The law.
+
+    Raises
+    ------
+    InputError
+        If a part is wrong; the error names `friction_law` and this part.
     """
     if mapping is None or (isinstance(mapping, (str, Mapping)) and not mapping):
         return constant()
@@ -236,9 +302,24 @@ def law_of(mapping: Mapping[str, Any] | FrictionLaw | str | None) -> FrictionLaw
 
 
 def canonical(value: Mapping[str, Any], field: str = "friction_law") -> dict[str, Any]:
-    """The mapping of a law as in `law_of`, checked, with defaults and numbers as floats; {} for the constant law.
+    """Return the checked mapping of a law, with its defaults and with numbers as floats.
 
-    Raises `InputError` that names the entry of `field`.
+    Parameters
+    ----------
+    value : mapping
+        See `law_of`.
+    field : str
+        Name of the field in error messages.
+
+    Returns
+    -------
+    dict
+        The mapping; {} for constant friction.
+
+    Raises
+    ------
+    InputError
+        If a part is wrong; the error names the entry of `field`.
     """
     try:
         law = law_of(value)

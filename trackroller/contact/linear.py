@@ -1,9 +1,8 @@
 """Kalker's linear creepage coefficients for any ellipse, and the forces of the linear theory.
 
-Values come from a stored table of `LinearTheory` (degree 20, good to 1e-5 .. 1e-4), interpolated by Chebyshev
-polynomials in the logarithm of the axis ratio and in Poisson's ratio. Kalker's printed table (1990, table E.3)
-agrees to its digits for axis ratios up to about 3 and is up to 1.2 % low at 5 and 10, where rectangular elements (80
-and 160 along each axis, extrapolated) agree with the polynomials to 0.2 %: tests/test_kalker_linear.py.
+The coefficients come from a stored table of `LinearTheory`. Chebyshev polynomials interpolate it in the logarithm of
+the axis ratio and in Poisson's ratio. `tests/contact` compares the coefficients with Kalker's printed table (1990,
+table E.3) and with rectangular elements. The printed table is about 1 % low at the axis ratios 5 and 10.
 """
 
 from __future__ import annotations
@@ -19,14 +18,14 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants
 from trackroller.contact.linear_polynomial import LinearTheory
 from trackroller.errors import InputError
 
-LARGEST_RATIO = 50.0  # and its inverse the smallest
+LARGEST_RATIO = 50.0  # of b/a; the smallest ratio is its inverse
 NODES = (21, 7)  # of ln(ratio) and of nu
 TABLE = "kalker_linear.csv"
 
 
 @dataclass(frozen=True)
 class CreepageCoefficients:
-    """C11 (rolling direction), C22 (lateral), C23 (lateral by spin), C33 (spin moment) [-], arrays (n,)."""
+    """C11 (rolling direction), C22 (lateral), C23 (lateral force by spin), C33 (spin moment) [1], arrays (n,)."""
 
     c11: np.ndarray
     c22: np.ndarray
@@ -39,21 +38,32 @@ def _nodes() -> tuple[np.ndarray, np.ndarray]:
 
 
 def tabulate(degree: int = 20) -> np.ndarray:
-    """Rows (ratio, nu, C11, C22, C23, C33) at the interpolation nodes; the source of the stored table."""
+    """Compute the stored table at the interpolation nodes.
+
+    Parameters
+    ----------
+    degree : int
+        Degree of the polynomials of `LinearTheory`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (147, 6)
+        Rows (ratio, nu, C11, C22, C23, C33) [1].
+    """
     theory = LinearTheory(degree)
     ratios, poisson = _nodes()
     return np.array([[r, nu, *theory.coefficients(r, nu)] for r in ratios for nu in poisson])
 
 
 def write_table(path) -> None:
-    """Write the table of `tabulate` as CSV."""
+    """Write the table of `tabulate` to a CSV file."""
     header = "linear creepage coefficients, computed by trackroller.contact.linear.tabulate\nratio,nu,C11,C22,C23,C33"
     np.savetxt(path, tabulate(), delimiter=",", fmt="%.9g", header=header)
 
 
 @lru_cache(maxsize=1)
 def _chebyshev() -> np.ndarray:
-    """Coefficients (nodes of ratio, nodes of nu, 4) of the logarithms of the table."""
+    """Return Chebyshev coefficients of the logarithms of the table, (nodes of ratio, nodes of nu, 4)."""
     text = resources.files("trackroller.contact").joinpath(TABLE).read_text(encoding="utf-8")
     values = np.loadtxt(text.splitlines(), delimiter=",")[:, 2:].reshape(*NODES, 4)
     u, v = (np.linalg.inv(chebvander(chebpts1(n), n - 1)) for n in NODES)
@@ -61,21 +71,32 @@ def _chebyshev() -> np.ndarray:
 
 
 def creepage_coefficients(axis_ratio, poisson_ratio) -> CreepageCoefficients:
-    """Linear creepage coefficients.
+    """Return Kalker's linear creepage coefficients.
 
     Parameters
     ----------
-    axis_ratio : semi-axis in the rolling direction over the lateral one (Kalker's a/b) [-], (n,), 0.02 to 50
-    poisson_ratio : combined Poisson's ratio [-], (n,), 0 to 0.5
+    axis_ratio : array_like, shape (n,)
+        b/a, the semi-axis in the rolling direction over the lateral one, from 0.02 to 50 [1]. Kalker calls it a/b.
+    poisson_ratio : array_like, shape (n,)
+        Combined Poisson's ratio from 0 to 0.5 [1].
 
-    Raises `InputError` outside these ranges.
+    Returns
+    -------
+    CreepageCoefficients
+        Arrays of the broadcast shape.
+
+    Raises
+    ------
+    InputError
+        If a value lies outside these ranges.
     """
     ratio, nu = np.broadcast_arrays(np.asarray(axis_ratio, float), np.asarray(poisson_ratio, float))
     edge = LARGEST_RATIO * (1 + 1e-12)
     if not np.all((ratio >= 1 / edge) & (ratio <= edge)):
-        raise InputError("axis_ratio", axis_ratio, f"between {1 / LARGEST_RATIO:g} and {LARGEST_RATIO:g}")
+        allowed = f"values between {1 / LARGEST_RATIO:g} and {LARGEST_RATIO:g}"
+        raise InputError("axis_ratio", axis_ratio, allowed, "Leave out more slender patches.")
     if not np.all((nu >= 0) & (nu <= 0.5)):
-        raise InputError("poisson_ratio", poisson_ratio, "between 0 and 0.5")
+        raise InputError("poisson_ratio", poisson_ratio, "values between 0 and 0.5", "Correct the material.")
     shape, ratio, nu = ratio.shape, ratio.reshape(-1), nu.reshape(-1)
     u, v = np.log(ratio) / np.log(LARGEST_RATIO), 4.0 * nu - 1.0
     rows = chebval(u, _chebyshev(), tensor=True)  # (nodes of nu, 4, ...)
@@ -85,10 +106,27 @@ def creepage_coefficients(axis_ratio, poisson_ratio) -> CreepageCoefficients:
 
 
 def resultants(ellipse: Ellipse, longitudinal, lateral, spin, elastic: Elastic) -> Resultants:
-    """Forces [N] and moment [N mm] on the roller without any sliding: linear in the creepages.
+    """Return the forces and the spin moment of the linear theory, in which no element slides.
 
-    longitudinal xi, lateral eta [-], spin phi [1/mm]: rigid slip w = (eta - phi y, xi + phi x), arrays (n,).
-    Validity: creepages so small that the friction bound is nowhere reached.
+    Parameters
+    ----------
+    ellipse : Ellipse
+        Contact ellipses, arrays (n,) [mm], [MPa].
+    longitudinal, lateral : array_like, shape (n,)
+        Creepages xi and eta [1].
+    spin : array_like, shape (n,)
+        Spin creepage phi [1/mm]. The rigid slip is w = (eta - phi y, xi + phi x).
+    elastic : Elastic
+        Combined constants, arrays (n,).
+
+    Returns
+    -------
+    Resultants
+        Forces [N] and spin moment [N mm] on the roller, (n,).
+
+    Notes
+    -----
+    Valid for creepages so small that the traction reaches the friction bound nowhere.
     """
     c = creepage_coefficients(ellipse.semi_axis_rolling / ellipse.semi_axis_lateral, elastic.poisson_ratio)
     square = ellipse.semi_axis_rolling * ellipse.semi_axis_lateral
@@ -102,12 +140,12 @@ def resultants(ellipse: Ellipse, longitudinal, lateral, spin, elastic: Elastic) 
 
 @lru_cache(maxsize=1)
 def _sliding_integrals() -> np.ndarray:
-    """Chebyshev coefficients in ln(ratio) of the logarithms of the three integrals of `sliding_flexibility`."""
+    """Return Chebyshev coefficients in ln(ratio) of the logarithms of the integrals of `sliding_flexibility`."""
     ratio, _ = _nodes()
     a, b = 1.0 / ratio[:, None], 1.0
     t = np.pi * (np.arange(8192) + 0.5) / 8192
     cos, sin = np.cos(t), np.sin(t)
-    # directions phi with tan(phi) = (b/a) tan(t), which are dense where the integrand is steep
+    # The substitution tan(phi) = (b/a) tan(t) places the directions phi densely where the integrand is steep.
     size = np.hypot(a * cos, b * sin)
     c, s, step = a * cos / size, b * sin / size, a * b / size**2 * np.pi / t.size
     cube = step * size**3
@@ -117,16 +155,26 @@ def _sliding_integrals() -> np.ndarray:
 
 
 def sliding_flexibility(axis_ratio, poisson_ratio) -> np.ndarray:
-    """Flexibilities of x and y that full sliding with its pole far away asks of a simplified theory, over b/G: (n, 2).
+    """Return the flexibilities of the simplified theory for full sliding with a distant spin pole.
 
-    There the traction is mu p along y and turns across it as the rigid slip does, q_x ~ y mu p. The displacements of
-    both are polynomials (Galin), and the flexibility L follows from equal lateral force, to the first order in the
-    elasticity, of u and of u = L tau:
+    Parameters
+    ----------
+    axis_ratio, poisson_ratio : array_like, shape (n,)
+        See `creepage_coefficients`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n, 2)
+        Flexibilities L_x and L_y over b/G [1].
+
+    Notes
+    -----
+    With a distant pole, the traction is mu p along y, and its lateral part follows the rigid slip, q_x ~ y mu p. The
+    displacements of both tractions are polynomials (Galin's theorem). The flexibility L is chosen so that u and L tau
+    give the same lateral force to first order in the elasticity:
 
         L_x = 8/(15 G) int_0^pi (1 - nu + nu cos^2) cos^2/(a^2 l^3)
         L_y = 8/(15 G) int_0^pi [(1 - nu + nu sin^2) cos^2/a^2 + nu sin^2 cos^2/b^2]/l^3,  l^2 = cos^2/a^2 + sin^2/b^2
-
-    Arguments as in `creepage_coefficients`.
     """
     ratio, nu = np.broadcast_arrays(np.asarray(axis_ratio, float), np.asarray(poisson_ratio, float))
     one, four, mixed = np.exp(chebval(np.log(ratio) / np.log(LARGEST_RATIO), _sliding_integrals()))

@@ -1,10 +1,10 @@
-"""Linear theory of rolling by polynomials: tractions P/sqrt(1 - r^2) on an ellipse, no slip anywhere.
+"""Linear theory of rolling by polynomials: tractions P/sqrt(1 - r^2) on an ellipse without slip.
 
-Galin's theorem: such tractions displace the ellipse by a polynomial of the same degree. Without slip that is
-u = (integral of the rigid slip along y) + f(x), and of all these the steady state has P = 0 on the leading edge
-(Kalker 1967, On the rolling contact of two elastic bodies in the presence of dry friction). The Boussinesq-Cerruti
-integrals are taken in polar coordinates about each point, where they are smooth, so the results converge to about
-1e-4 at degree 12 and 1e-5 at 20.
+By Galin's theorem, these tractions displace the ellipse by a polynomial of the same degree. Without slip, the
+displacement is u = (integral of the rigid slip along y) + f(x) with a free function f. The steady state is the solution
+with P = 0 on the leading edge (Kalker 1967, On the rolling contact of two elastic bodies in the presence of dry
+friction). The Boussinesq-Cerruti integrals are taken in polar coordinates about each point, because they are smooth
+there.
 """
 
 from __future__ import annotations
@@ -16,15 +16,18 @@ MATCH = 1e4  # weight of the displacements against the leading edge in the least
 
 
 def _basis(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
-    """Products of Chebyshev polynomials with total degree up to `degree`, (..., (d + 1)(d + 2)/2)."""
+    """Return products of Chebyshev polynomials of total degree up to `degree` = d, (..., (d + 1)(d + 2)/2)."""
     t_x, t_y = chebvander(x, degree), chebvander(y, degree)
     return np.concatenate([t_x[..., m : m + 1] * t_y[..., : degree - m + 1] for m in range(degree + 1)], axis=-1)
 
 
 class LinearTheory:
-    """Creepage coefficients of elliptical patches; what does not depend on shape and material is kept.
+    """Linear theory of elliptical patches; it stores the integrals that do not depend on shape and material.
 
-    degree : of the polynomials (12: relative error about 1e-4, 20: 1e-5)
+    Parameters
+    ----------
+    degree : int
+        Degree of the polynomials. The relative error of the coefficients is about 1e-4 at 12 and 1e-5 at 20.
     """
 
     def __init__(self, degree: int = 12) -> None:
@@ -43,7 +46,7 @@ class LinearTheory:
         self.edge = _basis(np.cos(edge), np.sin(edge), degree) * np.sqrt(np.pi / edge.size)
 
     def _chord(self, angle: float) -> np.ndarray:
-        """Integral of each basis function over sqrt(1 - r^2) along the chord through each point (points, basis)."""
+        """Integrate each basis function over sqrt(1 - r^2) along the chord through each point, (points, basis)."""
         count = self.degree // 2 + 2
         nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)
         c, s = np.cos(angle), np.sin(angle)
@@ -53,7 +56,7 @@ class LinearTheory:
         return _basis(self.x[:, None] + t * c, self.y[:, None] + t * s, self.degree).mean(axis=1) * np.pi
 
     def _resultants(self, angle: np.ndarray) -> None:
-        """Integrals of the basis over sqrt(1 - r^2), alone and times x and y."""
+        """Integrate the basis over sqrt(1 - r^2), with the factors 1, x and y, each (basis,)."""
         nodes, weights = np.polynomial.legendre.leggauss(self.degree + 2)
         radius = np.sqrt(1.0 - ((nodes + 1) / 2) ** 2)
         x, y = radius[:, None] * np.cos(angle), radius[:, None] * np.sin(angle)
@@ -62,7 +65,7 @@ class LinearTheory:
         self.force, self.force_x, self.force_y = (np.einsum("ij,ijb->b", weights * v, values) for v in (1.0, x, y))
 
     def _kernels(self, a: float, b: float, poisson: float) -> list[np.ndarray]:
-        """Weights of the directions for u_xx, u_yy, u_xy, exact for the trigonometric degree of the chords."""
+        """Return the weights of the directions for u_xx, u_yy, u_xy; exact for the degree of the chords."""
         n = 1 << 13
         chi = np.pi * (np.arange(n) + 0.5) / n
         length = np.hypot(a * np.cos(chi), b * np.sin(chi))
@@ -77,8 +80,22 @@ class LinearTheory:
         return out
 
     def coefficients(self, ratio: float, poisson: float) -> np.ndarray:
-        """C11, C22, C23, C33 for rolling over lateral semi-axis `ratio` and Poisson's ratio `poisson`.
+        """Return the creepage coefficients C11, C22, C23, C33.
 
+        Parameters
+        ----------
+        ratio : float
+            b/a, the semi-axis in the rolling direction over the lateral one [1].
+        poisson : float
+            Combined Poisson's ratio [1].
+
+        Returns
+        -------
+        numpy.ndarray, shape (4,)
+            Coefficients [1].
+
+        Notes
+        -----
         F_y = -G c^2 C11 xi, F_x = -G c^2 C22 eta + G c^3 C23 phi, M = -G c^3 C23 eta - G c^4 C33 phi with
         c^2 = a b, in the contact frame (x lateral, y rolling, w = (eta - phi y, xi + phi x)).
         """
@@ -99,7 +116,7 @@ class LinearTheory:
         )
         x, y, zero = a * self.x, b * self.y, np.zeros_like(self.x)
         edge_zero = np.zeros(2 * self.edge.shape[0])
-        # integrals along y of the rigid slips (0, 1), (1, 0), (-y, x)
+        # The displacements are the integrals along y of the rigid slips (0, 1), (1, 0) and (-y, x).
         rigid = ((zero, y), (y, zero), (-y * y / 2, x * y))
         right = np.stack([np.concatenate([q[:, 0] * u, q[:, 0] * v, edge_zero]) for u, v in rigid], axis=1)
         scale = np.linalg.norm(matrix, axis=0)

@@ -1,4 +1,4 @@
-"""The discretisation of each stage, as an accuracy asks for it."""
+"""Settings that one accuracy gives to each stage of a solution."""
 
 from __future__ import annotations
 
@@ -9,10 +9,22 @@ from trackroller.halfspace.peak import PeakSettings
 
 @dataclass(frozen=True)
 class Accuracy:
-    """Settings of one accuracy: promised relative error of the peak and discretisation of the stages.
+    """Settings of one accuracy.
 
-    `force_nodes` are Gauss points per smooth piece of the slip integrals, `coarse_nodes` serve the first pass, and
-    `elements` along each axis of the ellipse serve the rolling contact models.
+    Parameters
+    ----------
+    name : str
+        Name of the accuracy.
+    tolerance : float
+        Promised relative error of the peak stress [1].
+    force_nodes, coarse_nodes : int
+        Gauss points in each smooth piece of the slip integrals, finally and in the first pass.
+    peak : PeakSettings
+        Search of the peak stress.
+    traction_points, section_points : int
+        Points along each axis of the stored tractions and stress sections.
+    elements : int
+        Elements along each axis of the patch for the rolling contact models.
     """
 
     name: str
