@@ -2,7 +2,7 @@
 
 Lateral coordinate u [mm] along the common tangent, 0 at the nominal point of contact, > 0 away from the middle of the
 guide (outward). Heights [mm] are measured along the outward normal of each body: a convex circle of radius r has the
-height -u^2/(2 r) near the point, a groove +u^2/(2 r). The gap of two bodies is minus the sum of their heights.
+height -u^2/(2 r) near the point, and a groove has +u^2/(2 r). The gap of two bodies is minus the sum of their heights.
 
 ASSUME: the bodies touch at the nominal contact angle for every drawn shape; drawn shapes change the gap around that
 point, not the lever arms of the equilibrium.
@@ -55,7 +55,7 @@ class CrossSection:
 
     def _reach(self, sign: float, end: float) -> float:
         far = min(end, 1e3)
-        # samples are close near the contact for every width of the material
+        # The samples are dense near the contact for every width of the material.
         u = far * np.concatenate([np.geomspace(1e-4, 1.0, 400), np.linspace(0.0, 1.0, 400)[1:]])
         u.sort()
         steep = np.flatnonzero(np.abs(self.slope(sign * u)) > CONTACT_SLOPE)

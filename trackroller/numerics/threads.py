@@ -1,7 +1,7 @@
-"""Shares a compiled loop over rows among threads.
+"""Share a compiled loop over rows among threads.
 
-Compiled functions release the interpreter lock, so plain threads use all cores; this compiles several times faster
-than numba's own parallel loops and keeps the cores busy when rows differ in cost.
+Compiled functions release the interpreter lock, so plain threads use all cores. Compared with numba's parallel loops,
+this compiles several times faster, and it keeps all cores busy when rows differ in cost.
 """
 
 from __future__ import annotations
@@ -12,12 +12,22 @@ from concurrent.futures import ThreadPoolExecutor
 
 
 def thread_count() -> int:
-    """NUMBA_NUM_THREADS if set, else the cores of the machine."""
+    """Return the number of threads: NUMBA_NUM_THREADS if set, otherwise the number of cores of the machine."""
     return int(os.environ.get("NUMBA_NUM_THREADS", 0)) or os.cpu_count() or 1
 
 
 def share_rows(work: Callable[[int, int], object], rows: int, smallest: int, largest: int | None = None) -> None:
-    """Calls `work(first, last)` for pieces of `rows` rows, between `smallest` and `largest` long, on all threads."""
+    """Call a function for pieces of all rows, on all threads.
+
+    Parameters
+    ----------
+    work : callable
+        Function `work(first, last)` that treats the rows first to last - 1.
+    rows : int
+        Number of rows.
+    smallest, largest : int
+        Limits of the number of rows in a piece; default: no upper limit.
+    """
     threads = thread_count()
     size = max(smallest, -(-rows // (8 * threads)))
     size = size if largest is None else min(size, largest)

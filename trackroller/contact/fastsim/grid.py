@@ -1,13 +1,13 @@
-"""Kalker's simplified theory on patches whose pressure was solved on a grid: any shape, strip by strip.
+"""Kalker's simplified theory on patches of any shape whose pressure was solved on a grid, strip by strip.
 
-Each column of elements is a strip. Where it is loaded, once or several times, its traction grows from the leading edge
-of each loaded interval as in `fastsim`, bounded by mu times the solved pressure of its place.
+Each column of elements is a strip, which may have several loaded intervals. The traction grows from the leading edge of
+each loaded interval, as in `fastsim`. Its bound is mu times the solved pressure at the same place.
 
-ASSUME: flexibilities are those of an equivalent ellipse: the area of the patch, and the ratio of axes that the second
-moments of its pressure have. Kik & Piotrowski (1996) take equal area and the ratio of length and width; moments do
-not leap where a thin tail is gained or lost, and both agree for an ellipse. Strips with an empty column between them
-are patches of their own, each with its own ellipse (Ayasse & Chollet 2005 go further, to one for each strip). Beyond
-an axis ratio of 50 the flexibilities are those of 50.
+ASSUME: the flexibilities are those of an equivalent ellipse. This ellipse has the area of the patch and the axis ratio
+that follows from the second moments of the pressure. Kik & Piotrowski (1996) use equal area and the ratio of length and
+width. Both choices agree for an ellipse, but moments do not jump where a thin tail appears or disappears. Strips with
+an empty column between them are separate patches, each with its own ellipse. Ayasse & Chollet (2005) use an ellipse for
+each strip. For axis ratios beyond 50, the flexibilities of 50 are used.
 """
 
 from __future__ import annotations
@@ -29,9 +29,22 @@ from trackroller.numerics.threads import share_rows
 
 @dataclass(frozen=True)
 class Islands:
-    """Separate parts of n patches as ellipses, arrays (m,), and the part that each strip belongs to, (n, M).
+    """Separate parts of n patches as equivalent ellipses.
 
-    patch : number of the patch; x : its middle [mm]; a, b : semi-axes across and along [mm]; load [N]
+    Attributes
+    ----------
+    patch : numpy.ndarray of int, shape (m,)
+        Number of the patch to which each part belongs.
+    x : numpy.ndarray, shape (m,)
+        Lateral place of the part's middle [mm].
+    a, b : numpy.ndarray, shape (m,)
+        Lateral and rolling semi-axis [mm].
+    load : numpy.ndarray, shape (m,)
+        Normal force [N].
+    of_strip : numpy.ndarray of int, shape (n, M)
+        Number of the part to which each strip belongs.
+    chords : numpy.ndarray, shape (n, M)
+        Loaded length of each strip, in elements.
     """
 
     patch: np.ndarray
@@ -44,9 +57,17 @@ class Islands:
 
 
 def equivalent_ellipses(patch: GridPatch) -> Islands:
-    """Ellipses with the area of each separate part of n patches and the axis ratio of its second moments.
+    """Return the equivalent ellipse of each separate part of n patches.
 
-    A patch of NaN has none; strips without load are numbered as the part before.
+    Parameters
+    ----------
+    patch : GridPatch
+        The n patches.
+
+    Returns
+    -------
+    Islands
+        The ellipses. A patch of NaN has no ellipse. A strip without load gets the number of the part before it.
     """
     pressure = np.nan_to_num(patch.pressure)
     n, rows, columns = pressure.shape
@@ -68,7 +89,7 @@ def equivalent_ellipses(patch: GridPatch) -> Islands:
     middle = over(load * x) / force
     deviation = x - middle[number] if m else x
     along = np.einsum("nij,ni->nj", pressure, y * y)
-    # elements carry their load over their sides
+    # The load of an element is spread over its width hx, which adds hx^2/12 to the second moment.
     across = over(load * deviation**2) / force + hx[owner] ** 2 / 12
     ratio = np.sqrt((over(along) / force + hy[owner] ** 2 / 12) / across)
     ratio = np.clip(ratio, 1.0 / LARGEST_RATIO, LARGEST_RATIO)
@@ -109,18 +130,33 @@ def solve_grid(
     settings: FastsimSettings | None = None,
     travel_speed=None,
 ) -> FastsimSolution:
-    """Simplified theory for n solved patches with rigid slip w = (-phi y, xi + phi x); see the head of this file.
+    """Solve n patches with the rigid slip w = (-phi y, xi + phi x) by the simplified theory.
 
     Parameters
     ----------
-    patch, slip : arrays (n,); friction : coefficient mu [-], (n,) or scalar
-    elastic : combined constants, (n,); the coupling constant is not used
-    settings : `steps` along each loaded interval and the friction law count here; the strips are those of the grid
-    travel_speed : [mm/s], (n,) or scalar, for friction laws; that of the settings if not given
+    patch : GridPatch
+        The n patches.
+    slip : Slip
+        Kinematics of the patches, arrays (n,).
+    friction : array_like, shape (n,) or ()
+        Friction coefficient mu [1].
+    elastic : Elastic
+        Combined constants, arrays (n,). The coupling constant is not used.
+    settings : FastsimSettings, optional
+        The number of steps in each loaded interval and the friction law are used; the strips are those of the grid.
+    travel_speed : array_like, shape (n,) or (), optional
+        Travel speed for friction laws [mm/s]; default: that of the settings.
 
-    Forces [N], moment about the nominal point [N mm], dissipation [N], stick over the loaded area [-]; NaN for patches
-    of NaN. With the pressure of an ellipse they are those of `fastsim.solve_patch` but for an error that falls with
-    the elements (tests/test_fastsim_grid.py); against the exact theory on the same patches see there as well.
+    Returns
+    -------
+    FastsimSolution
+        Forces [N], moment about the nominal point [N mm], dissipation [N] and adhesion share of the loaded area [1];
+        NaN for patches of NaN.
+
+    Notes
+    -----
+    For an elliptical patch the result converges to that of `fastsim.solve_patch` with the number of elements.
+    `tests/contact` compares both, and compares this function with the exact theory on the same patches.
     """
     settings = settings or FastsimSettings()
     law = (settings.law or constant()).knots
@@ -147,7 +183,7 @@ def tractions(
     settings: FastsimSettings | None = None,
     travel_speed=None,
 ) -> SurfaceTractions:
-    """Pressure and shear of each element, and the slip at its centre per travel speed; see `solve_grid`."""
+    """Return pressure and shear of each element, and the slip at its centre per travel speed; see `solve_grid`."""
     settings = settings or FastsimSettings()
     law = (settings.law or constant()).knots
     strips, _ = _problem(patch, slip, friction, elastic, settings, travel_speed)

@@ -1,4 +1,4 @@
-"""Makes the table of `trackroller.contact.table` with the exact solver and measures it on a fresh random sample.
+"""Make the table of `trackroller.contact.table` with the exact solver and measure its errors on a random sample.
 
 python -m trackroller.contact.table.build              some minutes on one core
 python -m trackroller.contact.table.build --check N    measures the table on N random patches and stores the errors
@@ -31,7 +31,7 @@ SEED = 7
 
 
 def problem(g, nu, rho, angle, kappa=0.0):
-    """Ellipse (c = 1 mm, N = 1 N), creepages, friction and constants of dimensionless patches; arrays (n,)."""
+    """Return ellipse (c = 1 mm, N = 1 N), creepages, friction and constants of dimensionless patches, (n,) each."""
     g, nu, rho, angle, kappa = (np.array(v, float) for v in np.broadcast_arrays(g, nu, rho, angle, kappa))
     ellipse = Ellipse(1 / np.sqrt(g), np.sqrt(g), np.full(g.shape, 1.5 / np.pi))
     bend = FRICTION / (SHEAR_MODULUS * creepage_coefficients(g, nu).c11)
@@ -42,7 +42,7 @@ def problem(g, nu, rho, angle, kappa=0.0):
 
 
 def solve_exact(g, nu, rho, angle, kappa=0.0, elements=40, start=None):
-    """F_T, F_A, M_R over mu N, share of stick; shape (n, 4), and the tractions."""
+    """Return F_T, F_A, M_R over mu N and the share of the adhesion area, (n, 4), and the tractions."""
     ellipse, xi, phi, mu, elastic = problem(g, nu, rho, angle, kappa)
     settings = kalker.KalkerSettings(elements=elements, tolerance=1e-6)
     s = kalker.solve_patch(ellipse, kalker.Creepage(xi, np.zeros_like(xi), phi), mu, elastic, settings, start)
@@ -53,7 +53,7 @@ def solve_exact(g, nu, rho, angle, kappa=0.0, elements=40, start=None):
 
 
 def complete_sliding(g: np.ndarray, angle: np.ndarray, nodes: int = 48) -> np.ndarray:
-    """F_T, F_A, M_R over mu N for tractions against the rigid slip (0 < angle < pi/2), by quadrature; (n, 3)."""
+    """Integrate F_T, F_A, M_R over mu N for tractions opposite to the rigid slip (0 < angle < pi/2), (n, 3)."""
     slope = np.tan(angle) * np.sqrt(g + 1 / g) / 2.0  # xi/phi over c; the pole lies at x = -slope
     a, b = 1 / np.sqrt(g), np.sqrt(g)
     v, w = clustered_rule(nodes)
@@ -64,7 +64,7 @@ def complete_sliding(g: np.ndarray, angle: np.ndarray, nodes: int = 48) -> np.nd
             x = low + (high - low) * vi
             half = np.sqrt(np.maximum(1.0 - x * x, 0.0))
             arm = a * x + slope
-            # y = b half t with the kernels in closed-form friendly pieces about t = 0, where the direction turns fast
+            # With y = b half t, the direction changes fast near t = 0. The form t = eps sinh(...) gives close nodes.
             eps = np.abs(arm) / np.maximum(b * half, 1e-300)
             top = np.arcsinh(1.0 / np.maximum(eps, 1e-13))
             for vj, wj in zip(v, w, strict=True):
@@ -79,14 +79,14 @@ def complete_sliding(g: np.ndarray, angle: np.ndarray, nodes: int = 48) -> np.nd
 
 
 def linear(g, nu, angle) -> np.ndarray:
-    """F_T, F_A, M_R over mu N rho as rho -> 0, (n, 3): the linear theory."""
+    """Return the limit of F_T, F_A, M_R over mu N rho for rho -> 0 by the linear theory, (n, 3)."""
     c = creepage_coefficients(g, nu)
     spin = np.cos(angle) / (np.sqrt(g + 1 / g) / 2.0)
     return table.HALF_WAY * np.stack([c.c23 / c.c11 * spin, -np.sin(angle), -c.c33 / c.c11 * spin], axis=1)
 
 
 def _spline(nodes, values) -> table.Spline:
-    """Cubic splines along each axis in turn, without extra conditions at the ends."""
+    """Interpolate by cubic splines along each axis in turn, without extra conditions at the ends."""
     from scipy.interpolate import make_interp_spline
 
     knots = []
@@ -98,7 +98,7 @@ def _spline(nodes, values) -> table.Spline:
 
 
 def _mirrored(angles, values, axis=1):
-    """Nodes of theta and values continued evenly over both ends."""
+    """Return nodes of theta and values that are continued as even functions over both ends."""
     step = angles[1] - angles[0]
     first = np.take(values, range(GHOSTS - 1, -1, -1), axis)
     last = np.take(values, range(-1, -GHOSTS - 1, -1), axis)
@@ -114,7 +114,7 @@ def _log_ratios(count: int) -> np.ndarray:
 
 
 def like_table(tell=print):
-    """Nodes and values of bodies of one kind (K = 0) over (rho, theta, ln g, nu)."""
+    """Return nodes and values for K = 0 over (rho, theta, ln g, nu)."""
     rho = np.arange(RHO + 1) / RHO
     theta = (np.arange(THETA) + 0.5) * np.pi / (2 * THETA)
     log_g = _log_ratios(RATIO)
@@ -126,14 +126,15 @@ def like_table(tell=print):
     values[-1, :, :3], values[-1, :, 3] = complete_sliding(g, th) / parity, 0.0
     start, before = None, 0
     for i in range(RHO - 1, 0, -1):
-        elements = 30 if rho[i] > 0.45 else 20  # little sticks at large creepage: fine grids are cheap there
+        # Fine grids are cheap at large creepage, where the adhesion area is small.
+        elements = 30 if rho[i] > 0.45 else 20
         start = start if elements == before else None
         out, start = solve_exact(g, v, np.full(g.shape, rho[i]), th, elements=elements, start=start)
         before = elements
         values[i, :, :3], values[i, :, 3] = out[:, :3] / parity / rho[i], out[:, 3]
         tell(f"rho {rho[i]:.3f}: {th.size} patches")
     values = values.reshape(RHO + 1, THETA, RATIO, POISSON, 4)
-    # the parabola through three Poisson's ratios, on the four nodes that a cubic spline asks for
+    # A cubic spline needs four nodes. Their values are those of the parabola through three Poisson's ratios.
     four = np.linspace(0.0, 0.5, 4)
     weights = np.stack(
         [
@@ -148,9 +149,9 @@ def like_table(tell=print):
 
 
 def unlike_shift(like: table.Spline, log_g, force) -> np.ndarray:
-    """Coefficients of s(ln g): without creepage K makes the force F_A/(mu N) that s kappa C11 would make as creepage.
+    """Return the coefficients of s(ln g), for which the creepage s kappa C11 gives the same force as K alone.
 
-    `force` (nodes of ln g,) at the smallest coupling of the table.
+    `force` is F_A/(mu N) without creepage at the smallest coupling of the table, (nodes of ln g,).
     """
     rho = np.linspace(0.0, 0.9, 400)
     found = []
@@ -165,7 +166,10 @@ def unlike_shift(like: table.Spline, log_g, force) -> np.ndarray:
 
 
 def unlike_table(like: table.Spline, tell=print):
-    """Coefficients of the shift, and nodes and values of what K adds beyond it, over (rho, theta, ln g, kappa)."""
+    """Return the coefficients of the shift, and nodes and values of the remaining effect of K.
+
+    The axes of the values are (rho, theta, ln g, kappa).
+    """
     rho = np.arange(RHO_UNLIKE + 1) / RHO_UNLIKE
     theta = (np.arange(THETA_UNLIKE) + 0.5) * np.pi / THETA_UNLIKE - np.pi / 2
     log_g = _log_ratios(RATIO_UNLIKE)
@@ -190,7 +194,7 @@ def _beyond_shift(like, shift, exact, rho, th, g, kappa) -> np.ndarray:
         r = table.HALF_WAY * rho[i] / (1.0 - rho[i])
         d = table.Dimensionless(g, nu, r * np.sin(th), r * np.cos(th), kappa, c11)
         shifted = table.like_forces(like, d, d.along + kappa * c11 * np.polyval(shift, np.log(g))).T
-        # the tables' own small error at kappa = 0 is none of K's doing
+        # The small interpolation error at kappa = 0 is not an effect of K, so it is subtracted.
         plain = table.like_forces(like, d, d.along).T
         own = np.repeat((exact[i] - plain)[kappa == 0.0], len(COUPLINGS), axis=0)
         values[i] = exact[i] - own - shifted
@@ -198,7 +202,7 @@ def _beyond_shift(like, shift, exact, rho, th, g, kappa) -> np.ndarray:
 
 
 def sample(n: int, seed: int) -> dict[str, np.ndarray]:
-    """Random dimensionless patches over the whole range; half of them of unlike bodies."""
+    """Return n random dimensionless patches over the whole range; half of them have unlike bodies."""
     rng = np.random.default_rng(seed)
     g = np.exp(rng.uniform(np.log(table.RATIOS[0]), np.log(table.RATIOS[1]), n))
     size = 10 ** rng.uniform(-1, np.log10(table.LARGEST_COUPLING), n)
@@ -213,7 +217,7 @@ def sample(n: int, seed: int) -> dict[str, np.ndarray]:
 
 
 def measure(n: int, seed: int, elements: int = 40) -> dict[str, np.ndarray]:
-    """Table less exact solver on a random sample: `error` (n, 4) over mu N and mu N c, and the sample."""
+    """Return the difference between table and exact solver on a random sample, `error` (n, 4), and the sample."""
     s = sample(n, seed)
     exact, _ = solve_exact(s["g"], s["nu"], s["rho"], s["angle"], s["kappa"], elements)
     ellipse, xi, phi, mu, elastic = problem(s["g"], s["nu"], s["rho"], s["angle"], s["kappa"])
@@ -231,7 +235,7 @@ def measure(n: int, seed: int, elements: int = 40) -> dict[str, np.ndarray]:
 
 
 def summary(m: dict[str, np.ndarray]) -> dict[str, float]:
-    """Median, 99 % and largest error of forces (over mu N, mu N c) and of the share of stick, like and unlike."""
+    """Return median, 99 % quantile and maximum of the errors of forces and adhesion share, for K = 0 and others."""
     out: dict[str, float] = {"patches": float(len(m["g"]))}
     for name, rows in (("like", m["kappa"] == 0), ("unlike", m["kappa"] != 0)):
         force, stick = np.abs(m["error"][rows, :3]).max(axis=1), np.abs(m["error"][rows, 3])
@@ -242,7 +246,7 @@ def summary(m: dict[str, np.ndarray]) -> dict[str, float]:
 
 
 def write(path: Path, tables: table.Tables) -> None:
-    """Store knots and coefficients (single precision) and the measured errors."""
+    """Write knots, coefficients (single precision) and measured errors to an npz file."""
     arrays: dict[str, np.ndarray] = {
         "error_names": np.array(list(tables.errors), dtype="U40"),
         "error_values": np.array(list(tables.errors.values())),

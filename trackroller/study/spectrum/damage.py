@@ -20,13 +20,16 @@ _BCB, _CB = ("block", "contact", "body"), ("contact", "body")
 
 
 def running_cycles(overrollings: np.ndarray, stress: np.ndarray, regime: np.ndarray) -> np.ndarray:
-    """Cycles of each track, shape (block, contact, body): none for the contact that has lifted off.
+    """Return the cycles of each track, (block, contact, body) [1]; 0 for a contact that has lifted off.
 
     Parameters
     ----------
-    overrollings : (block, body) [1]
-    stress : peak stress (block, contact, body) [MPa], NaN where there is none
-    regime : (block,) index into `REGIMES`
+    overrollings : numpy.ndarray, shape (block, body)
+        Overrollings per shift [1].
+    stress : numpy.ndarray, shape (block, contact, body)
+        Peak stress [MPa]; NaN where there is none.
+    regime : numpy.ndarray of int, shape (block,)
+        Index into `REGIMES`.
     """
     unknown = np.isnan(stress)
     lifted = (regime == REGIMES.index("lift_off"))[:, None, None] & unknown & ~unknown[:, ::-1, :]
@@ -36,14 +39,18 @@ def running_cycles(overrollings: np.ndarray, stress: np.ndarray, regime: np.ndar
 def damage_per_shift(
     stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str, probability: float = 0.5
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Cycles to failure and damage per shift of each block, both of shape (block, contact, body) [1].
+    """Return cycles to failure and damage per shift of each block, (block, contact, body) [1] each.
 
     Parameters
     ----------
-    stress, cycles : (block, contact, body) [MPa], [1]
-    bodies : materials of roller and guide
-    rule : life rule
-    probability : failure probability; other than 0.5 NaN for a material without scatter
+    stress, cycles : numpy.ndarray, shape (block, contact, body)
+        Peak stress [MPa] and cycles per shift [1].
+    bodies : list of Material
+        Materials of roller and guide.
+    rule : str
+        Life rule.
+    probability : float
+        Failure probability [1]. For values other than 0.5, a material without scatter gives NaN.
     """
     life = np.full(stress.shape, np.nan)
     for i, material in enumerate(bodies):
@@ -61,7 +68,7 @@ def damage_per_shift(
 
 
 def damage_dataset(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) -> xr.Dataset:
-    """Data set of the damage from the solved blocks; see `spectrum.solve_spectrum`."""
+    """Return the damage of the solved blocks as a data set; see `spectrum.solve_spectrum`."""
     stress = solved["peak_stress"].transpose("case", "contact", "body").values
     overrollings = overrollings_per_shift(spectrum)
     cycles = running_cycles(overrollings, stress, solved["regime"].values)
@@ -71,7 +78,7 @@ def damage_dataset(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDat
     life, damage = damage_per_shift(stress, cycles, bodies, rule)
     total = damage.sum(axis=0)
     shifts = fatigue.repetitions_to_failure(total, spectrum.critical_damage)
-    first = shifts.min(axis=0)  # NaN of a track that is not known stays NaN
+    first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
     variables: dict[str, Any] = {
         "distance": ("block", [b.distance for b in spectrum.blocks], _attrs("m", "distance per shift", "s")),
         "overrollings": (("block", "body"), overrollings, _attrs("1", "overrollings per shift", "n")),
@@ -94,7 +101,7 @@ def _attrs(units: str, long_name: str, symbol: str) -> dict[str, str]:
 def _scattered(
     spectrum: Spectrum, stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str
 ) -> np.ndarray | None:
-    """Shifts to failure at each failure probability, (probability, contact, body); None without scatter."""
+    """Return shifts to failure at each failure probability, (probability, contact, body); None without scatter."""
     if not any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
         return None
     lives = [
@@ -139,7 +146,7 @@ def _labelled(
 
 
 def summary(ds: xr.Dataset) -> list[str]:
-    """What the damage says, one plain sentence a body: shifts, track, and the block that does most."""
+    """Return one sentence for each body: its life in shifts, its track, and the block with the most damage."""
     sentences = []
     for body in BODIES:
         shifts = ds["life_shifts"].sel(body=body)
@@ -155,13 +162,13 @@ def summary(ds: xr.Dataset) -> list[str]:
         worst = int(np.argmax(share.values))
         sentences.append(
             f"The {body} lasts {float(shifts.min()):.4g} shifts; contact {contact} fails first, "
-            f"{100 * float(share[worst]):.0f} % of its damage comes from '{ds['block'].values[worst]}'."
+            f"and {100 * float(share[worst]):.0f} % of its damage comes from '{ds['block'].values[worst]}'."
         )
     return sentences
 
 
 def _at_most(ds: xr.Dataset, body: str) -> str:
-    """The life that the known blocks alone allow, a bound from above; nothing where they do no damage."""
+    """Return an upper bound of the life from the known blocks; an empty text if these blocks do no damage."""
     known = float(ds["damage"].sel(body=body).sum("block").max())  # skips the unknown ones
     return f"; at most {ds.attrs['critical_damage'] / known:.4g} shifts by the other blocks" if known > 0 else ""
 

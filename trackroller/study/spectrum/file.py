@@ -1,6 +1,6 @@
-"""A load spectrum as its file has it: what a roller does in a shift, in blocks.
+"""Read a load spectrum: the loads of a roller during a shift, in blocks.
 
-A spectrum file names the roller once (`base`) and its loads in blocks with the distance travelled per shift:
+A spectrum file describes the roller once (`base`), and then its loads in blocks with the distance travelled per shift:
 
     name: sorter
     base: {axis_distance: 21.75, roller_material: PA6, guide_overrollings_per_hour: 120}
@@ -9,7 +9,8 @@ A spectrum file names the roller once (`base`) and its loads in blocks with the 
       - {name: empty, distance: 4000, radial_force: -80, guide_overrollings: 900}
     life_rule: haibach
 
-`blocks` may also be the name of a CSV beside the file, one column a field, one line a block.
+`blocks` may also be the name of a CSV file in the same folder, with one column for each field and one line for each
+block.
 """
 
 from __future__ import annotations
@@ -47,14 +48,18 @@ FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "fail
 
 @dataclass(frozen=True)
 class Block:
-    """One kind of run in a shift.
+    """One block of a load spectrum.
 
     Parameters
     ----------
-    name : of the block
-    case : the roller with the loads of the block
-    distance : travelled per shift [m]
-    guide_overrollings : of the guide's point per shift [1]; None: from the overrollings per hour of the case
+    name : str
+        Name of the block.
+    case : Case
+        The roller with the loads of the block.
+    distance : float
+        Distance travelled per shift [m].
+    guide_overrollings : float, optional
+        Overrollings of a point of the guide per shift [1]. Default: from the overrollings per hour of the case.
     """
 
     name: str
@@ -65,7 +70,21 @@ class Block:
 
 @dataclass(frozen=True)
 class Spectrum:
-    """The blocks of a shift with what the damage sum needs; made by `load_spectrum` or `from_dict`."""
+    """A load spectrum; `load_spectrum` and `from_dict` make it.
+
+    Parameters
+    ----------
+    name, description : str
+        Name and description of the spectrum.
+    blocks : tuple of Block
+        Blocks of one shift.
+    critical_damage : float
+        Damage sum at failure [1].
+    failure_probabilities : tuple of float
+        Failure probabilities at which the life is computed [1].
+    options : mapping
+        Options of the solver.
+    """
 
     name: str
     blocks: tuple[Block, ...]
@@ -75,10 +94,23 @@ class Spectrum:
     options: Mapping[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def from_dict(cls, values: Mapping[str, Any], folder: Path | None = None) -> Spectrum:
-        """Spectrum from a mapping with the keys of a file; `folder` is where its CSV lies.
+    def from_dict(cls, values: Mapping[str, Any]) -> Spectrum:
+        """Return the spectrum of a mapping with the keys of a file.
 
-        Raises `InputError` naming block, field and value.
+        Parameters
+        ----------
+        values : mapping
+            Keys and values of a spectrum file.
+
+        Returns
+        -------
+        Spectrum
+            The checked spectrum.
+
+        Raises
+        ------
+        InputError
+            If an entry is wrong; the error names block, field and value.
         """
         for key in values:
             if key not in FILE_FIELDS:
@@ -99,7 +131,9 @@ class Spectrum:
         made = tuple(_block(block, base, i) for i, block in enumerate(blocks, start=1))
         _check_names([block.name for block in made])
         if not sum(block.distance for block in made) > 0:
-            raise InputError("distance", 0.0, "the distances of a shift must add up to more than 0 m")
+            raise InputError(
+                "distance", 0.0, "distances of a shift that add up to more than 0 m", "Give distances in m."
+            )
         return cls(
             name=str(values.get("name", "spectrum")),
             blocks=made,
@@ -111,11 +145,27 @@ class Spectrum:
 
 
 def load_spectrum(path: Path | str) -> Spectrum:
-    """The load spectrum of a file; raises `InputError` naming file, block, field and value."""
+    """Read a load spectrum from a file.
+
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        The YAML file.
+
+    Returns
+    -------
+    Spectrum
+        The checked spectrum.
+
+    Raises
+    ------
+    InputError
+        If an entry is wrong; the error names file, block, field and value.
+    """
     path = Path(path)
     values = parse_mapping(read_text(path, "load spectrum"), str(path))
     with files_beside(path):
-        return Spectrum.from_dict({"name": path.stem} | values, path.parent)
+        return Spectrum.from_dict({"name": path.stem} | values)
 
 
 def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
@@ -130,12 +180,12 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
             raise InputError(
                 f"{where}.{key}",
                 entry[key],
-                "the roller is the same in all blocks of a spectrum",
-                "Give it under `base`.",
+                "a load, because the roller is the same in all blocks of a spectrum",
+                "Give this field under `base`.",
             )
         raise unknown_name(f"{where}: field", str(key), BLOCK_FIELDS)
     if "distance" not in entry:
-        raise InputError(f"{where}.distance", None, "the distance travelled per shift in m is wanted")
+        raise InputError(f"{where}.distance", None, "the distance travelled per shift in m", "Add it to the block.")
     overrollings = entry.get("guide_overrollings")
     loads = {key: entry[key] for key in LOAD_FIELDS if key in entry}
     try:
@@ -173,7 +223,7 @@ def _probabilities(values: Any) -> tuple[float, ...]:
 
 
 def _options(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Options of the solver, refused now rather than after the work."""
+    """Check the options of the solver before any case is solved."""
     from trackroller.roller.options import Options
 
     Options(**values)
@@ -183,11 +233,11 @@ def _options(values: Mapping[str, Any]) -> dict[str, Any]:
 def _check_names(names: list[str]) -> None:
     for name in names:
         if names.count(name) > 1:
-            raise InputError("blocks", name, "each block needs a name of its own", "Rename one of them.")
+            raise InputError("blocks", name, "a name of its own for each block", "Rename one of the blocks.")
 
 
 def _table(path: Path) -> list[dict[str, Any]]:
-    """Blocks of a CSV: a line of names, then one line a block; an empty cell is a value not given."""
+    """Return the blocks of a CSV file: a line of names, then one line for each block; empty cells are left out."""
     text = read_text(path, "blocks")
     try:
         lines = [line for line in csv.reader(text.splitlines()) if any(cell.strip() for cell in line)]
@@ -197,7 +247,9 @@ def _table(path: Path) -> list[dict[str, Any]]:
         raise InputError("blocks", str(path), "a CSV with a line of names and at least one block")
     names = [name.strip() for name in lines[0]]
     if len(set(names)) < len(names) or not all(names):
-        raise InputError("blocks", ", ".join(names), "each column needs a name of its own", f"See {path}.")
+        raise InputError(
+            "blocks", ", ".join(names), "a different name for each column", f"Correct the first line of {path}."
+        )
     for number, line in enumerate(lines[1:], start=2):
         if len(line) != len(names):
             raise InputError(
@@ -207,10 +259,18 @@ def _table(path: Path) -> list[dict[str, Any]]:
 
 
 def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
-    """Overrollings of roller and guide per shift, shape (block, body) [1].
+    """Return the overrollings of roller and guide per shift.
 
-    The roller makes distance / (2 pi r_A) of them. The guide's point has those given, else its overrollings
-    per hour times the hours of the block; NaN where neither is known.
+    Parameters
+    ----------
+    spectrum : Spectrum
+        The load spectrum.
+
+    Returns
+    -------
+    numpy.ndarray, shape (block, body)
+        Overrollings [1]. A roller has distance / (2 pi r_A) of them. For the guide, the given number is used, otherwise
+        its overrollings per hour times the hours of the block; NaN if neither is known.
     """
     from trackroller.roller.geometry import rolling_radius
 

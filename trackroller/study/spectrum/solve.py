@@ -1,6 +1,6 @@
-"""How many shifts a roller lasts under a load spectrum: its blocks solved, their damage summed.
+"""Solve the blocks of a load spectrum and sum their damage to the life of roller and guide in shifts.
 
-ASSUME: damage adds up linearly whatever the order of the blocks (Palmgren-Miner).
+ASSUME: damage adds up linearly, independent of the order of the blocks (Palmgren-Miner).
 ASSUME: the blocks load the same two tracks of the roller and the same point of the guide.
 """
 
