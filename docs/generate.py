@@ -14,9 +14,11 @@ from trackroller import parameters as p
 from trackroller.report.pages import markdown
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.dataset import VALIDITY_BITS, VARIABLES
+from validation.adopt.common import PICTURES, shortened
 from validation.tradeoff import page as tradeoff_page
 
 FOLDER = Path(__file__).parent
+TRADEOFF_DATA = ("The ladders", "Order of convergence", "Single stages")  # tables that only the data file holds
 START, END = "<!-- presets: made by docs/generate.py -->\n", "<!-- end of presets -->"
 USES = {"preview": "a first look", "standard": "studies", "reference": "to check `standard`; single cases"}
 HEAD = """# Parameters, options and results
@@ -151,7 +153,8 @@ def tradeoff() -> str:
         for name in ("tradeoff.json", "tradeoff_figures.json")
     )
     made_by = "made by docs/generate.py from docs/data/tradeoff.json"
-    return markdown(tradeoff_page.blocks(summary, figures), made_by, "../figures")
+    shown = shortened(tradeoff_page.blocks(summary, figures), TRADEOFF_DATA, "docs/data/tradeoff.json")
+    return markdown(shown, made_by, PICTURES)
 
 
 def main(check: bool) -> int:

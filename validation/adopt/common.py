@@ -4,14 +4,51 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from PIL import Image
 
+from trackroller.report.pages import Block
+
 FOLDER = Path(__file__).resolve().parents[2] / "docs"
 DATA, FIGURES, PAGES = FOLDER / "data", FOLDER / "figures", FOLDER / "validation"
 PICTURES = "../figures"  # as the pages name the folder of figures
+
+
+def shortened(content: Sequence[Block], sections: Sequence[str], data: str) -> list[Block]:
+    """Return a page without the text and the tables of some sections; the data file holds what is left out.
+
+    Parameters
+    ----------
+    content : sequence of Block
+        The whole page.
+    sections : sequence of str
+        Headings of the sections of which only the figures remain.
+    data : str
+        Path of the data file in the repository.
+
+    Returns
+    -------
+    list of Block
+        The page, with a paragraph at its end that names the data file.
+
+    Raises
+    ------
+    ValueError
+        If the page has no such section.
+    """
+    missing = set(sections) - {value for kind, value in content if kind == "h2"}
+    if missing:
+        raise ValueError(f"the page has no sections {sorted(missing)}")
+    kept, inside = [], False
+    for kind, value in content:
+        if kind == "h2":
+            inside = value in sections
+        if not inside or kind == "figure":
+            kept.append((kind, value))
+    names = ", ".join(f"*{name}*" for name in sections)
+    return [*kept, ("h2", "More data"), ("p", f"`{data}` holds {names}; the page in `results/` shows them.")]
 
 
 def copy_figures(results: Path, names: Iterable[str], colours: int | None = None) -> None:

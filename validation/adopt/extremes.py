@@ -10,17 +10,19 @@ import json
 from pathlib import Path
 
 from trackroller.report.pages import markdown
-from validation.adopt.common import DATA, PICTURES, copy_figures, main
+from validation.adopt.common import DATA, PICTURES, copy_figures, main, shortened
 from validation.extremes.page import blocks, read
 
 KEPT = DATA / "extremes.json"
+LEFT_OUT = ("The scenes", "Kernels against many digits")
 MADE_BY = "made by validation/adopt/extremes.py from docs/data/extremes.json"
 
 
 def page() -> str:
     """The page from the kept data."""
     kept = json.loads(KEPT.read_text(encoding="utf-8"))
-    return markdown(blocks(kept["record"], kept["figures"]), MADE_BY, PICTURES)
+    shown = shortened(blocks(kept["record"], kept["figures"]), LEFT_OUT, "docs/data/extremes.json")
+    return markdown(shown, MADE_BY, PICTURES)
 
 
 def adopt(results: Path) -> None:

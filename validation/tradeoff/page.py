@@ -177,7 +177,7 @@ def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
     )
     words = (
         "A preset is a promise, kept in 99 % of the designs measured (95 % with elements) by the cheapest rung of "
-        f"each ladder below, or the finest where none keeps it: {promises}. Measured, CPU time of complete "
+        f"each ladder, or the finest where none keeps it: {promises}. Measured, CPU time of complete "
         "cases:"
     )
     return [("p", words), ("table", (heads, rows))]
