@@ -1,4 +1,4 @@
-"""Commands about one case."""
+"""Commands that solve or draw one case."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHEET_OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life", "t
 
 
 def settings_of(words: list[str]) -> dict[str, Any]:
-    """Mapping from key=value words; values are read as YAML."""
+    """Return the mapping of key=value words; the values are read as YAML."""
     found: dict[str, Any] = {}
     for word in words:
         key, sign, value = word.partition("=")
@@ -34,7 +34,7 @@ def settings_of(words: list[str]) -> dict[str, Any]:
 
 
 def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
-    """Case and options from a case file and --set words."""
+    """Return the case and the options of a case file and of --set words."""
     values = (read_mapping(path, "case file") if path is not None else {}) | settings_of(words)
     for key in values:
         if key not in (*FIELDS, *OPTIONS):
@@ -48,7 +48,7 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
 
 
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
-    """Solve the case of a file and --set words."""
+    """Solve the case of a case file and --set words; `more` are further options of `solve`."""
     from trackroller.roller.solver import solve
 
     case, options = case_of(path, words)
@@ -105,12 +105,12 @@ def solve_and_tell(
 
 
 def is_failed(dataset: xr.Dataset) -> bool:
-    """Has the one case of a result no solution?"""
+    """Return True if the single case of a result has no solution."""
     return REGIMES[int(dataset["regime"])] == "failed"
 
 
 def plot_target(target: str, words: list[str], out: Path | None, results: Path) -> None:
-    """Draw a case file's case, or a study's figures."""
+    """Draw the case of a case file, or the figures of a study."""
     path = Path(target)
     if path.suffix in (".yaml", ".yml") and not is_study(path):
         from trackroller.report.figures.contact import plot_case
@@ -134,5 +134,5 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
 
 
 def is_study(path: Path) -> bool:
-    """A file with factors, a name or a design is a study's, any other a case's."""
+    """Return True for a study file, which has factors, a name or a design; any other file is a case file."""
     return bool({"factors", "name", "design"} & set(read_mapping(path, "case file")))

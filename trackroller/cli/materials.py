@@ -1,4 +1,4 @@
-"""Commands about the material database."""
+"""Commands that show and extend the material database."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ def _table(rows: list[dict[str, str]]) -> None:
 
 
 def print_list() -> None:
-    """All materials."""
+    """Print the names and values of all materials."""
     _table(material_rows(load_database()))
 
 
 def print_material(name: str) -> None:
-    """One material."""
+    """Print every value of one material."""
     _table(material_details(load_database(), name))
 
 
 def print_friction() -> None:
-    """The friction table."""
+    """Print the friction coefficients by pair."""
     _table(friction_rows(load_database()))
 
 

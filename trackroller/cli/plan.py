@@ -1,4 +1,4 @@
-"""What a study or a case will ask of the machine, told before anything is solved."""
+"""Print the cost and the stages of a study or of a case before anything is solved."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ MOST = 20_000  # cases of a study that --explain looks at
 
 
 def print_plan(path: Path | None, results: Path, explain: bool, words: list[str], no_shortcuts: bool) -> None:
-    """Plan of a study file, or of a case file (or of the paper's example) with `words` key=value."""
+    """Print the plan of a study file, or the stages of a case file or of the paper's example with key=value words."""
     from trackroller.cli.case import is_study
 
     if path is None or not is_study(path):
@@ -26,7 +26,7 @@ def print_plan(path: Path | None, results: Path, explain: bool, words: list[str]
 
 
 def _print_study(path: Path, results: Path) -> None:
-    """Cases, chunks, expected time and disk; nothing is written."""
+    """Print the number of cases and chunks, the expected time and the disk space."""
     from trackroller.study.plan import chunk_size
     from trackroller.study.status import status_of
 

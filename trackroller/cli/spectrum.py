@@ -1,4 +1,4 @@
-"""Command about a load spectrum: damage of a shift, and how many shifts the parts last."""
+"""Command that prints the damage of a load spectrum and the life in shifts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def run_spectrum(path: Path, json: bool, out: Path | None) -> None:
 
 
 def print_spectrum(ds: xr.Dataset) -> None:
-    """Damage of each block, lives in shifts, and in words what decides them."""
+    """Print the damage of each block, the lives in shifts, and sentences on their causes."""
     from rich.console import Console
     from rich.table import Table
 
@@ -67,7 +67,7 @@ def _cell(value: float) -> str:
 
 
 def _scatter(ds: xr.Dataset, body: str) -> str:
-    """Shifts at each failure probability, where the material gives its scatter."""
+    """Return the shifts at each failure probability as text; empty for materials without scatter."""
     if "life_shifts_at_probability" not in ds:
         return ""
     lives = ds["life_shifts_at_probability"].sel(body=body)

@@ -1,4 +1,4 @@
-"""Commands about a study."""
+"""Commands that run a study, report on it and repeat a case."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from trackroller.study.files import StudyFolder
 def run_with_progress(
     path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
 ) -> None:
-    """Run a study with a bar that shows cases/s and the time left; make its report if asked for."""
+    """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -77,7 +77,7 @@ def _report(study: Study, folder: StudyFolder) -> Path:
 
 
 def print_status(name: str, results: Path) -> None:
-    """State of a study."""
+    """Print how many cases of a study are done, missing and failed, and the failures by cause."""
     from trackroller.study.status import find_study, status_of
 
     study = find_study(name, results)
@@ -102,7 +102,7 @@ def print_status(name: str, results: Path) -> None:
 
 
 def print_repeat(name: str, case: int, results: Path) -> int:
-    """Solve a case anew; 0 when it is what is stored."""
+    """Solve a case again and compare; return the exit code, 0 if every number equals the stored one."""
     from trackroller.study.repeat import repeat_case
     from trackroller.study.status import find_study
 

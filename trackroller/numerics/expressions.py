@@ -17,11 +17,8 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import PARAMETERS
+from trackroller.numerics.syntax_checks import check_angles, check_depth
 
-MAX_DEPTH = 60  # of the syntax tree
-TRIGONOMETRIC = ("sin", "cos", "tan")
-DEGREES = frozenset(name for name, parameter in PARAMETERS.items() if parameter.unit == "deg")
 MAX_LENGTH = 500  # a longer expression is a program: it belongs in a script
 
 FUNCTIONS: dict[str, tuple[Any, int]] = {
@@ -198,42 +195,13 @@ def _tree(text: str, field: str) -> ast.expr:
         raise InputError(field, text[:40] + "...", f"an expression has at most {MAX_LENGTH} characters")
     try:
         tree = ast.parse(text.strip(), mode="eval").body
-        _check_depth(tree, text, field)
-        _check_angles(tree, text, field)
+        check_depth(tree, text, field)
+        check_angles(tree, text, field)
         return tree
     except SyntaxError as exc:
         raise InputError(field, text, f"syntax error at character {exc.offset}", _REMEDY) from None
     except (RecursionError, MemoryError, ValueError):
         raise InputError(field, text, "the brackets are too deep, or this is not a text", _REMEDY) from None
-
-
-def _check_depth(tree: ast.expr, text: str, field: str) -> None:
-    """Refuse an expression whose evaluation would nest too deeply."""
-    level: list[ast.AST] = [tree]
-    for _ in range(MAX_DEPTH):
-        level = [child for node in level for child in ast.iter_child_nodes(node)]
-        if not level:
-            return
-    raise InputError(field, text[:40] + "...", f"an expression of at most {MAX_DEPTH} levels", "Shorten it.")
-
-
-def _check_angles(tree: ast.expr, text: str, field: str) -> None:
-    """Refuse the sine, cosine or tangent of an angle in degrees."""
-    for call in ast.walk(tree):
-        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in TRIGONOMETRIC:
-            degrees = _unconverted(call.args[0]) if call.args else None
-            if degrees:
-                allowed = f"an angle in radians in {call.func.id}(); {degrees} is in degrees"
-                raise InputError(field, text, allowed, f"Write {call.func.id}(radians({degrees})).")
-
-
-def _unconverted(node: ast.AST) -> str | None:
-    """Return the first name of an angle in degrees that `radians` does not convert."""
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "radians":
-        return None
-    if isinstance(node, ast.Name) and node.id in DEGREES:
-        return node.id
-    return next((name for child in ast.iter_child_nodes(node) if (name := _unconverted(child))), None)
 
 
 def _name(node: ast.AST) -> str | None:

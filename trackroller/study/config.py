@@ -1,4 +1,4 @@
-"""The study file: typed, and refused with a remedy before anything runs."""
+"""Read and check a study file, so that errors are found before any case is solved."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
 def check_name(name: str, where: str = "name") -> str:
-    """A name that can be a folder's: it can neither leave the results folder nor hide in it."""
+    """Return a name that is valid for a folder inside the results folder; refuse any other name."""
     if not isinstance(name, str) or not NAME.fullmatch(name) or ".." in name or name.endswith("."):
         raise InputError(
             where,
@@ -153,8 +153,10 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
 
 
 def _translate(error: ValidationError) -> InputError:
-    """The first of pydantic's findings in our own words."""
-    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")  # a misspelt key explains the rest
+    """Return the first error of pydantic as an `InputError` with a remedy."""
+    found = sorted(
+        error.errors(), key=lambda e: e["type"] != "extra_forbidden"
+    )  # A misspelt key often causes the other errors, so it is reported first.
     detail = found[0]
     context = detail.get("ctx", {}).get("error")
     if isinstance(context, InputError):
@@ -170,7 +172,7 @@ def _translate(error: ValidationError) -> InputError:
 
 @dataclass(frozen=True)
 class Study:
-    """A checked study: the typed file, where it lies, and the materials it uses."""
+    """A checked study: its configuration, the path of its file, and its materials."""
 
     config: StudyFile
     path: Path | None = None
@@ -178,12 +180,12 @@ class Study:
 
     @property
     def name(self) -> str:
-        """Name of the study and of its results folder."""
+        """Return the name of the study and of its results folder."""
         return self.config.name
 
     @cached_property
     def factors(self) -> dict[str, dict[str, Any]]:
-        """All factors, lists of contact or spin models among them."""
+        """Return all factors, including lists of contact models or spin models."""
         extra = {
             name: {"values": list(value)}
             for name in OPTION_FACTORS
@@ -200,7 +202,7 @@ class Study:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Keyword arguments of `solve`; those that are factors are missing."""
+        """Return the keyword arguments of `solve` that are not factors."""
         return {o.name: getattr(self.config, o.name) for o in IN_STUDY if o.name not in self.factors}
 
     def merged(self, whole_paths: bool = False, table: str | None = None) -> str:

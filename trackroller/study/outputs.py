@@ -1,4 +1,4 @@
-"""From a solved study to plain columns: which outputs an analysis looks at, and which rows it may use."""
+"""Select the outputs of a solved study that an analysis uses, as plain columns, and the rows it may use."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ BOOKKEEPING = {
 }
 FIELDS = {"x", "y", "z", "grid"}
 
-# what an engineer asks for first: name -> (variable, selection, how contacts are joined, scale, words)
+# The outputs that are analysed by default: name -> (variable, selection, how contacts are joined, scale, words)
 DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
     "roller_life_hours": ("roller_life_hours", {}, "min", "log10", "life of the roller"),
     "guide_life_hours": ("guide_life_hours", {}, "min", "log10", "life of the guide"),
@@ -51,7 +51,7 @@ _JOIN: dict[str, Any] = {"min": np.nanmin, "max": np.nanmax, "sum": np.nansum}
 
 @dataclass(frozen=True)
 class Output:
-    """One analysed output: `values` shape (n,), on `scale`, NaN where `excluded` says why and how often."""
+    """One analysed output: `values` (n,) on `scale`; `excluded` counts the NaN values by their reason."""
 
     name: str
     values: np.ndarray
@@ -62,13 +62,13 @@ class Output:
 
 
 def settings(study: Mapping[str, Any]) -> dict[str, Any]:
-    """The keys under `analysis` of a study file, {} if there are none."""
+    """Return the keys under `analysis` of a study file, {} if there are none."""
     found = study.get("analysis")
     return dict(found) if isinstance(found, Mapping) else {}
 
 
 def read_study(ds: xr.Dataset) -> dict[str, Any]:
-    """The study file as stored in the result (YAML or JSON under the attribute `study`), {} if none is."""
+    """Return the study file that a result stores in the attribute `study` (YAML or JSON), {} without it."""
     text = ds.attrs.get("study", "")
     if isinstance(text, Mapping):
         return dict(text)
@@ -79,14 +79,14 @@ def read_study(ds: xr.Dataset) -> dict[str, Any]:
 
 
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
-    """Dimensions that count cases: `case`, or the factors of an unstacked grid in the study's order."""
+    """Return the dimensions that count cases: `case`, or the factors of an unstacked grid in their order."""
     if "case" in ds.dims:
         return ("case",)
     return tuple(name for name in factors if name in ds.dims)
 
 
 def flat(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
-    """A variable as (rows, ...) with the case dimensions joined in order."""
+    """Return a variable as an array (rows, ...), with the case dimensions joined in their order."""
     var = ds[name]
     missing = [d for d in dims if d not in var.dims]
     if missing:
@@ -109,10 +109,10 @@ def _available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) ->
 
 
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
-    """Names of the outputs analysed by default: the engineer's list, else every scalar result."""
+    """Return the outputs that are analysed by default: those of `DEFAULTS`, otherwise every scalar result."""
     free = _available(ds, factors, dims)
     names = [n for n, (var, *_) in DEFAULTS.items() if var in free and np.isfinite(ds[var]).any()]
-    for body in ("roller", "guide"):  # hours say what cycles say, where both are there
+    for body in ("roller", "guide"):  # Hours and cycles of one body are proportional, so only the hours are kept.
         if f"{body}_life_hours" in names and f"{body}_life_cycles" in names:
             names.remove(f"{body}_life_cycles")
     if not names or not {"peak_stress", "normal_force"} & set(free):
@@ -122,7 +122,7 @@ def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...])
 
 
 def _raw(ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]) -> tuple[np.ndarray, str, str, str]:
-    """Values (n,), units, words and scale of a default output, a variable, or `variable[contact,body]`."""
+    """Return values (n,), units, words and scale of a default output, a variable, or `variable[contact,body]`."""
     if name in DEFAULTS and DEFAULTS[name][0] in ds:
         variable, choice, join, scale, words = DEFAULTS[name]
     else:
@@ -154,9 +154,9 @@ def _raw(ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]) -
 
 
 def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
-    """Index into `REGIMES` of each row, shape (n,); a row without a known regime counts as failed.
+    """Return the index into `REGIMES` of each row, (n,); a row without a known regime counts as failed.
 
-    Results that carry no regime (another solver's) count as rolling.
+    Rows of a result without the variable `regime`, from another solver, count as rolling.
     """
     rows = int(np.prod([ds.sizes[d] for d in dims]))
     if "regime" not in ds:
@@ -169,7 +169,7 @@ def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
 def _usable(
     ds: xr.Dataset, dims: tuple[str, ...], regime: np.ndarray, keep: tuple[str, ...]
 ) -> tuple[np.ndarray, dict[str, int]]:
-    """Rows of the regimes to keep that converged, and how many others there are for each reason."""
+    """Return True for converged rows of the regimes to keep, and the number of other rows by reason."""
     for name in keep:
         if name not in REGIMES:
             raise unknown_name("analysis.keep", name, REGIMES)
@@ -188,7 +188,7 @@ def _usable(
 def _countable(
     values: np.ndarray, usable: np.ndarray, stopped: np.ndarray, unlimited: bool, scale: str
 ) -> tuple[np.ndarray, dict[str, int]]:
-    """Values on their scale, NaN where they cannot be used, and how many usable rows are lost for each reason."""
+    """Return values on their scale, NaN where they are unusable, and the number of rows lost by reason."""
     values = np.where(usable, values, np.nan)
     empty = usable & np.isnan(values)
     why = {
@@ -212,23 +212,35 @@ def outputs(
     unlimited: bool = False,
     scale: str | Mapping[str, str] = "",
 ) -> list[Output]:
-    """Columns to analyse.
+    """Return the columns to analyse.
 
     Parameters
     ----------
-    ds : a gathered study, along `case` or unstacked
-    factors : names of the study's factors, in order
-    names : names of `DEFAULTS`, scalar variables, or `variable[contact,body]`; None: `default_names`
-    keep : regimes whose rows are used; the others become NaN and are counted
-    natural : outputs to take on the natural scale although lives are taken as log10
-    scale : natural or log10, for all outputs or by output
-    unlimited : let infinite lives stand (for ranking) instead of counting them as unusable
+    ds : xarray.Dataset
+        A gathered study, along `case` or unstacked.
+    factors : iterable of str
+        Names of the study's factors in their order.
+    names : iterable of str, optional
+        Names of `DEFAULTS`, scalar variables, or `variable[contact,body]`. Default: `default_names`.
+    keep : iterable of str
+        Regimes whose rows are used. Rows of other regimes become NaN and are counted.
+    natural : iterable of str
+        Outputs on the natural scale, also lives, whose default scale is log10.
+    unlimited : bool
+        Keep infinite lives, for ranking, instead of counting them as unusable.
+    scale : str or mapping
+        "natural" or "log10", for all outputs or by output.
 
     Returns
     -------
-    list of Output. For each regime but rolling that occurs an indicator `full_slip`, `lift_off`, `failed`
-    (1 where it occurs, no row left out) is added, so that what drives it is analysed and not hidden; not so
-    with `unlimited`, which is for ranking.
+    list of Output
+        The columns. Unless `unlimited` is True, one indicator (1 where it occurs) is added for each of the regimes
+        `full_slip`, `lift_off` and `failed` that occurs, so that the causes of a regime can be analysed.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, or an output has more than one number for a case.
     """
     factors = list(factors)
     dims = case_dims(ds, factors)
