@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
@@ -104,7 +104,7 @@ def constant() -> FrictionLaw:
     return FrictionLaw(np.zeros(1), np.ones(1), {"kind": "constant"})
 
 
-def _refuse(part: str, value: object, allowed: str, remedy: str = "") -> None:
+def _refuse(part: str, value: object, allowed: str, remedy: str = "") -> NoReturn:
     raise InputError(f"friction_law.{part}" if part else "friction_law", value, allowed, remedy)
 
 
@@ -113,22 +113,16 @@ def _number(part: str, value: object, allowed: str) -> float:
         return read_number(value)
     except ValueError:
         _refuse(part, value, allowed)
-        raise AssertionError from None
 
 
-def _checked_share(lowest: object) -> float:
-    allowed = "the share of friction left at high speed, in [0, 1]"
-    number = _number("lowest", lowest, allowed)
-    if not 0.0 <= number <= 1.0:
-        _refuse("lowest", lowest, allowed)
-    return number
-
-
-def _checked_speed(speed: object) -> float:
-    number = _number("speed", speed, "a slip speed > 0 in mm/s")
-    if not (number > 0.0 and np.isfinite(number)):
-        _refuse("speed", speed, "a slip speed > 0 in mm/s")
-    return number
+def _checked(speed: object, lowest: object) -> tuple[float, float]:
+    told = "a slip speed > 0 in mm/s", "the share of friction left at high speed, in [0, 1]"
+    fall, share = _number("speed", speed, told[0]), _number("lowest", lowest, told[1])
+    if not (fall > 0.0 and np.isfinite(fall)):
+        _refuse("speed", speed, told[0])
+    if not 0.0 <= share <= 1.0:
+        _refuse("lowest", lowest, told[1])
+    return fall, share
 
 
 def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
@@ -151,13 +145,13 @@ def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
     InputError
         If a value is out of range.
     """
-    speed, lowest = _checked_speed(speed), _checked_share(lowest)
+    speed, lowest = _checked(speed, lowest)
     form = {"kind": "linear", "speed": speed, "lowest": lowest}
     return FrictionLaw(np.array([0.0, speed]), np.array([1.0, lowest]), form)
 
 
 def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
-    """Return the law lowest + (1 - lowest) exp(-v / speed).
+    """Return the law lowest + (1 - lowest) exp(-v / speed) (Polach 2005; Vollebregt & Schuttelaars 2012).
 
     Parameters
     ----------
@@ -175,12 +169,8 @@ def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
     ------
     InputError
         If a value is out of range.
-
-    References
-    ----------
-    Polach (2005); Vollebregt & Schuttelaars (2012).
     """
-    speed, lowest = _checked_speed(speed), _checked_share(lowest)
+    speed, lowest = _checked(speed, lowest)
     part = np.linspace(0.0, 1.0, KNOTS) ** 1.5 * 12.0
     form = {"kind": "exponential", "speed": speed, "lowest": lowest}
     return FrictionLaw(part * speed, lowest + (1.0 - lowest) * np.exp(-part), form)
@@ -295,7 +285,6 @@ def law_of(mapping: Mapping[str, Any] | FrictionLaw | str | None) -> FrictionLaw
             _refuse("", mapping, "a mapping with `kind`, or its JSON text")
     if not isinstance(mapping, Mapping):
         _refuse("", mapping, "a mapping such as {kind: exponential, speed: 100, lowest: 0.4}")
-        raise AssertionError
     values = _fields(mapping)
     makers = {"constant": constant, "linear": linear_falling, "exponential": exponential_falling, "table": table}
     return makers[str(mapping["kind"])](**values)  # type: ignore[operator]

@@ -154,9 +154,8 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
 
 def _translate(error: ValidationError) -> InputError:
     """Return the first error of pydantic as an `InputError` with a remedy."""
-    found = sorted(
-        error.errors(), key=lambda e: e["type"] != "extra_forbidden"
-    )  # A misspelt key often causes the other errors, so it is reported first.
+    # A misspelt key often causes the other errors, so it is reported first.
+    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
     detail = found[0]
     context = detail.get("ctx", {}).get("error")
     if isinstance(context, InputError):
