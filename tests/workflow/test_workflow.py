@@ -59,10 +59,9 @@ def test_killed_workflow_goes_on_without_unlocking_and_solves_no_finished_chunk_
         command(target), cwd=place, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
     )
     chunks = place / "results" / "tiny" / "chunks"
-    for _ in range(900):
-        if len(list(chunks.glob("*.nc"))) >= 2 or process.poll() is not None:
-            break
-        time.sleep(0.1)
+    while len(list(chunks.glob("*.nc"))) < 2 and process.poll() is None:
+        time.sleep(0.05)
+    assert process.poll() is None, "the run ended before it could be killed"
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     before = {path.name: path.stat().st_ino for path in chunks.glob("*.nc")}
