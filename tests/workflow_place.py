@@ -35,9 +35,8 @@ def command(*words: str, snakefile: Path = ROOT / "Snakefile") -> list[str]:
 def snakemake(folder: Path, *words: str, code: int = 0, snakefile: Path = ROOT / "Snakefile") -> str:
     """Run Snakemake in a folder, require an exit code, and return what it printed."""
     words = tuple(command(*words, snakefile=snakefile))
-    done = subprocess.run(
-        words, cwd=folder, capture_output=True, text=True, timeout=900
-    )  # ends a run that hangs, however slow the machine is
+    hangs = 900  # [s], more than the slowest machine needs
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=hangs)
     told = done.stdout + done.stderr
     assert done.returncode == code, told
     return told
