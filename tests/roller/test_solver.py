@@ -5,6 +5,7 @@ import pytest
 
 import trackroller as tr
 from trackroller import parameters
+from trackroller.roller.blocks import Block, join
 from trackroller.roller.dataset import VARIABLES, validity_bit
 
 
@@ -135,3 +136,14 @@ def test_empty_batch():
 def test_a_table_of_hertz_is_refused_where_there_is_no_ellipse():
     with pytest.raises(tr.InputError, match=r"hertz = 'published'.*normal: halfspace"):
         tr.solve(tr.Case(), hertz="published", normal="halfspace")
+
+
+def test_blocks_keep_the_flags_of_each_body():
+    """Rows that are taken from joined blocks keep the validity flags of roller and guide."""
+    n = 3
+    plain = {name: np.arange(n) for name in ("regime", "converged", "bits", "model", "stopped")}
+    blocks = [Block({"force": np.arange(n) + k}, **plain, bodies=np.arange(2 * n).reshape(n, 2) + k) for k in (0, 10)]
+    found = join(blocks).take(np.array([4, 0]))
+    assert found.bodies.tolist() == [[12, 13], [0, 1]]
+    assert found.values["force"].tolist() == [11, 0]
+    assert join([blocks[0], Block({}, **plain)]).take(np.array([0])).bodies is None

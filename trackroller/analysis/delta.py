@@ -79,7 +79,7 @@ def delta(y: np.ndarray, x: np.ndarray, ordered: bool = True, seed: int = 0) -> 
 
 class _Cells(NamedTuple):
     place: np.ndarray  # cell of each row
-    count: int
+    number: int  # of cells
     smooth: bool  # whether neighbouring cells may be smoothed into each other
 
 
@@ -104,20 +104,20 @@ def _kernels(x: _Cells, y: _Cells) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the smoothing matrices along x and y for each width; the unit matrix along a list."""
 
     def along(cells: _Cells, width: float) -> np.ndarray:
-        return _kernel(cells.count, width) if cells.smooth else np.eye(cells.count)
+        return _kernel(cells.number, width) if cells.smooth else np.eye(cells.number)
 
     return [(along(x, width), along(y, width)) for width in (WIDTHS if x.smooth or y.smooth else WIDTHS[:1])]
 
 
 def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray]], seed: int) -> tuple[float, float]:
     """Return how far the best rule separates linked from unlinked pairs, on held-out rows and on its own rows."""
-    rows, size = len(x.place), x.count * y.count
+    rows, size = len(x.place), x.number * y.number
     rng = np.random.default_rng(seed)
     held, own = np.zeros(len(kernels)), np.zeros(len(kernels))
     for _ in range(ROUNDS):
         part = rng.permutation(rows) % FOLDS
-        cell = (part * x.count + x.place) * y.count + y.place
-        new = np.bincount(cell, minlength=FOLDS * size).reshape(FOLDS, x.count, y.count).astype(float)
+        cell = (part * x.number + x.place) * y.number + y.place
+        new = np.bincount(cell, minlength=FOLDS * size).reshape(FOLDS, x.number, y.number).astype(float)
         whole, number = new.sum(axis=0), new.sum(axis=(1, 2))[:, None, None]
         unlinked = whole.sum(axis=1)[:, None] * whole.sum(axis=0) / rows**2
         made, tried, all_rows = (whole - new) / (rows - number) - unlinked, new - number * unlinked, whole / rows

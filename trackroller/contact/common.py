@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class Ellipse(_Rows):
     semi_axis_rolling: np.ndarray
     max_pressure: np.ndarray
 
-    is_hertzian = True
+    is_hertzian: ClassVar[Literal[True]] = True
 
     @property
     def normal_force(self) -> np.ndarray:

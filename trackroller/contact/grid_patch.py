@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -43,7 +44,7 @@ class GridPatch(_Rows):
     reaches_edge: np.ndarray
     residual: np.ndarray
 
-    is_hertzian = False
+    is_hertzian: ClassVar[Literal[False]] = False
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -16,11 +16,15 @@ from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
 class Patch(Protocol):
     """Interface of n contact patches, elliptical (`common.Ellipse`) or not (`grid_patch.GridPatch`).
 
-    Arrays of shape (n,). `is_hertzian` is True for the ellipses of Hertz's theory, whose pressure follows from the
-    three numbers a, b and p_max, and False where the pressure was solved element by element.
+    Arrays of shape (n,).
     """
 
-    is_hertzian: bool
+    @property
+    def is_hertzian(self) -> bool:
+        """True for the ellipses of Hertz's theory, whose pressure follows from the three numbers a, b and p_max.
+
+        False where the pressure was solved element by element.
+        """
 
     @property
     def semi_axis_lateral(self) -> np.ndarray:

@@ -9,7 +9,7 @@ root. Under a friction law with few knots the integrals are also split where the
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numba import njit
@@ -18,6 +18,7 @@ from trackroller.contact.slip import pole_lateral, pole_line, pole_offset, pole_
 from trackroller.halfspace.vectors import exp, inner
 from trackroller.numerics.knots import polyline
 
+T = TypeVar("T", float, np.ndarray)  # one patch, or arrays over the patches
 _TINY = 1e-13  # keeps logarithms finite on the column through the pole; its weight there is of order eps^2
 FEW_KNOTS = 8  # laws with more knots are smooth enough for one rule
 
@@ -45,13 +46,13 @@ class Rule(NamedTuple):
     weights: np.ndarray
 
 
-class Sums(NamedTuple):
+class Sums(NamedTuple, Generic[T]):
     """F_T, F_A [mm^2], M_R [mm^3] and power [mm^3 times omega] over mu p_max, of one patch or arrays (n,)."""
 
-    lateral: np.ndarray
-    driving: np.ndarray
-    moment: np.ndarray
-    power: np.ndarray
+    lateral: T
+    driving: T
+    moment: T
+    power: T
 
 
 @njit(cache=True)

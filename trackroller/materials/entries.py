@@ -156,10 +156,9 @@ class EntryParser:
             records |= complete_curve(given, inherited, where)
         missing = [key for key in REQUIRED if key not in records]
         if missing:
-            given = ", ".join(map(str, entry)) or "nothing"
             raise InputError(
                 where,
-                given,
+                ", ".join(map(str, entry)) or "nothing",
                 f"it lacks {', '.join(missing)}",
                 "Give these values, or write `like: NAME` to take them from another material.",
             )

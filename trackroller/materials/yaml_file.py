@@ -131,7 +131,8 @@ def write_yaml(data: Mapping[str, Any]) -> str:
     """Return plain data as YAML text that `parse_yaml` reads as the same data."""
     writer = YAML(typ="safe", pure=True)
     writer.Representer = _Representer
-    writer.default_flow_style, writer.sort_base_mapping_type_on_output = False, False
+    writer.default_flow_style = False
+    writer.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # the library types its default, None
     writer.allow_unicode = True
     out = io.StringIO()
     writer.dump(dict(data), out)

@@ -250,6 +250,15 @@ class _Evaluation:
                 return self.applied(np.negative, [operand], node)
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.value(operand)
+            case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
+                function, arity = FUNCTIONS[name]
+                if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
+                    raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
+                return self.applied(function, args, node)
+        return self.logic(node)
+
+    def logic(self, node: ast.AST) -> np.ndarray:
+        match node:
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 return np.logical_not(self.truth(operand))
             case ast.BoolOp(op=op, values=parts):
@@ -259,19 +268,13 @@ class _Evaluation:
                 sides = [np.asarray(self.value(part)) for part in (left, *rest)]
                 held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
                 return np.logical_and.reduce(held)
-            case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
-                function, arity = FUNCTIONS[name]
-                if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
-                    raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
-                return self.applied(function, args, node)
         raise self.refused(node, type(node).__name__.lower())
 
-    def named(self, node: Any) -> Any:
+    def named(self, node: ast.Name | ast.Subscript) -> Any:
         name = _name(node)
-        if name in self.values:
-            return self.values[name]
-        if name in CONSTANTS:
-            return CONSTANTS[name]
+        for known in (self.values, CONSTANTS):
+            if name is not None and name in known:
+                return known[name]
         if name is None or isinstance(node, ast.Subscript):
             raise self.refused(node, "a subscript that does not name the part of a variable")
         raise unknown_name(f"{self.field} (character {node.col_offset + 1})", name, list(self.values))

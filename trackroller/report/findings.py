@@ -96,9 +96,9 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
         for name, levels in only:
             inside &= meets(view, name, levels)
         met = int(inside.sum())
-        told = listing([f"at {_levels_words(view, name, levels)}" for name, levels in only])
+        places = listing([f"at {_levels_words(view, name, levels)}" for name, levels in only])
         there = "all" if met == cases else f"{count(cases)} of the {count(met)}"
-        text = f"{head}, only {told}: in {there} designs there."
+        text = f"{head}, only {places}: in {there} designs there."
         return Sentence("only", text, values | {"conditions": only, "inside": met}, among)
     most = _most_frequent(view, hit, among)
     if most is None:

@@ -45,8 +45,9 @@ def cell(value: Any) -> str:
 def heading(name: str) -> str:
     """Write the head of a factor's column or row, with its unit."""
     parameter = PARAMETERS.get(name)
-    bare = name in _SPOKEN or parameter is None or parameter.unit == "-"
-    return capital(long_name(name)) + ("" if bare else f" [{unit_text(parameter.unit)}]")
+    if name in _SPOKEN or parameter is None or parameter.unit == "-":
+        return capital(long_name(name))
+    return f"{capital(long_name(name))} [{unit_text(parameter.unit)}]"
 
 
 def factor_cell(name: str, value: Any) -> Any:

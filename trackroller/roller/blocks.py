@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+_PLAIN = ("regime", "converged", "bits", "model", "stopped")  # fields with one entry a case
+
 
 @dataclass
 class Block:
@@ -26,9 +28,8 @@ class Block:
     def take(self, rows: np.ndarray) -> Block:
         """The cases `rows`; a row may be taken more than once."""
         values = {name: array[rows] for name, array in self.values.items()}
-        return Block(
-            values, self.regime[rows], self.converged[rows], self.bits[rows], self.model[rows], self.stopped[rows]
-        )
+        plain = {name: getattr(self, name)[rows] for name in _PLAIN}
+        return Block(values, **plain, bodies=None if self.bodies is None else self.bodies[rows])
 
 
 def join(parts: Sequence[Block]) -> Block:
@@ -40,12 +41,9 @@ def join(parts: Sequence[Block]) -> Block:
     values = {
         name: _joined([part.values.get(name, none) for part in parts], [len(part) for part in parts]) for name in names
     }
-    plain = (
-        np.concatenate([getattr(part, name) for part in parts])
-        for name in ("regime", "converged", "bits", "model", "stopped")
-    )
+    plain = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _PLAIN}
     flags = [part.bodies for part in parts if part.bodies is not None]
-    return Block(values, *plain, np.concatenate(flags) if len(flags) == len(parts) else None)
+    return Block(values, **plain, bodies=np.concatenate(flags) if len(flags) == len(parts) else None)
 
 
 def _joined(arrays: list[np.ndarray], lengths: list[int]) -> np.ndarray:

@@ -41,6 +41,10 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         """Discretisation of each stage that the accuracy stands for."""
         return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
 
+    def changed(self, **values: Any) -> Options:
+        """Return the options with other values for some of them."""
+        return Options(**{**vars(self), **values})
+
     def attributes(self) -> dict[str, Any]:
         """Return the attributes of a result that record the options."""
         told = {o.name: o.attribute(getattr(self, o.name), self.contact_model) for o in OPTIONS.values()}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -185,7 +184,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 def _solve_block(table: CaseTable, options: Options) -> Block:
     """Solve cases together that share a contact model, a friction law and profiles."""
     groups = list(_groups(table, options))
-    parts = [_solve_group(table.take(rows), replace(options, contact_model=model)) for model, rows in groups]
+    parts = [_solve_group(table.take(rows), options.changed(contact_model=model)) for model, rows in groups]
     order = np.argsort(np.concatenate([rows for _, rows in groups]))
     found = parts[0] if len(parts) == 1 else join(parts).take(order)  # one group has them in order
     return _without_doubt(table, found, options) if options.contact_model == "auto" else found
@@ -198,7 +197,7 @@ def _without_doubt(table: CaseTable, found: Block, options: Options) -> Block:
         return found
     place = np.arange(len(table))
     place[again] = len(table) + np.arange(again.size)
-    return join([found, _solve_block(table.take(again), replace(options, contact_model="kalker"))]).take(place)
+    return join([found, _solve_block(table.take(again), options.changed(contact_model="kalker"))]).take(place)
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:

@@ -98,4 +98,5 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
             known[name] = np.stack([getattr(table.roller, field), getattr(table.guide, field)], axis=1)[:, None, :]
     full = value.reshape(n, *value.shape[1:], *(1,) * (3 - value.ndim)).astype(float)
     full = np.where(np.isfinite(full), full, np.nan)
-    return condition(comparison.text, {**known, comparison.name: full}, "stop_if").reshape(n, -1).any(axis=1)
+    met = condition(comparison.text, {**known, comparison.name: full}, "stop_if").reshape(n, -1)
+    return np.logical_or.reduce(met, axis=1)

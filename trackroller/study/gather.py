@@ -188,10 +188,11 @@ def _write_axes(file: netCDF4.Dataset, design: xr.Dataset, axes: Axes, drawn: di
                 add(name, (dim,), materials, _parameter_attrs(name))
     number = np.arange(design.sizes["case"]).reshape(axes.shape)
     add("case", axes.dims, number, {"long_name": "case number, for `trackroller repeat`", "units": "1"})
-    extra = {name: design[name].values for name in design.coords if name != "case"}
+    extra = {str(name): design[name].values for name in design.coords if name != "case"}
     if "material_pair" in drawn and "material_pair" not in axes.factors:
         extra["material_pair"] = np.array([label(v) for v in drawn["material_pair"]], dtype=object)
-    for name, values in ({name: design[name].values for name in case_columns(design)} | extra).items():
+    columns = {str(name): design[name].values for name in case_columns(design)} | extra
+    for name, values in columns.items():
         if name in axes.factors and set(axes.factors[name].levels) & {*FRICTION_LEVELS, None}:
             name = f"{name}_value"
         if name not in file.variables:
@@ -240,7 +241,7 @@ def _put(
         variable = file.createVariable(name, str, dims)
         variable[...] = values.astype(object) if values.ndim else str(values)
     else:
-        packed = {"compression": "zlib", "complevel": 4, "shuffle": True} if dims else {}
+        packed: dict[str, Any] = {"compression": "zlib", "complevel": 4, "shuffle": True} if dims else {}
         fill = np.nan if values.dtype.kind == "f" and not coordinate else None
         variable = file.createVariable(name, values.dtype, dims, fill_value=fill, **packed)
         variable[...] = values

@@ -59,7 +59,8 @@ class Inventory:
 
 def take_inventory(folder: StudyFolder) -> Inventory:
     """Read every file with solved cases and verify its checksum."""
-    found = Inventory(*(np.empty(0, dtype=t) for t in ("S32", int, int, int)), paths=[], headers=[])
+    fingerprints, whole = np.empty(0, dtype="S32"), np.empty(0, dtype=int)
+    found = Inventory(fingerprints, whole, whole, whole, paths=[], headers=[])
     cases, regimes = [], []
     for path in folder.solved_files():
         try:

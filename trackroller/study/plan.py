@@ -271,7 +271,7 @@ def _new_plan(study: Study, folder: StudyFolder, found: Inventory, tell: Tell) -
     uses = sorted(found.paths[i].name for i in np.unique(found.file[place[place >= 0]]))
     folder.design.unlink(missing_ok=True)
     write_text(folder.study_file, study.merged(whole_paths=True))
-    data = {"key": plan_key(study), "solver_digest": solver_digest(), "study": study.name}
+    data: dict[str, Any] = {"key": plan_key(study), "solver_digest": solver_digest(), "study": study.name}
     data |= {"size": len(cases), "distinct": len(wanted), "chunks": chunks, "uses": uses}
     write_text(folder.plan_file, json.dumps(data))
     for path in (*folder.root.glob("plan/*.npz"), *folder.root.glob("plan/*.solved")):

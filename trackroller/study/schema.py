@@ -29,14 +29,15 @@ def _factor() -> dict[str, Any]:
 
 def _option(option: Option) -> dict[str, Any]:
     """Return what the schema says about an option beyond its type."""
-    words = {"enum": list(option.values)}
+    words: dict[str, Any] = {"enum": list(option.values)}
     several = {"type": "array", "items": words, "uniqueItems": True}
-    number = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+    number: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
     if option.factor:
         return {"anyOf": [words, several | {"minItems": 1}]}
     if option.kind == "words":
         return several | ({"minItems": 1} if option.required else {})
-    return {"word": words, "accuracy": {"anyOf": [words, number]}, "tolerance": number}.get(option.kind, {})
+    single: dict[str, dict[str, Any]] = {"word": words, "accuracy": {"anyOf": [words, number]}, "tolerance": number}
+    return single.get(option.kind, {})
 
 
 def schema() -> dict[str, Any]:

@@ -20,7 +20,7 @@ from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractio
 from trackroller.contact.fastsim.patch import FastsimSettings, FastsimSolution, flexibilities
 from trackroller.contact.fastsim.point import Totals, extrapolated
 from trackroller.contact.fastsim.strips import Strips, strip_chords, strip_fields, strip_sums
-from trackroller.contact.friction_laws import constant
+from trackroller.contact.friction_laws import Knots, constant
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.linear import LARGEST_RATIO
 from trackroller.contact.slip import Creepage
@@ -118,8 +118,16 @@ def _problem(
     a, b = patch.semi_axis_lateral, np.array(patch.semi_axis_rolling)
     hx, hy = 2 * a / columns, 2 * b / rows
     pressure = np.ascontiguousarray(np.nan_to_num(patch.pressure))
-    strips = Strips(pressure, x, hx, hy, b, creep.along(x), spin, *flexible, mu, speed)
+    strips = Strips(pressure, x, hx, hy, b, creep.along(x), spin, flexible[0], flexible[1], mu, speed)
     return strips, parts.chords.sum(axis=1) * hx * hy
+
+
+def _totals(strips: Strips, steps: int, law: Knots) -> Totals[np.ndarray]:
+    """Return the totals of all patches with `steps` steps along each loaded interval."""
+    n = len(strips.hx)
+    totals = Totals(*(np.zeros(n) for _ in Totals._fields))
+    share_rows(lambda first, last: strip_sums(first, last, strips, steps, law, totals), n, 4)
+    return totals
 
 
 def solve_grid(
@@ -161,13 +169,8 @@ def solve_grid(
     settings = settings or FastsimSettings()
     law = (settings.law or constant()).knots
     strips, area = _problem(patch, slip, friction, elastic, settings, travel_speed)
-    n, passes = len(patch.normal_force), []
-    for steps in (settings.steps, 2 * settings.steps):
-        totals = Totals(*(np.zeros(n) for _ in Totals._fields))
-        given = (strips, steps, law, totals)
-        share_rows(lambda first, last, given=given: strip_sums(first, last, *given), n, 4)
-        passes.append(totals)
-    fine, best = passes[1], extrapolated(*passes)
+    coarse, fine = (_totals(strips, steps, law) for steps in (settings.steps, 2 * settings.steps))
+    best = extrapolated(coarse, fine)
     f_t, f_a, m_r, work = (np.where(np.isfinite(patch.normal_force), part, np.nan) for part in best[:4])
     limit = strips.friction * patch.normal_force
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -217,6 +217,14 @@ def _strips(ellipse, creep: Creepage, friction, elastic: Elastic, settings, trav
     return Strips(a, b, mu * p, along, lateral, phi, flexible.x, flexible.y, speed, settings.parabolic)
 
 
+def _totals(strips: Strips, steps: int, nodes: np.ndarray, weights: np.ndarray, law: Knots) -> Totals[np.ndarray]:
+    """Return the totals of all ellipses with `steps` steps along each strip."""
+    n = strips.a.size
+    totals = Totals(*(np.empty(n) for _ in Totals._fields))
+    share_rows(lambda first, last: _all_sums(first, last, strips, steps, nodes, weights, law, totals), n, 8)
+    return totals
+
+
 def solve_patch(
     ellipse: Ellipse,
     creep: Creepage,
@@ -244,14 +252,9 @@ def solve_patch(
     law = (settings.law or constant()).knots
     nodes, weights = np.polynomial.legendre.leggauss(settings.strips)
     strips = _strips(ellipse, creep, friction, elastic, settings, travel_speed, nodes)
-    passes = []
-    for steps in (settings.steps, 2 * settings.steps):
-        totals = Totals(*(np.empty(strips.a.size) for _ in Totals._fields))
-        given = (strips, steps, nodes, weights, law, totals)
-        share_rows(lambda first, last, given=given: _all_sums(first, last, *given), strips.a.size, 8)
-        passes.append(totals)
+    coarse, fine = (_totals(strips, steps, nodes, weights, law) for steps in (settings.steps, 2 * settings.steps))
+    best = extrapolated(coarse, fine)
     force = 2.0 / 3.0 * np.pi * strips.a * strips.b * strips.bound
-    fine, best = passes[1], extrapolated(*passes)
     return FastsimSolution(
         Resultants(best.lateral, best.driving, best.moment),
         best.dissipation,

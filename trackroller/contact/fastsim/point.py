@@ -6,13 +6,14 @@ The strips of ellipses (`fastsim.patch`) and of solved patches (`fastsim.strips`
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numba import njit
 
 from trackroller.numerics.knots import polyline
 
+T = TypeVar("T", float, np.ndarray)  # one patch, or arrays over the patches
 NEWTON = 30  # limit of Newton's method for the root of one point; three or four steps are usual
 
 
@@ -27,18 +28,18 @@ class State(NamedTuple):
     lack: float
 
 
-class Totals(NamedTuple):
+class Totals(NamedTuple, Generic[T]):
     """F_T, F_A [N], M_R [N mm], dissipation per distance [N], adhesion area [mm^2] and lack of friction [N].
 
     Numbers of one patch, or arrays (n,).
     """
 
-    lateral: np.ndarray
-    driving: np.ndarray
-    moment: np.ndarray
-    dissipation: np.ndarray
-    adhesion: np.ndarray
-    lack: np.ndarray
+    lateral: T
+    driving: T
+    moment: T
+    dissipation: T
+    adhesion: T
+    lack: T
 
 
 @njit(cache=True)

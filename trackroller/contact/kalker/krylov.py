@@ -35,7 +35,7 @@ class Columns(NamedTuple):
 
     slips: np.ndarray
     first: np.ndarray
-    count: np.ndarray
+    loaded: np.ndarray
 
 
 class Derivative(NamedTuple):

@@ -8,6 +8,7 @@ import numpy as np
 
 from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
+from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.slip import Creepage
@@ -46,23 +47,27 @@ class KalkerLaw:
         self._states: dict[tuple[int, int], tuple[float, bool]] = {}
         self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
 
-    def __call__(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> Resultants:
+    def __call__(
+        self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray, fine: bool = True
+    ) -> Resultants:
         """Return the resultants on the roller, (n,); if not `fine`, from the table or from half the elements."""
-        if fine or not ellipse.is_hertzian or self.settings.profile_slip or not self._constant:
-            return self.solve(ellipse, slip, friction, rows, fine).resultants
+        if fine or not patch.is_hertzian or self.settings.profile_slip or not self._constant:
+            return self.solve(patch, slip, friction, rows, fine).resultants
         creep = Creepage.of_slip(slip, self.settings.profile_slip)
-        found = table.solve_patch(ellipse, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))
+        found = table.solve_patch(patch, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))
         rest = np.flatnonzero(~found.known)
         if not rest.size:
             return found.resultants
-        other = self.solve(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest], False).resultants
+        other = self.solve(patch.take(rest), slip.take(rest), friction[rest], rows[rest], False).resultants
         return found.resultants.replaced(rest, other)
 
     @property
     def _constant(self) -> bool:
         return self.settings.law is None or self.settings.law.is_constant
 
-    def solve(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray, fine: bool = True) -> PatchSolution:
+    def solve(
+        self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray, fine: bool = True
+    ) -> PatchSolution:
         """Return the solution of the patches of the rollers `rows`; see `solve_patch` for the units."""
         settings = self.settings
         if not fine:
@@ -70,7 +75,7 @@ class KalkerLaw:
         keys = [(int(row), int(sine < 0), fine) for row, sine in zip(rows, slip.sine, strict=True)]
         creep = Creepage.of_slip(slip, self.settings.profile_slip)
         friction = np.broadcast_to(np.asarray(friction, float), len(rows))
-        known = self._near(keys, creep, ellipse)
+        known = self._near(keys, creep, patch)
 
         tired = np.array([self._misses.get(key[:2], 0) >= MISSES for key in keys], bool)
         picks, parts = [], []
@@ -82,7 +87,7 @@ class KalkerLaw:
             start = np.stack([self._starts[keys[i]][0] for i in pick]).astype(float) if started else None
             parts.append(
                 solve_patch(
-                    ellipse.take(pick),
+                    patch.take(pick),
                     creep.take(pick),
                     friction[pick],
                     self.elastic.take(where),
@@ -102,10 +107,10 @@ class KalkerLaw:
                 self._states[key[:2]] = (float(value), bool(good))
         return solution
 
-    def _near(self, keys, creep: Creepage, ellipse: Ellipse) -> np.ndarray:
+    def _near(self, keys, creep: Creepage, patch: Ellipse | GridPatch) -> np.ndarray:
         """Return True where the last solution has nearly the same creepage; otherwise the coarse grid starts better."""
         last = np.array([self._starts[key][1] if key in self._starts else np.inf for key in keys], float)
-        size = np.sqrt(ellipse.semi_axis_lateral * ellipse.semi_axis_rolling)
+        size = np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)
         with np.errstate(invalid="ignore"):
             return np.abs(creep.longitudinal - last) <= NEAR * (np.abs(creep.longitudinal) + np.abs(creep.spin) * size)
 
@@ -115,21 +120,21 @@ class KalkerLaw:
         values = np.array(both, float).reshape(n, 2, 2)
         return values[:, :, 0].max(axis=1), values[:, :, 1].min(axis=1) > 0
 
-    def kept(self, ellipse: Ellipse, slip: Slip, friction, rows: np.ndarray) -> PatchSolution:
+    def kept(self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray) -> PatchSolution:
         """Return the solution as `solve` does; reuse that of the last call of `kept` for the same patches."""
         content = np.stack(
             [
                 rows,
                 slip.sine,
                 slip.shift,
-                ellipse.semi_axis_lateral,
-                ellipse.max_pressure,
+                patch.semi_axis_lateral,
+                patch.max_pressure,
                 np.broadcast_to(friction, len(rows)),
             ],
             axis=1,
         )
         keys = [row.tobytes() for row in content]
         if self._kept is None or not all(key in self._kept[0] for key in keys):
-            self._kept = {key: i for i, key in enumerate(keys)}, self.solve(ellipse, slip, friction, rows)
+            self._kept = {key: i for i, key in enumerate(keys)}, self.solve(patch, slip, friction, rows)
         places, solution = self._kept
         return solution.take(np.array([places[key] for key in keys], int))

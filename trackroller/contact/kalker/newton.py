@@ -98,7 +98,7 @@ class _Newton:
         """Return the state at a traction and slip, and keep its residual and its traction bounds."""
         p = self.problem
         if self.derivative.falls:
-            row_means(reals(slip), self.columns.first, self.columns.count, self.mean)
+            row_means(reals(slip), self.columns.first, self.columns.loaded, self.mean)
         law_of_slip(self.mean, p.height, p.scale, p.knots, p.factors, self.bound, self.slope)
         return _State(traction, slip, *residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value)))
 

@@ -22,7 +22,13 @@ BLOCK = 256  # patches that are solved together, to limit the memory for their t
 
 
 def _level(
-    ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings: KalkerSettings, start: np.ndarray
+    ellipse: Ellipse | GridPatch,
+    creep: Creepage,
+    friction,
+    elastic: Elastic,
+    travel,
+    settings: KalkerSettings,
+    start: np.ndarray,
 ) -> batch.Found:
     """Solve on the grid of the tractions `start` (n, 2, elements, elements), which the result overwrites."""
     n, elements = friction.size, start.shape[-1]
@@ -122,7 +128,9 @@ def _full(value, n: int) -> np.ndarray:
     return np.array(np.broadcast_to(np.asarray(value, float), n), order="C")
 
 
-def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np.ndarray, Elastic]:
+def _prepared(
+    ellipse: Ellipse | GridPatch, friction, elastic: Elastic
+) -> tuple[Ellipse | GridPatch, np.ndarray, Elastic]:
     n = np.size(ellipse.semi_axis_lateral)
     if ellipse.is_hertzian:
         ellipse = Ellipse(
@@ -133,7 +141,7 @@ def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np
 
 
 def solve_patch(
-    ellipse: Ellipse,
+    ellipse: Ellipse | GridPatch,
     creep: Creepage,
     friction,
     elastic: Elastic,
@@ -193,14 +201,14 @@ def solve_patch(
 
 
 def resultants(
-    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
+    ellipse: Ellipse | GridPatch, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
 ) -> Resultants:
     """Return the friction forces [N] and the spin moment [N mm] on the roller, (n,); see `solve_patch`."""
     settings = settings or KalkerSettings()
     return solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings).resultants
 
 
-def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> SurfaceTractions:
+def to_tractions(ellipse: Ellipse | GridPatch, friction, solution: PatchSolution) -> SurfaceTractions:
     """Return the fields of a solution at the element centres, with Hertz's pressure, which is 0 outside the ellipse."""
     n, _, ny, nx = solution.traction.shape
     ellipse, friction, _ = _prepared(ellipse, friction, Elastic(np.ones(n), np.ones(n), np.ones(n)))
@@ -244,7 +252,7 @@ def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> Surf
 
 
 def tractions(
-    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
+    ellipse: Ellipse | GridPatch, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
 ) -> SurfaceTractions:
     """Return pressure, shear, slip and adhesion on the grid of elements; see `solve_patch`."""
     settings = settings or KalkerSettings()

@@ -83,7 +83,7 @@ class GridModel(ContactModel):
         """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
         both = [[self._found.get((row, side), (0.0, True)) for side in (0, 1)] for row in range(n)]
         values, met = (np.array([[pair[k] for pair in sides] for sides in both]).reshape(n, 2) for k in (0, 1))
-        return values.astype(float).max(axis=1), met.astype(bool).all(axis=1)
+        return values.astype(float).max(axis=1), np.logical_and.reduce(met.astype(bool), axis=1)
 
 
 class GridSlidingModel(GridModel):

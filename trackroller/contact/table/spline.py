@@ -23,8 +23,9 @@ from importlib import resources as files
 import numpy as np
 from numba import njit
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants
+from trackroller.contact.common import Elastic, Resultants
 from trackroller.contact.linear import creepage_coefficients
+from trackroller.contact.protocol import Patch
 from trackroller.numerics.knots import interval
 from trackroller.numerics.threads import share_rows
 
@@ -177,7 +178,7 @@ class Dimensionless:
     c11: np.ndarray
 
 
-def normalise(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic) -> Dimensionless:
+def normalise(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) -> Dimensionless:
     """Return the dimensionless numbers of patches with creepages xi [1] and phi [1/mm]; see `solve_patch`."""
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     g, square = b / a, a * b
@@ -190,7 +191,7 @@ def normalise(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic) 
         return Dimensionless(g, elastic.poisson_ratio, longitudinal / bend, spin * arm / bend, kappa, c11)
 
 
-def solve_patch(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic) -> TableSolution:
+def solve_patch(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) -> TableSolution:
     """Solve steady rolling with the rigid slip w = (-phi y, xi + phi x) by the table.
 
     Parameters

@@ -153,7 +153,7 @@ def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
     """Hatch the cells of a regime, outline the region and write its name in its middle."""
     if not cells.any():
         return
-    look = {"facecolor": (1, 1, 1, 0.35), "edgecolor": (0.25, 0.25, 0.25), "linewidth": 0}
+    look: dict[str, Any] = {"facecolor": (1, 1, 1, 0.35), "edgecolor": (0.25, 0.25, 0.25), "linewidth": 0}
     for j, i in np.argwhere(cells):
         axes.add_patch(Rectangle((i, j), 1, 1, hatch=style.REGIME_HATCHES[code] or "....", **look))
     padded = np.pad(cells, 1)
@@ -164,7 +164,14 @@ def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
     middle = spots[np.argmin(((spots - spots.mean(axis=0)) ** 2).sum(axis=1))]
     box = {"facecolor": "white", "edgecolor": "0.3", "linewidth": 0.5, "boxstyle": "round,pad=0.2"}
     thin = np.ptp(spots[:, 1]) + 1 < 0.12 * cells.shape[1]
-    label = {"ha": "center", "va": "center", "fontsize": 6.8, "zorder": 5, "rotation": 90 if thin else 0, "bbox": box}
+    label: dict[str, Any] = {
+        "ha": "center",
+        "va": "center",
+        "fontsize": 6.8,
+        "zorder": 5,
+        "rotation": 90 if thin else 0,
+        "bbox": box,
+    }
     axes.text(middle[1], middle[0], REGIME_LABELS[code], **label).set_in_layout(False)
 
 
@@ -177,7 +184,8 @@ def _life_points(axes: Axes, rows: pd.DataFrame, pair: Pair, column: str) -> Any
         part = rows[regime == code]
         if not len(part):
             continue
-        look = {"marker": marker, "linewidth": 0.6 if code else 0.2, "edgecolor": "black" if code else "0.6"}
+        look: dict[str, Any] = {"marker": marker}
+        look |= {"linewidth": 0.6 if code else 0.2, "edgecolor": "black" if code else "0.6"}
         points = axes.scatter(
             part[pair[0]],
             part[pair[1]],

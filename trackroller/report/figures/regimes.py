@@ -95,7 +95,12 @@ def _points(axes: Axes, view: StudyView, pair: Pair) -> str:
     for code, marker in enumerate("os^X"):
         part = rows[rows["regime"] == code]
         if len(part):
-            look = {"marker": marker, "facecolor": style.REGIME_COLOURS[code], "edgecolor": "0.25", "linewidth": 0.5}
+            look: dict[str, Any] = {
+                "marker": marker,
+                "facecolor": style.REGIME_COLOURS[code],
+                "edgecolor": "0.25",
+                "linewidth": 0.5,
+            }
             raster = len(part) > 500
             axes.scatter(part[pair[0]], part[pair[1]], s=11, label=REGIME_LABELS[code], rasterized=raster, **look)
     axes.figure.legend(loc="outside lower left", ncols=4, handletextpad=0.2)

@@ -107,7 +107,7 @@ def _bars(axes: Axes, ranks: list[words.Rank], place: dict[str, float], look: di
     error = np.abs(ends - value)
     good = np.isfinite(error).all(axis=0)
     if good.any():
-        whisker = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
+        whisker: dict[str, Any] = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
         axes.errorbar(value[good], at[good], xerr=error[:, good], **whisker)
 
 

@@ -106,5 +106,6 @@ def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:
     """Drawings from the analysis that stand before and after those of the cases."""
     if words.robust_design(sens):
         return [partial(robust_points, sens, str(n)) for n in sens["output"].values if "life" in str(n)], []
-    first, *others = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]
+    parts: list[list[Draw]] = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]
+    first, *others = parts
     return first, [partial(overview, sens), *(draw for part in others for draw in part)]

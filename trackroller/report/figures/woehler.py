@@ -133,10 +133,13 @@ def _lines(axes: Axes, material: Mapping[str, Any], rule: str, colour: Any, ends
     """Draw the S-N curve of a material, with its scatter if it gives one."""
     at = np.geomspace(*ends, 400)
     for probability in fatigue.PROBABILITIES if scatters(material) else (0.5,):
-        look = {"linewidth": 1.0 if probability == 0.5 else 0.8, "linestyle": _DASHES.get(probability, "-")}
+        look: dict[str, Any] = {
+            "linewidth": 1.0 if probability == 0.5 else 0.8,
+            "linestyle": _DASHES.get(probability, "-"),
+        }
         axes.plot(at, curve(material, rule, probability, at), color=colour, zorder=2, **look)
     most, limit, first, knee = line_of(material)
-    ends_look = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
+    ends_look: dict[str, Any] = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
     axes.plot([first, knee], [most, limit], color="0.1", zorder=3, **ends_look)
 
 

@@ -78,7 +78,7 @@ class Probe(_Rows):
 
 
 def _solve(table: CaseTable, options: Options, model: str) -> tuple[Any, Equilibrium]:
-    scene = stages.prepare(table, replace(options, contact_model=model, accuracy="preview", outputs=("forces",)))
+    scene = stages.prepare(table, options.changed(contact_model=model, accuracy="preview", outputs=("forces",)))
     if model == "kalker_table":
         scene = replace(scene, model=NearestInTable(scene.model.elastic))  # type: ignore[attr-defined]
     return scene, solve_equilibrium(scene.loads, scene.mirror.law(scene.model.law))

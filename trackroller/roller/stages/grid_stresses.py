@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from trackroller.contact.grid_patch import GridPatch
@@ -59,7 +61,7 @@ class GridStresses(PatchStresses):
         loads = [self.load(place) for place in flat.tolist()]
         seeds = max(2, options.settings.peak.finalists)
         peak = find_grid_peaks(loads, ratios, seeds)
-        patch: GridPatch = results.patch  # type: ignore[assignment]
+        patch = cast(GridPatch, results.patch)
         if not results.scene.model.refines:
             return peak
         # finer tractions do not help where the pressure is singular or its ridges are narrower than its elements
@@ -76,7 +78,8 @@ class GridStresses(PatchStresses):
 
     def _refined(self, flat: int, times: int) -> GridLoad:
         """Return the tractions of one patch on finer elements across, and along too if that is the longer side."""
-        patch, slip, friction, rows = self.results.of(np.array([flat]))
+        asked, slip, friction, rows = self.results.of(np.array([flat]))
+        patch = cast(GridPatch, asked)  # the stage chooses this class for solved patches only
         long = bool(patch.semi_axis_rolling[0] * patch.shape[1] > patch.semi_axis_lateral[0] * patch.shape[0])
         finer = patch.refined(times if long else 1, times)
         return _load(self.results.scene.model.surface(finer, slip, friction, rows), 0)

@@ -94,7 +94,7 @@ def contact(results: Results, options: Options) -> None:
     v["max_pressure"] = results.by_contact(patch.max_pressure)
     v["patch_area"] = results.by_contact(patch.area)
     v["pressure_centre"] = results.by_contact(patch.pressure_centre)
-    results.flag("conformal", results.by_contact(patch.reaches_edge).any(axis=1))
+    results.flag("conformal", np.logical_or.reduce(results.by_contact(patch.reaches_edge), axis=1))
     pole_x, pole_y = _spin_pole(results, options)
     v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
     # mu p_max is exact where the whole patch slides under a constant friction law, and a bound elsewhere

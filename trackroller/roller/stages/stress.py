@@ -75,7 +75,7 @@ def subsurface(results: Results, options: Options) -> None:
     """Add all stress components on the two section planes through each peak."""
     m, n, v = options.settings.section_points, results.scene.n, results.values
     depths = (m + 1) // 2
-    sizes = {"xz_x": (m,), "xz_z": (depths,), "yz_y": (m,), "yz_z": (depths,)}
+    sizes: dict[str, tuple[int, ...]] = {"xz_x": (m,), "xz_z": (depths,), "yz_y": (m,), "yz_z": (depths,)}
     sizes |= {"von_mises_xz": (depths, m), "von_mises_yz": (depths, m)}
     for name, size in sizes.items():
         v[name] = np.full((n, 2, 2, *size), np.nan)
