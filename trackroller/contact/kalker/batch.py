@@ -75,7 +75,8 @@ class Report:
     @classmethod
     def empty(cls, n: int) -> Report:
         """Return a report of zeros."""
-        return cls(np.zeros((n, 3)), *(np.zeros(n) for _ in fields(cls)[2:]), np.ones(n))
+        zeros = {field.name: np.zeros(n) for field in fields(cls)}
+        return cls(**zeros | {"forces": np.zeros((n, 3)), "own_slip": np.ones(n)})
 
     @property
     def energy_residual(self) -> np.ndarray:

@@ -9,11 +9,12 @@ solved slip and keeps the table's derivatives elsewhere, so that one or two solu
 from __future__ import annotations
 
 import dataclasses
+from typing import cast
 
 import numpy as np
 
 from trackroller.contact import table
-from trackroller.contact.common import Elastic, Resultants, Slip, Works
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Works
 from trackroller.contact.kalker import subgrid
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.kalker.patch import solve_patch
@@ -134,7 +135,8 @@ class Correction:
         """Return the last solutions of patches, arrays (m,); patches without one are solved."""
         slot = _slots(rows, _side(slip))
         if not slot.size:
-            return solve_patch(patch, Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings)
+            ellipse = cast(Ellipse, patch)  # the correction is made for ellipses only
+            return solve_patch(ellipse, Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings)
         missing = np.flatnonzero(~self.store.known[slot])
         if missing.size:
             given = patch.take(missing), slip.take(missing), friction[missing], rows[missing]
@@ -164,7 +166,7 @@ class Correction:
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the larger residual of the friction law in both patches of n rollers, and whether it is met, (n,)."""
         residual, converged = self.store.state()
-        return residual.reshape(n, 2).max(axis=1), converged.reshape(n, 2).all(axis=1)
+        return residual.reshape(n, 2).max(axis=1), np.logical_and.reduce(converged.reshape(n, 2), axis=1)
 
 
 def _side(slip: Slip) -> np.ndarray:

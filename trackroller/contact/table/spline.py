@@ -236,7 +236,7 @@ def _held(d: Dimensionless) -> np.ndarray:
 
 
 def nearest_forces(
-    ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic
+    ellipse: Patch, longitudinal, spin, friction, elastic: Elastic
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the forces of the nearest patch that the table holds, and the place of the slip.
 
@@ -247,7 +247,8 @@ def nearest_forces(
     F_T/(mu N), F_A/(mu N) and M_R/(mu N c), (3, n); r_x/(4 + r) in (-1, 1), (n,); which patches the table holds, (n,).
     NaN where there is no patch.
     """
-    d = normalise(ellipse, *(np.asarray(v, float) for v in (longitudinal, spin, friction)), elastic)
+    xi, phi, mu = (np.asarray(v, float) for v in (longitudinal, spin, friction))
+    d = normalise(ellipse, xi, phi, mu, elastic)
     d = Dimensionless(*np.broadcast_arrays(*(getattr(d, f.name) for f in fields(d))))
     along, across = (np.clip(v, -LARGEST_SLIP, LARGEST_SLIP) for v in (d.along, d.across))
     place = along / (HALF_WAY + np.hypot(along, across))
