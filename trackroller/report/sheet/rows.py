@@ -86,7 +86,13 @@ def limit_rows(found: Limits, inputs: Mapping[str, Any]) -> list[Row]:
     """Return the limits of a roller in words."""
     low, high = found.axial_force
     drive, brake = found.motor_force
-    rows = [Row("lift-off: both contacts carry load for axial forces", range_text(low, high), "N")]
+    words = "lift-off: both contacts carry load for axial forces"
+    unknown = math.isnan(low) or math.isnan(high)
+    rows = [
+        Row(words, "not defined: no state with two loaded contacts was found")
+        if unknown
+        else Row(words, range_text(low, high), "N")
+    ]
     if math.isfinite(drive) or math.isfinite(brake):
         rows.append(Row("full slip: the roller does not skid for motor forces", range_text(drive, brake), "N"))
     lock = found.self_locking_friction

@@ -36,9 +36,17 @@ def print_facts(ds: xr.Dataset) -> None:
             console.print(f"{head:<8} {row.words}: {row.value} {row.unit}".rstrip())
     for flag in facts.flags:
         console.print(f"warning  {flag.sentence} {flag.remedy}")
+    undefined = [str(name) for name, variable in ds.data_vars.items() if variable.ndim <= 2 and _is_undefined(variable)]
+    if undefined:
+        console.print(f"undefined here: {', '.join(undefined)}")
     fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
     if fields:
         console.print(f"fields (write them with -o): {', '.join(fields)}")
+
+
+def _is_undefined(variable: xr.DataArray) -> bool:
+    """Return whether the regime leaves every value of a quantity undefined."""
+    return variable.dtype.kind == "f" and bool(variable.isnull().all())
 
 
 def _print_inputs(console: Console, facts: Facts) -> None:
