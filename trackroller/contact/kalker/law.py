@@ -63,7 +63,7 @@ class KalkerLaw:
 
     @property
     def _constant(self) -> bool:
-        return self.settings.law is None or self.settings.law.is_constant
+        return self.settings.law_in_use.is_constant
 
     def solve(
         self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray, fine: bool = True

@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
-from trackroller.contact.friction_laws import constant
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import batch, extrapolation, subgrid
 from trackroller.contact.kalker.cells import cells, unit_cells
@@ -52,7 +51,7 @@ def _level(
         share,
     )
     found = batch.Found.start(start)
-    batch.solve_batch(patches, settings.law or constant(), settings, found)
+    batch.solve_batch(patches, settings.law_in_use, settings, found)
     return found
 
 
@@ -72,7 +71,7 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
 
 def _forces(ellipse: Ellipse, friction, settings: KalkerSettings, found: batch.Found) -> np.ndarray:
     """Return the resultants (n, 3) of one grid: integrals between the centres, or sums over the elements."""
-    if not (settings.law or constant()).is_constant or not friction.size:
+    if not settings.law_in_use.is_constant or not friction.size:
         return found.report.forces
     elements = found.traction.shape[-1]
     height, _ = cells(ellipse, elements)

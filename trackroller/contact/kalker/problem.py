@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from trackroller.contact.common import Resultants, Works
-from trackroller.contact.friction_laws import FrictionLaw
+from trackroller.contact.friction_laws import FrictionLaw, constant
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,11 @@ class KalkerSettings:
     profile_slip: bool = False
     law: FrictionLaw | None = None
     travel_speed: float = 1.0
+
+    @property
+    def law_in_use(self) -> FrictionLaw:
+        """Return the friction law; one whose factor is 1 at every speed is the constant law."""
+        return constant() if self.law is None or self.law.is_constant else self.law
 
 
 @dataclass(frozen=True)
