@@ -217,7 +217,7 @@ def test_a_wrong_spectrum_is_refused_with_block_field_and_remedy(values, parts):
     ("text", "parts"),
     [
         ("blocks: [", ("YAML",)),
-        ("blocks: nowhere.csv", ("nowhere.csv", "not exist")),
+        ("blocks: nowhere.csv", ("blocks = 'nowhere.csv'", "a file below", "Check its name, or put it there")),
         ("blocks: short.csv", ("short.csv", "line 3", "2 cells")),
         ("blocks: twice.csv", ("distance, distance",)),
     ],
