@@ -11,10 +11,19 @@ class InputError(ValueError):
 
     Parameters
     ----------
-    field : name of the field as the user wrote it (dotted for nested ones)
-    value : the value that was refused
-    allowed : what would have been accepted, in words
-    remedy : what to do about it
+    field : str
+        Name of the field as the user wrote it, dotted for nested fields.
+    value : object
+        Value that was refused.
+    allowed : str
+        Values that are allowed, in words.
+    remedy : str
+        What the user can do about it.
+
+    Examples
+    --------
+    >>> print(InputError("slip", -1, "a number >= 0", "Leave slip out."))
+    slip = -1 is not usable: a number >= 0. Leave slip out.
     """
 
     def __init__(self, field: str, value: object, allowed: str, remedy: str = "") -> None:

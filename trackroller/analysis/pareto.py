@@ -73,22 +73,29 @@ def pareto(
 
     Parameters
     ----------
-    ds : gathered study with its study file as attribute
-    objectives : output, numeric factor or parameter -> `min` or `max`, such as {"roller_life_hours": "max",
-        "friction_power": "min"}
-    constraints : comparisons over outputs, factors, parameters and `regime`, such as "max_pressure < 1200",
-        "regime != full_slip" or "slip < 0.1 or slip > 0.2". A row with an undefined value does not meet them.
-    keep : regimes that are allowed. Without it: rolling only, or every solved regime if a constraint names `regime`
+    ds : xarray.Dataset
+        Gathered study with its study file as attribute.
+    objectives : mapping of str to str
+        Output, numeric factor or parameter, and `min` or `max` for each, such as {"roller_life_hours": "max",
+        "friction_power": "min"}.
+    constraints : iterable of str
+        Comparisons over outputs, factors, parameters and `regime`, such as "max_pressure < 1200", "regime != full_slip"
+        or "slip < 0.1 or slip > 0.2". A row with an undefined value does not meet them.
+    keep : iterable of str, optional
+        Regimes that are allowed. Default: rolling only, or every solved regime if a constraint names `regime`.
 
     Returns
     -------
-    Dataset over `row` (all rows that meet regime and constraints): the factors, the objectives, the constrained
-    outputs, and `optimal` (1 in the set). The attribute `excluded` counts the rows that each constraint excluded.
-    If a study has several contact models, only the rows of the most exact model count (attribute `model`).
+    xarray.Dataset
+        Dimension `row`: all rows that meet regime and constraints. Variables: the factors, the objectives, the
+        constrained outputs, and `optimal`, which is 1 for the rows of the Pareto set. The attribute `excluded` counts
+        the rows that each constraint excluded. In a study with several contact models, only the rows of the most exact
+        model are compared (attribute `model`).
 
     Raises
     ------
-    InputError : unknown names, a constraint that is not a comparison, or fewer than two objectives
+    InputError
+        If a name is unknown, a constraint is not a comparison, or there are fewer than two objectives.
     """
     if len(objectives) < 2:
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")

@@ -37,23 +37,29 @@ def robustness(
 
     Parameters
     ----------
-    ds : solved study with an inner/outer array design, dimension `case`
-    design : its design (`trackroller.analysis.restore.design_of`)
-    names : outputs, see `trackroller.study.outputs.outputs`
-    log_life_scatter : standard deviation of log10 life of the material itself [1], besides the scatter of the study:
-        lg(T_N) / 2.563 for the scatter range T_N between 10 and 90 % failure probability. One number, or for each
-        body an array of shape (n,), see `material_deviations`
+    ds : xarray.Dataset
+        Solved study with an inner/outer array design, dimension `case`.
+    design : SampledDesign
+        Design of the study, see `trackroller.analysis.restore.design_of`.
+    names : iterable of str, optional
+        Outputs, see `trackroller.study.outputs.outputs`.
+    log_life_scatter : float or mapping of str to numpy.ndarray
+        Standard deviation of log10 life of the material itself [1], besides the scatter of the study: lg(T_N) / 2.563
+        for the scatter range T_N between 10 and 90 % failure probability. One number, or for each body an array of
+        shape (n,), see `material_deviations`.
 
     Returns
     -------
-    Dataset over `point` with the factors of the outer array as coordinates: percentile_value (output, point,
-    percentile); mean, standard_deviation (output, point) over the rolling cases; for each life `b10` with b10_low and
-    b10_high, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in full slip, lift-off or
-    failed counts as life 0; probability (regime, point) with Wilson intervals.
+    xarray.Dataset
+        Dimension `point`, with the factors of the outer array as coordinates. `percentile_value` (output, point,
+        percentile); `mean` and `standard_deviation` (output, point) over the rolling cases. For each life `b10` with
+        `b10_low` and `b10_high`, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in
+        full slip, in lift-off or failed counts as life 0. `probability` (regime, point) with Wilson intervals.
 
     Raises
     ------
-    InputError : the study has another design
+    InputError
+        If the study has another design.
     """
     if design.method != "inner_outer":
         allowed = "design inner_outer (formerly nested): lists as outer array, distributions as inner array"

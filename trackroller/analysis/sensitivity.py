@@ -139,23 +139,33 @@ def analyse_dataset(
 
     Parameters
     ----------
-    ds : gathered study: dimension `case` or one dimension a factor; attribute `study` with the study file
-    names, keep, natural, scale : see `trackroller.study.outputs.outputs`. The key `analysis` of the study file
-        gives what is missing here
-    seed : of all random numbers; the same study and seed give the same indices
+    ds : xarray.Dataset
+        Gathered study with dimension `case` or one dimension a factor, and the study file in the attribute `study`.
+    names : iterable of str, optional
+        Outputs, see `trackroller.study.outputs.outputs`. Default: the key `analysis` of the study file.
+    keep : iterable of str, optional
+        Regimes whose rows count. Default: the key `analysis` of the study file, or rolling only.
+    natural : iterable of str
+        Outputs that stay on their natural scale, see `trackroller.study.outputs.outputs`.
+    seed : int
+        Seed of all random numbers. The same study and seed give the same indices.
+    scale : str or mapping of str to str
+        Scale of the outputs, see `trackroller.study.outputs.outputs`. Default: the key `analysis` of the study file.
 
     Returns
     -------
-    Dataset with dimensions output, factor, factor_2, sample_size. By method: S1, ST, S2 (saltelli); mu, mu_star,
-    sigma (morris); main_share, interaction_share, higher_share (grid); effect, curvature, interaction (response
-    surfaces); first, delta, pawn, prcc (given data), and for a random sample interaction_share by a polynomial that
-    predicts `fit_share` of the variance. Indices have _low, _high and a course with the sample size. For each output:
-    used_share, reliable, take_times, and `note`, which states the rows left out and why.
-    An inner/outer array design gives the result of `trackroller.analysis.robustness.robustness`.
+    xarray.Dataset
+        Dimensions output, factor, factor_2 and sample_size. By method: S1, ST, S2 (saltelli); mu, mu_star, sigma
+        (morris); main_share, interaction_share, higher_share (grid); effect, curvature, interaction (response
+        surfaces); first, delta, pawn, prcc (given data). A random sample also has interaction_share by a polynomial
+        that predicts `fit_share` of the variance. Indices have _low, _high and their course with the sample size. For
+        each output: used_share, reliable, take_times, and `note`, which states the rows left out and why. An
+        inner/outer array design gives the result of `trackroller.analysis.robustness.robustness`.
 
     Raises
     ------
-    InputError : no output or no factor varies, or rows and study file do not belong together
+    InputError
+        If no output or no factor varies, or if the rows do not belong to the study file.
     """
     study = read_study(ds)
     design = design_of(ds, study)
@@ -222,17 +232,26 @@ def analyse(
 
     Parameters
     ----------
-    study_nc : gathered study
-    out_nc : netCDF file to write; a file that was not written completely does not appear
-    names, keep, natural : see `analyse_dataset`
+    study_nc : str or pathlib.Path
+        Gathered study.
+    out_nc : str or pathlib.Path
+        NetCDF file to write. The file appears only after it has been written completely.
+    names : iterable of str, optional
+        Outputs, see `analyse_dataset`.
+    keep : iterable of str, optional
+        Regimes whose rows count, see `analyse_dataset`.
+    natural : iterable of str
+        Outputs that stay on their natural scale, see `analyse_dataset`.
 
     Returns
     -------
-    The dataset that was written, see `analyse_dataset`.
+    xarray.Dataset
+        The dataset that was written, see `analyse_dataset`.
 
     Raises
     ------
-    InputError : as `analyse_dataset`
+    InputError
+        As `analyse_dataset`.
     """
     with xr.open_dataset(study_nc, cache=False) as opened:  # variables one by one: a study may be large
         result = analyse_dataset(opened, names, keep, natural)

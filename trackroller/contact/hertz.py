@@ -38,7 +38,29 @@ class HertzShape(_Rows):
 
 
 def contact_modulus(e_1, nu_1, e_2, nu_2) -> np.ndarray:
-    """Return the contact modulus E* [MPa], 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2, from moduli [MPa] and ratios [1]."""
+    """Return the contact modulus E*, 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2.
+
+    Parameters
+    ----------
+    e_1 : array_like
+        Young's modulus of body 1 [MPa].
+    nu_1 : array_like
+        Poisson's ratio of body 1 [1].
+    e_2 : array_like
+        Young's modulus of body 2 [MPa].
+    nu_2 : array_like
+        Poisson's ratio of body 2 [1].
+
+    Returns
+    -------
+    numpy.ndarray
+        Contact modulus [MPa], in the shape to which the parameters broadcast.
+
+    Examples
+    --------
+    >>> round(float(contact_modulus(210e3, 0.3, 210e3, 0.3)))
+    115385
+    """
     return np.asarray(1.0 / ((1 - nu_1**2) / e_1 + (1 - nu_2**2) / e_2))
 
 
@@ -150,7 +172,29 @@ def published_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> He
 
 
 def shape(k_x, k_y, modulus, hertz: str = "exact") -> HertzShape:
-    """Return `exact_shape` or `published_shape` for hertz = 'exact' or 'published'; raise InputError otherwise."""
+    """Return the shape of Hertz's ellipses by the exact or by the published method.
+
+    Parameters
+    ----------
+    k_x : array_like, shape (n,)
+        Relative curvature in the lateral plane, > 0 [1/mm].
+    k_y : array_like, shape (n,)
+        Relative curvature in the rolling plane, > 0 [1/mm].
+    modulus : array_like, shape (n,)
+        Contact modulus E* [MPa].
+    hertz : str
+        'exact' for `exact_shape`, 'published' for `published_shape`.
+
+    Returns
+    -------
+    HertzShape
+        Semi-axes and largest pressure for a unit normal force, arrays (n,).
+
+    Raises
+    ------
+    InputError
+        If `hertz` is neither 'exact' nor 'published'.
+    """
     if hertz == "exact":
         return exact_shape(k_x, k_y, modulus)
     if hertz == "published":

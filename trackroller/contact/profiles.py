@@ -42,27 +42,36 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
 
     Parameters
     ----------
-    value : exactly one of
-        `arc: r` a circle (> 0 convex, < 0 a groove, inf straight) [mm];
-        `parabola: r` its approximation in Hertz's theory;
-        `arcs: [{radius: r, to: x}, ..., {radius: r}]` tangent arcs from inside to outside, x from the nominal contact;
-        `points: [[x, z], ...]` drawn or measured points [mm], x increasing;
-        `file: name.csv` the same as two columns of a file, which `read` reads;
-        and for points and files `frame: section | contact` (default section) and `smooth`: the standard deviation of
-        the measuring noise [mm], 'auto', or 0 (default: the spline goes through every point);
-        for all `edge: {inner: mm, outer: mm, chamfer: mm}`: the distances from the nominal contact along the tangent
-        plane at which the material ends, and the radius of the rounded edge; or `width: mm`, of the whole groove or
-        guide along the roller's axis
-    field : `guide_profile` or `roller_profile`, for error messages
-    read : function that reads the points of a file, see `roller.point_files.read_points`
+    value : mapping
+        Exactly one of the forms `arc`, `parabola`, `arcs`, `points` and `file`; see Notes.
+    field : str
+        Name of the study key for error messages, such as `guide_profile` or `roller_profile`.
+    read : callable, optional
+        Function that reads the points of a file, see `roller.point_files.read_points`.
 
     Returns
     -------
-    Mapping with `points` in place of `file`; {} for an empty mapping
+    dict
+        The same description with `points` in place of `file`; {} for an empty mapping.
 
     Raises
     ------
-    InputError : naming the wrong part, its value, what is allowed and what to do
+    InputError
+        If a part is wrong; the error names the part, its value, what is allowed and what to do.
+
+    Notes
+    -----
+    `arc: r` is a circle (> 0 convex, < 0 a groove, inf straight) [mm], and `parabola: r` its approximation in Hertz's
+    theory. `arcs: [{radius: r, to: x}, ..., {radius: r}]` are tangent arcs from inside to outside, with x from the
+    nominal contact. `points: [[x, z], ...]` are drawn or measured points with increasing x [mm], and `file: name.csv`
+    gives them as two columns of a file.
+
+    Points and files may also have `frame: section | contact` (default section) and `smooth`: the standard deviation of
+    the measuring noise [mm], 'auto', or 0. With the default 0 the spline passes through every point.
+
+    Every form may have `edge: {inner: mm, outer: mm, chamfer: mm}` or `width: mm`. `edge` gives the distances from the
+    nominal contact along the tangent plane at which the material ends, and the radius of the rounded edge. `width` is
+    the width of the whole groove or guide along the axis of the roller.
     """
     if not value:
         return {}

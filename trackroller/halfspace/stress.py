@@ -67,32 +67,50 @@ def stress_from_tractions(
 ) -> Array:
     """Compute stresses at any points under tractions sampled on a regular grid.
 
-    Exact half-space solution (Boussinesq-Cerruti potentials, eqs. (1)-(5); Love 1929, Kalker 1990) for tractions
-    interpolated between the nodes, including z = 0 and the edge of the patch. The cost grows with the number of points
-    times the number of loaded nodes; `stress_on_grid` is far cheaper for whole planes.
+    Exact half-space solution (Boussinesq-Cerruti potentials, eqs. (1)-(5)) for tractions interpolated between the
+    nodes, including z = 0 and the edge of the patch.
 
     Parameters
     ----------
-    x, y : (nx,), (ny,) equidistant node coordinates [mm]
-    pressure, shear_lateral, shear_rolling : (ny, nx) or scalar tractions on the body [MPa]
-    points : (..., 3) coordinates x, y, z with z >= 0 [mm]
-    poisson_ratio : of the body [-], 0 to 0.5
-    interpolation : "bilinear" between nodes, falling to zero within one spacing outside the grid (all stresses
-        are continuous and finite); "constant" in cells centred on the nodes (on the very edge of a cell the
-        in-plane stresses grow without bound; there the logarithm is cut off at 1e-10 spacings)
+    x : array_like, shape (nx,)
+        Equidistant node coordinates in the lateral direction [mm].
+    y : array_like, shape (ny,)
+        Equidistant node coordinates in the rolling direction [mm].
+    pressure : array_like, shape (ny, nx) or ()
+        Pressure on the body [MPa].
+    shear_lateral : array_like, shape (ny, nx) or ()
+        Lateral shear traction on the body [MPa].
+    shear_rolling : array_like, shape (ny, nx) or ()
+        Shear traction in the rolling direction on the body [MPa].
+    points : array_like, shape (..., 3)
+        Coordinates x, y, z with z >= 0 [mm].
+    poisson_ratio : float
+        Poisson's ratio of the body, 0 to 0.5 [1].
+    interpolation : str
+        "bilinear" between nodes, falling to zero within one spacing outside the grid: all stresses are continuous and
+        finite. "constant" in cells centred on the nodes: on the very edge of a cell the in-plane stresses grow without
+        bound, and the logarithm is cut off at 1e-10 spacings.
 
     Returns
     -------
-    (..., 6) stresses in the order of COMPONENTS [MPa]
+    numpy.ndarray, shape (..., 6)
+        Stresses in the order of `COMPONENTS` [MPa].
 
     Raises
     ------
-    InputError : uneven axes, wrong shapes, NaN, z < 0, unknown interpolation
+    InputError
+        If axes are uneven, shapes do not match, a value is NaN, z < 0, or the interpolation is unknown.
 
     Notes
     -----
     Valid for any tractions. The error against a smooth field is that of the interpolation, O(h^1.5) for a Hertzian
-    edge.
+    edge. The cost grows with the number of points times the number of loaded nodes; `stress_on_grid` is far cheaper for
+    whole planes.
+
+    References
+    ----------
+    Love, A. E. H. (1929). Phil. Trans. R. Soc. A 228, 377-420.
+    Kalker, J. J. (1990). Three-Dimensional Elastic Bodies in Rolling Contact. Kluwer.
     """
     xa, ya = _axis("x", x), _axis("y", y)
     q = _tractions(xa, ya, pressure, shear_lateral, shear_rolling)
@@ -125,30 +143,43 @@ def stress_on_grid(
 ) -> Array:
     """Compute stresses below every node of the grid of the tractions, by fast convolution.
 
-    The field is that of `stress_from_tractions` with bilinear interpolation. It is a discrete convolution of the
-    tractions with the influence of one node's hat load; zero padding prevents periodic images.
-
     Parameters
     ----------
-    x, y, pressure, shear_lateral, shear_rolling, poisson_ratio : as in `stress_from_tractions`
-    depths : (nz,) depths z >= 0 [mm]
+    x : array_like, shape (nx,)
+        Equidistant node coordinates in the lateral direction [mm].
+    y : array_like, shape (ny,)
+        Equidistant node coordinates in the rolling direction [mm].
+    pressure : array_like, shape (ny, nx) or ()
+        Pressure on the body [MPa].
+    shear_lateral : array_like, shape (ny, nx) or ()
+        Lateral shear traction on the body [MPa].
+    shear_rolling : array_like, shape (ny, nx) or ()
+        Shear traction in the rolling direction on the body [MPa].
+    depths : array_like, shape (nz,)
+        Depths z >= 0 [mm].
+    poisson_ratio : float
+        Poisson's ratio of the body, 0 to 0.5 [1].
 
     Returns
     -------
-    (nz, ny, nx, 6) stresses in the order of COMPONENTS [MPa]
+    numpy.ndarray, shape (nz, ny, nx, 6)
+        Stresses in the order of `COMPONENTS` [MPa].
 
     Raises
     ------
-    InputError : uneven axes, wrong shapes, NaN, z < 0
+    InputError
+        If axes are uneven, shapes do not match, a value is NaN, or z < 0.
 
     Notes
     -----
-    Needs about 3 kB of memory per node of one plane besides the result. Rounding errors grow with (patch / spacing)^2:
-    1e-11 of the tractions at 200 nodes.
+    The field is that of `stress_from_tractions` with bilinear interpolation. It is a discrete convolution of the
+    tractions with the influence of one node's hat load; zero padding prevents periodic images. The computation needs
+    about 3 kB of memory per node of one plane besides the result. Rounding errors grow with (patch / spacing)^2: 1e-11
+    of the tractions at 200 nodes.
 
     References
     ----------
-    Liu & Wang 2002, J. Tribology 124, 36
+    Liu, S. & Wang, Q. (2002). J. Tribology 124, 36-45.
     """
     xa, ya = _axis("x", x), _axis("y", y)
     q = _tractions(xa, ya, pressure, shear_lateral, shear_rolling)
@@ -195,11 +226,13 @@ def von_mises(stress: ArrayLike) -> Array:
 
     Parameters
     ----------
-    stress : (..., 6) components in the order of COMPONENTS [MPa]
+    stress : array_like, shape (..., 6)
+        Stress components in the order of `COMPONENTS` [MPa].
 
     Returns
     -------
-    (...) array [MPa]
+    numpy.ndarray, shape (...)
+        Equivalent stress [MPa].
 
     Examples
     --------
@@ -212,13 +245,40 @@ def von_mises(stress: ArrayLike) -> Array:
 
 
 def principal_stresses(stress: ArrayLike) -> Array:
-    """Return the principal stresses (..., 3), largest first, of stresses (..., 6) [MPa]."""
+    """Return the principal stresses, largest first.
+
+    Parameters
+    ----------
+    stress : array_like, shape (..., 6)
+        Stress components in the order of `COMPONENTS` [MPa].
+
+    Returns
+    -------
+    numpy.ndarray, shape (..., 3)
+        Principal stresses in descending order [MPa].
+    """
     s = np.asarray(stress, dtype=float)
     tensor = s[..., [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
     return np.linalg.eigvalsh(tensor)[..., ::-1]
 
 
 def max_shear(stress: ArrayLike) -> Array:
-    """Return the largest shear stress (...), half the largest less the smallest principal stress, of (..., 6) [MPa]."""
+    """Return the largest shear stress, half of the largest less the smallest principal stress.
+
+    Parameters
+    ----------
+    stress : array_like, shape (..., 6)
+        Stress components in the order of `COMPONENTS` [MPa].
+
+    Returns
+    -------
+    numpy.ndarray, shape (...)
+        Largest shear stress [MPa].
+
+    Examples
+    --------
+    >>> float(max_shear([-300.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
+    150.0
+    """
     principal = principal_stresses(stress)
     return 0.5 * (principal[..., 0] - principal[..., 2])

@@ -58,14 +58,19 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
 
     Parameters
     ----------
-    study_nc : gathered study
-    figures_dir : folder with the figures and their `index*.json`; may be empty or missing
-    out_html : the file to write, whole or not at all; the tables go into the folder `tables` beside it
-    sensitivity_nc : analysis of the study, if there is one
+    study_nc : pathlib.Path
+        Gathered study.
+    figures_dir : pathlib.Path
+        Folder with the figures and their `index*.json`; it may be empty or missing.
+    out_html : pathlib.Path
+        File to write, completely or not at all. The tables are written to the folder `tables` beside it.
+    sensitivity_nc : pathlib.Path, optional
+        Analysis of the study.
 
     Returns
     -------
-    The path written.
+    pathlib.Path
+        The path of the report.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trackroller.report", "templates"),

@@ -45,15 +45,18 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
 
     Parameters
     ----------
-    text : value of `stop_if`
+    text : str
+        Value of the option `stop_if`.
 
     Returns
     -------
-    The comparisons in the order of the text.
+    tuple of Comparison
+        The comparisons in the order of the text.
 
     Raises
     ------
-    InputError : the text is not a condition, or a name on either side is unknown
+    InputError
+        If the text is not a condition, or a name on either side is unknown.
 
     Examples
     --------

@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, field_validator
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.materials import MaterialDatabase, load_database
 from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.options import check_pairs
 from trackroller.roller.point_files import files_beside, find_beside
 from trackroller.roller.stop import parse_condition
+from trackroller.study.design import build
 from trackroller.study.design.entries import OPTION_FACTORS, base_value, check_own_name, choice, factor
 from trackroller.study.design.factors import LISTS
 from trackroller.study.design.sampling import METHODS, current_name
@@ -26,7 +28,6 @@ from trackroller.study.goals import Analysis, check, comparisons, directions
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.materials import MaterialDatabase
     from trackroller.study.design.sampling import SampledDesign
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
@@ -195,8 +196,6 @@ class Study:
     @cached_property
     def materials(self) -> MaterialDatabase:
         """The material database (built-in, with the user's own over it)."""
-        from trackroller.materials import load_database
-
         return load_database() if self.database is None else self.database
 
     @property
@@ -218,23 +217,23 @@ class Study:
         if table is not None:
             data["table"] = table
         elif whole_paths and self.config.table is not None:
-            from trackroller.study.design.build import table_path
-
-            data["table"] = str(Path(table_path(self)).resolve())
+            data["table"] = str(Path(build.table_path(self)).resolve())
         return write_yaml(data)
 
     @cached_property
     def drawn(self) -> SampledDesign:
         """The factors' columns, drawn once: a CSV of a million cases takes seconds to read."""
-        from trackroller.study.design.build import draw
-
-        return draw(self)
+        return build.draw(self)
 
     def design(self) -> xr.Dataset:
-        """The cases: dimension `case`, one variable a parameter, materials by name."""
-        from trackroller.study.design.build import build
+        """Return the cases of the study.
 
-        return build(self)
+        Returns
+        -------
+        xarray.Dataset
+            Dimension `case`, one variable a parameter, materials by name.
+        """
+        return build.build(self)
 
 
 def parse_study(data: Mapping[str, Any], path: Path | None = None, database: Any = None) -> Study:
@@ -253,11 +252,21 @@ def load_study(path: str | Path, database: Any = None) -> Study:
 
     Parameters
     ----------
-    path : the YAML file
-    database : materials; the built-in with the user's own over it if not given
+    path : str or pathlib.Path
+        The YAML file.
+    database : MaterialDatabase, optional
+        Materials. Default: the built-in database, changed and extended by the user's own file.
 
-    Raises `InputError` (naming field, value, what is allowed and the nearest right name) for a file that is
-    missing or not YAML, unknown keys or names, values out of bounds, contradicting geometry.
+    Returns
+    -------
+    Study
+        The checked study.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or is not YAML, a key or name is unknown, a value is out of bounds, or the geometry
+        contradicts itself. The error names field, value, what is allowed and the nearest known name.
     """
     path = Path(path)
     with files_beside(path):
@@ -304,7 +313,5 @@ def _cross_check(study: Study) -> None:
         check_own_name(name, f"factors.{name}")
     check(config, study.factors)
     _check_options(study)
-    from trackroller.study.design.build import check_geometry, check_materials
-
-    check_materials(study)
-    check_geometry(study)
+    build.check_materials(study)
+    build.check_geometry(study)

@@ -38,9 +38,23 @@ def _model(options: Options) -> str:
 
 
 def explain(table: CaseTable, options: Options) -> list[Stage]:
-    """Stages of `solve` for the cases of `table`, in their order.
+    """Return the stages of a solution of cases in their order.
 
-    Counts are those known before anything is solved: cases that lift off or slip fully drop out of later stages.
+    Parameters
+    ----------
+    table : CaseTable
+        The n cases.
+    options : Options
+        Options of the solution.
+
+    Returns
+    -------
+    list of Stage
+        For each stage: whether it runs, on how many cases or patches, and why.
+
+    Notes
+    -----
+    The counts are those known before anything is solved. Cases that lift off or slip fully leave later stages.
     """
     n, on = len(table), options.shortcuts
     rows = requirements.distinct_mechanics(table)[0] if on and n > 1 else np.arange(n)

@@ -233,20 +233,38 @@ def solve_patch(
     settings: FastsimSettings | None = None,
     travel_speed=None,
 ) -> FastsimSolution:
-    """Simplified theory for n patches with rigid slip w = (eta - phi y, xi + phi x).
+    """Solve n elliptical patches in steady rolling by the simplified theory.
 
     Parameters
     ----------
-    ellipse : Hertzian patches, arrays (n,)
-    creep : creepages, (n,) or scalars
-    friction : coefficient mu [-], (n,) or scalar
-    elastic : combined constants; the coupling constant is not used
-    travel_speed : [mm/s], (n,) or scalar, for friction laws; that of the settings if not given
+    ellipse : Ellipse
+        Hertzian patches, arrays (n,) [mm], [MPa].
+    creep : Creepage
+        Rigid slip w = (eta - phi y, xi + phi x), arrays (n,) or scalars [1], [1/mm].
+    friction : array_like, shape (n,) or ()
+        Friction coefficient mu [1].
+    elastic : Elastic
+        Combined elastic constants, arrays (n,). The coupling constant is not used.
+    settings : FastsimSettings, optional
+        Numbers of strips and steps, friction law and travel speed.
+    travel_speed : array_like, shape (n,) or (), optional
+        Travel speed for friction laws [mm/s]; default: that of the settings.
 
-    Errors against the exact theory, axis ratios of 0.2 to 5, creepages from stick to sliding (root mean square, worst):
-    2.4 and 8 % of mu F_N in the lateral force, 1.4 and 5 % in the driving force, 1.2 and 6 % of mu F_N sqrt(ab) in
-    the moment (tests/test_fastsim.py). Beyond these axis ratios, and with lateral creepage beside spin, which no
-    roller has, up to 16 % in the lateral force.
+    Returns
+    -------
+    FastsimSolution
+        Resultants on the roller [N], [N mm], dissipation [N] and adhesion share [1], arrays (n,).
+
+    Notes
+    -----
+    Valid for axis ratios b/a of 0.2 to 5 and small lateral creepage beside spin; the validation pages state the error
+    against the exact theory. The patches are solved with the number of steps and with twice this number, and the two
+    solutions are extrapolated.
+
+    References
+    ----------
+    Kalker, J. J. (1982). A fast algorithm for the simplified theory of rolling contact. Vehicle System Dynamics 11,
+    1-13.
     """
     settings = settings or FastsimSettings()
     law = (settings.law or constant()).knots

@@ -107,25 +107,34 @@ def solve_normal(
 
     Parameters
     ----------
-    gap : of the undeformed bodies at the element centres, (ny, nx) [mm]
-    hx, hy : element sides [mm]
-    load : normal force over the contact modulus E* [mm^2], > 0
-    material : True where both bodies have material, (ny, nx); everywhere if not given
-    start : pressures to start from, (ny, nx)
-    tolerance : residual at which the iteration stops, see `NormalSolution`
+    gap : numpy.ndarray, shape (ny, nx)
+        Gap of the undeformed bodies at the element centres [mm].
+    hx : float
+        Side of an element in the lateral direction [mm].
+    hy : float
+        Side of an element in the rolling direction [mm].
+    load : float
+        Normal force over the contact modulus E*, > 0 [mm^2].
+    material : numpy.ndarray of bool, shape (ny, nx), optional
+        True where both bodies have material. Default: everywhere.
+    start : numpy.ndarray, shape (ny, nx), optional
+        Pressures over the contact modulus from which the iteration starts [1].
+    tolerance : float
+        Residual at which the iteration stops, see `NormalSolution` [1].
 
     Returns
     -------
     NormalSolution
+        Pressure, approach, number of iterations and residual.
 
     Notes
     -----
     The sum of the pressures equals the load to rounding. The error against Hertz falls with the element size to the
-    power 1.5 to 2 (tests/contact/test_normal.py).
+    power 1.5 to 2.
 
     References
     ----------
-    Polonsky & Keer 1999, Wear 231, 206-219
+    Polonsky, I. A. & Keer, L. M. (1999). A numerical method for solving rough contact problems. Wear 231, 206-219.
     """
     ny, nx = gap.shape
     allowed = np.ones(gap.shape, bool) if material is None else material

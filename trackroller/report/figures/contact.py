@@ -25,16 +25,22 @@ def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
 
     Parameters
     ----------
-    ds : result of `solve` for one case with the outputs 'contact', 'peak_stress', 'tractions', 'subsurface'
-        (what is missing is not drawn)
-    out_dir : folder for the figures, made when missing
+    ds : xarray.Dataset
+        Result of `solve` for one case with the outputs 'contact', 'peak_stress', 'tractions' and 'subsurface'. A figure
+        whose output is missing is not drawn.
+    out_dir : pathlib.Path
+        Folder for the figures; it is created if it does not exist.
 
     Returns
     -------
-    What was drawn: `contact_shear`, `contact_energy`, and `contact_1_stress`, `contact_2_stress` with both
-    section planes of both bodies. A contact that has lifted off is left out.
+    list of FigureInfo
+        The figures drawn: `contact_shear`, `contact_energy`, and `contact_1_stress` and `contact_2_stress` with both
+        section planes of both bodies. A contact that has lifted off is left out.
 
-    Raises `InputError` for a data set of several cases.
+    Raises
+    ------
+    InputError
+        If the data set has several cases.
     """
     if "case" in ds.dims:
         if ds.sizes["case"] != 1:

@@ -45,14 +45,18 @@ def draw_all(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) 
 
     Parameters
     ----------
-    study_nc : gathered study, a grid unstacked into its factors or with one dimension `case`
-    out_dir : folder for the figures, made when missing
-    sensitivity_nc : its analysis, if there is one
+    study_nc : pathlib.Path
+        Gathered study, as a grid over its factors or with one dimension `case`.
+    out_dir : pathlib.Path
+        Folder for the figures; it is created if it does not exist.
+    sensitivity_nc : pathlib.Path, optional
+        Analysis of the study.
 
     Returns
     -------
-    What was drawn, in the order of the report. A figure that cannot be drawn is left out with a logged
-    warning: a picture never fails a run.
+    list of FigureInfo
+        The figures drawn, in the order of the report. A figure that cannot be drawn is left out with a logged warning,
+        so that a figure never stops a run.
     """
     with xr.open_dataset(study_nc) as opened:
         ds = opened.load()

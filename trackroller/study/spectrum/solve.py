@@ -25,20 +25,28 @@ def solve_spectrum(
     database: MaterialDatabase | None = None,
     solve: Callable[..., xr.Dataset] | None = None,
 ) -> xr.Dataset:
-    """Damage of each block, damage sum and life in shifts of roller and guide.
+    """Return the damage of each block, the damage sum, and the life of roller and guide in shifts.
 
     Parameters
     ----------
-    spectrum : the blocks
-    database : the materials; the built-in and the user's own if not given
-    solve : what solves the cases, with the signature of `trackroller.solve`
+    spectrum : Spectrum
+        The blocks and the options of their solution.
+    database : MaterialDatabase, optional
+        Materials. Default: the built-in database, changed and extended by the user's own file.
+    solve : callable, optional
+        Function that solves the cases, with the signature of `trackroller.solve`, which is the default.
 
     Returns
     -------
-    Dataset over block, contact, body (and probability, where a material gives scatter): overrollings per
-    shift, peak stress, damage per shift, life in shifts of each track and to the first failure of each body.
-    A block that cannot be solved makes the lives that depend on it NaN; `regime` tells which. The contact that
-    lifts off takes no damage in that block. The guide's life is NaN where its overrollings are not known.
+    xarray.Dataset
+        Dimensions block, contact and body, and probability where a material gives scatter. Overrollings per shift, peak
+        stress [MPa], damage per shift [1], life in shifts of each track and to the first failure of each body. A block
+        that cannot be solved makes the lives that depend on it NaN; `regime` states why. A contact that lifts off takes
+        no damage in that block. The life of the guide is NaN where its overrollings are not known.
+
+    Notes
+    -----
+    Damage adds up linearly, independent of the order of the blocks (Palmgren-Miner).
     """
     from trackroller.materials import load_database
 
