@@ -449,7 +449,7 @@ def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
     } <= set(said)
     assert said["tornado-roller_life_hours"].startswith("Axial force accounts for 9")
     assert "± " in said["tornado-roller_life_hours"] and "converged" in said["tornado-roller_life_hours"]
-    assert "shortens the life of the roller" in said["bands-roller_life_hours"]
+    assert "shortens the median life of the roller" in said["bands-roller_life_hours"]
     assert "interactions-roller_life_hours" not in said  # the made-up life has none
     listed = json.loads((tmp_path / "figures" / "index.json").read_text(encoding="utf-8"))
     assert [entry["name"] for entry in listed] == list(said)
