@@ -8,8 +8,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
-from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, with_edges
+from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, smoothed, with_edges
 from trackroller.contact.profiles import FEWEST
 from trackroller.errors import ShapeError
 
@@ -144,8 +145,6 @@ def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 def _touching_point(u, w, noise, body: str, alpha: float) -> float:
     """Return the u where the curve is parallel to the tangent plane, nearest to the apex of a fitted parabola."""
-    from trackroller.contact.cross_sections import smoothed
-
     if u.size < FEWEST:
         raise _nowhere_parallel(u, w, body, alpha)
     spline = smoothed(u, w, noise)
@@ -155,8 +154,6 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
     turns = np.flatnonzero(values[:-1] * values[1:] <= 0)
     if turns.size == 0:
         raise _nowhere_parallel(u, w, body, alpha, (noise, values) if noise else None)
-    from scipy.optimize import brentq
-
     roots = np.array(
         [
             brentq(slope, places[k], places[k + 1]) if values[k] * values[k + 1] < 0 else places[k + (values[k] != 0)]

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from trackroller.study.design.entries import OPTION_FACTORS
+
 if TYPE_CHECKING:
     from trackroller.study.config import Study
 
@@ -57,8 +59,6 @@ def rate(options: Mapping[str, Any]) -> float:
 
 def study_rate(study: Study) -> float:
     """As `rate` for the cases of a study, in which contact model and normal problem may be factors."""
-    from trackroller.study.design.entries import OPTION_FACTORS
-
     varied = {name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS}
     several = [rate(study.options | dict(zip(varied, values, strict=True))) for values in product(*varied.values())]
     return len(several) / sum(1.0 / each for each in several)

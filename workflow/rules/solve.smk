@@ -12,12 +12,12 @@ rule design:
         code=digest_file(f"{RESULTS}/code", "trackroller.study.design.build"),
     output:
         f"{RESULTS}/design.nc",
-    params:
-        config=CONFIG,
     log:
         f"{RESULTS}/logs/design.log",
     conda:
         "../envs/trackroller.yaml"
+    params:
+        config=CONFIG,
     script:
         "../scripts/design.py"
 
@@ -44,11 +44,11 @@ rule gather:
         code=digest_file(f"{RESULTS}/code", "trackroller.study.gather"),
     output:
         f"{RESULTS}/study.nc",
-    params:
-        config=CONFIG,
     log:
         f"{RESULTS}/logs/gather.log",
     conda:
         "../envs/trackroller.yaml"
+    params:
+        config=CONFIG,
     script:
         "../scripts/gather.py"

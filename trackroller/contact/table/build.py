@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from trackroller.contact import kalker
 from trackroller.contact.common import Elastic, Ellipse
@@ -87,8 +88,6 @@ def linear(g, nu, angle) -> np.ndarray:
 
 def _spline(nodes, values) -> table.Spline:
     """Interpolate by cubic splines along each axis in turn, without extra conditions at the ends."""
-    from scipy.interpolate import make_interp_spline
-
     knots = []
     for axis, x in enumerate(nodes):
         s = make_interp_spline(x, values, k=3, axis=axis)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.damage import fatigue
 from trackroller.parameters import REGIMES
 from trackroller.study.spectrum.file import Spectrum, overrollings_per_shift
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from trackroller.materials import Material, MaterialDatabase
 
 BODIES = ("roller", "guide")
@@ -116,8 +115,6 @@ def _scattered(
 def _labelled(
     spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset, scattered: np.ndarray | None, rule: str
 ) -> xr.Dataset:
-    import xarray as xr
-
     coords: dict[str, Any] = {
         "block": ("block", [b.name for b in spectrum.blocks], {"long_name": "block of the spectrum"}),
         "contact": solved["contact"],

@@ -30,6 +30,8 @@ from trackroller.materials.yaml_file import parse_mapping, read_text
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
+from trackroller.roller.geometry import rolling_radius
+from trackroller.roller.options import Options
 from trackroller.roller.point_files import files_beside, find_beside
 
 LOAD_FIELDS = (
@@ -224,8 +226,6 @@ def _probabilities(values: Any) -> tuple[float, ...]:
 
 def _options(values: Mapping[str, Any]) -> dict[str, Any]:
     """Check the options of the solver before any case is solved."""
-    from trackroller.roller.options import Options
-
     Options(**values)
     return dict(values)
 
@@ -272,8 +272,6 @@ def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
         Overrollings [1]. A roller has distance / (2 pi r_A) of them. For the guide, the given number is used, otherwise
         its overrollings per hour times the hours of the block; NaN if neither is known.
     """
-    from trackroller.roller.geometry import rolling_radius
-
     rows = []
     for block in spectrum.blocks:
         case = block.case

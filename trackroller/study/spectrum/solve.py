@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from trackroller.materials import load_database
 from trackroller.study.spectrum.damage import damage_dataset
 from trackroller.study.spectrum.file import Block, Spectrum, load_spectrum
 
@@ -48,8 +49,6 @@ def solve_spectrum(
     -----
     Damage adds up linearly, independent of the order of the blocks (Palmgren-Miner).
     """
-    from trackroller.materials import load_database
-
     solve_cases: Callable[..., xr.Dataset]
     if solve is None:
         from trackroller.roller.solver import solve as solve_cases
