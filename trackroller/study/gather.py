@@ -188,17 +188,22 @@ def _write_axes(file: netCDF4.Dataset, design: xr.Dataset, axes: Axes, drawn: di
                 add(name, (dim,), materials, _parameter_attrs(name))
     number = np.arange(design.sizes["case"]).reshape(axes.shape)
     add("case", axes.dims, number, {"long_name": "case number, for `trackroller repeat`", "units": "1"})
-    extra = {str(name): design[name].values for name in design.coords if name != "case"}
-    if "material_pair" in drawn and "material_pair" not in axes.factors:
-        extra["material_pair"] = np.array([label(v) for v in drawn["material_pair"]], dtype=object)
-    columns = {str(name): design[name].values for name in case_columns(design)} | extra
-    for name, values in columns.items():
+    for name, values in _columns(design, axes, drawn).items():
         if name in axes.factors and set(axes.factors[name].levels) & {*FRICTION_LEVELS, None}:
             name = f"{name}_value"
         if name not in file.variables:
             dims, part = _varying(values, axes)
             add(name, dims, part, _parameter_attrs(name))
     return labels
+
+
+def _columns(design: xr.Dataset, axes: Axes, drawn: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the parameters of the cases by name, each of shape (n,)."""
+    columns = {str(name): design[name].values for name in case_columns(design)}
+    columns |= {str(name): design[name].values for name in design.coords if name != "case"}
+    if "material_pair" in drawn and "material_pair" not in axes.factors:
+        columns["material_pair"] = np.array([label(v) for v in drawn["material_pair"]], dtype=object)
+    return columns
 
 
 def _varying(values: np.ndarray, axes: Axes) -> tuple[tuple[str, ...], np.ndarray]:

@@ -159,6 +159,10 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
             "a design whose factors are free choices; the scattering factors of inner_outer are not",
             "Compare the design points by B10, or use design 'grid'.",
         )
+    _check_constraints(config, factors, free)
+
+
+def _check_constraints(config: Any, factors: Mapping[str, Any], free: list[str]) -> None:
     words = [*free, *MATERIAL_FIELDS, "material_pair", "regime"]
     for text in config.constraints:
         for name in names_in(text):

@@ -51,7 +51,7 @@ def solve_spectrum(
     """
     solve_cases: Callable[..., xr.Dataset]
     if solve is None:
-        from trackroller.roller.solver import solve as solve_cases
+        from trackroller.roller.solver import solve as solve_cases  # numba compiles on import
     else:
         solve_cases = solve
     database = load_database() if database is None else database
