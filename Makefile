@@ -48,8 +48,9 @@ validate: $(STAMP)
 test: $(STAMP)
 	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile
 
+# without the studies of accuracy, which make test runs
 test-quick: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile $(wildcard $(PHYSICS))
+	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile -m "not slow and not slurm" $(wildcard $(PHYSICS))
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -373,6 +373,7 @@ def test_linear_shares_of_the_traction_bound_are_kept_between_the_elements():
     assert longest == pytest.approx(1.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_dissipation_in_the_elements_meets_the_work_put_in_with_second_order():
     """Steady rolling stores no energy: sum tau.s = tau.w. The local sum tends to that with the elements squared."""
     ellipses = patch([0.3, 0.15, 0.4, 0.1], [0.18, 0.3, 0.1, 0.4], 700.0)
