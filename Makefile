@@ -50,7 +50,7 @@ test: $(STAMP)
 
 # without the studies of accuracy, which make test runs
 test-quick: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile -m "not slow and not slurm" $(wildcard $(PHYSICS))
+	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile -m "not long and not slow and not slurm" $(wildcard $(PHYSICS))
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

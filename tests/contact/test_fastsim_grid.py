@@ -65,7 +65,7 @@ def numbers(solution):
     return np.array([r.lateral_force[0], r.driving_force[0], r.spin_moment[0]])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("curvatures", [(0.0238, 0.0587), (0.2, 0.02), (0.005, 0.1)])
 @pytest.mark.parametrize("shift", [-0.05, 0.001, 0.3])
 def test_the_pressure_of_an_ellipse_gives_the_ellipse_the_better_the_more_elements(curvatures, shift):

@@ -420,7 +420,9 @@ def test_a_roller_without_balance_for_steep_friction_says_so():
         guide_material={"like": steel, "youngs_modulus": 13178.6, "poisson_ratio": 0.24861},
     )
     found = tr.solve(lost, contact_model="kalker", outputs="forces")
-    assert int(found.regime) == 3 and np.isnan(found.normal_force).all()
+    assert int(found.converged) == 0  # several states of stick and slip: what is found is one of them at best
+    assert int(found.regime) == 0 or np.isnan(found.normal_force).all()
+    assert float(found.residual) > 1e-2 and "steep_friction" in str(found.reason.item())
     assert int(found.validity) & validity_bit("steep_friction")
 
 

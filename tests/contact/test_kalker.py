@@ -83,7 +83,9 @@ def compare_with_contact(case, settings=None):
     normal, shift, (lateral, driving, moment) = equilibrium(case["case"], settings or KalkerSettings(tolerance=1e-7))
     fine, coarse = case["grid_60x60"], case["grid_40x40"]
     exact = {k: np.array(v) + 2 * (np.array(v) - np.array(coarse[k])) for k, v in fine.items()}
-    np.testing.assert_allclose(normal, exact["normal_force"], rtol=2.5e-3)
+    # near lift-off CONTACT's two grids differ by 0.5 % of the small force; its extrapolation is uncertain by a tenth of that
+    change = np.abs(np.array(fine["normal_force"]) - np.array(coarse["normal_force"]))
+    assert (np.abs(normal - exact["normal_force"]) <= 2.5e-3 * exact["normal_force"] + 0.1 * change).all()
     np.testing.assert_allclose(lateral, exact["lateral_force"], rtol=6e-3)
     np.testing.assert_allclose(moment, exact["spin_moment"], rtol=6e-3)
     driven = case["case"]["motor_force"] != 0
@@ -373,7 +375,7 @@ def test_linear_shares_of_the_traction_bound_are_kept_between_the_elements():
     assert longest == pytest.approx(1.0, rel=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_dissipation_in_the_elements_meets_the_work_put_in_with_second_order():
     """Steady rolling stores no energy: sum tau.s = tau.w. The local sum tends to that with the elements squared."""
     ellipses = patch([0.3, 0.15, 0.4, 0.1], [0.18, 0.3, 0.1, 0.4], 700.0)

@@ -18,7 +18,7 @@ def _chosen(cases, tolerance: float, **options) -> np.ndarray:
     return choice.choose(to_table(cases, None), Options(contact_model="auto", contact_tolerance=tolerance, **options))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_fresh_designs_keep_the_tolerance():
     """Designs that the map has not seen, solved by all models."""
     cases = contact_choice.sample(40, seed=77)
