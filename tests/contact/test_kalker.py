@@ -83,7 +83,7 @@ def compare_with_contact(case, settings=None):
     normal, shift, (lateral, driving, moment) = equilibrium(case["case"], settings or KalkerSettings(tolerance=1e-7))
     fine, coarse = case["grid_60x60"], case["grid_40x40"]
     exact = {k: np.array(v) + 2 * (np.array(v) - np.array(coarse[k])) for k, v in fine.items()}
-    # near lift-off CONTACT's two grids differ by 0.5 % of the small force; its extrapolation is uncertain by a tenth of that
+    # near lift-off the two grids of CONTACT differ by 0.5 % of the small force: a tenth of it is uncertain
     change = np.abs(np.array(fine["normal_force"]) - np.array(coarse["normal_force"]))
     assert (np.abs(normal - exact["normal_force"]) <= 2.5e-3 * exact["normal_force"] + 0.1 * change).all()
     np.testing.assert_allclose(lateral, exact["lateral_force"], rtol=6e-3)
