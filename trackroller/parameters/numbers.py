@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,8 @@ class Parameter:
 
     def accepts(self, value: np.ndarray | float) -> np.ndarray:
         """Return which values are allowed, elementwise, a bool array of the shape of `value`."""
+        import numpy as np  # noqa: PLC0415 - the help of the command line needs the names only
+
         v = np.asarray(value, dtype=float)
         good = ~np.isnan(v) if self.allow_infinite else np.isfinite(v)
         with np.errstate(invalid="ignore"):

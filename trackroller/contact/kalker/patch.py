@@ -8,6 +8,8 @@ traction.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
@@ -188,7 +190,7 @@ def resultants(
     return solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings).resultants
 
 
-def to_tractions(ellipse: Ellipse, friction, solution: PatchSolution) -> SurfaceTractions:
+def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTractions:
     """Return the fields of a solution at the element centres, with Hertz's pressure, which is 0 outside the ellipse."""
     n, _, ny, nx = solution.traction.shape
     ellipse, friction, _ = _prepared(ellipse, friction, Elastic(np.ones(n), np.ones(n), np.ones(n)))

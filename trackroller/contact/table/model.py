@@ -6,6 +6,8 @@ exact solver at the creepages found with the table. Rollers outside the table's 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
@@ -38,7 +40,7 @@ class TableModel(ContactModel):
     def _table(self, ellipse: Ellipse, slip: Slip, friction, rows) -> table.TableSolution:
         return table.solve_patch(ellipse, slip.longitudinal, slip.spin, friction, self.elastic.take(rows))
 
-    def law(self, ellipse: Ellipse, slip: Slip, friction, rows, fine: bool) -> Resultants:
+    def law(self, ellipse: Any, slip: Slip, friction, rows, fine: bool) -> Resultants:
         """Return the resultants on the roller, arrays (m,)."""
         found = self._table(ellipse, slip, friction, rows)
         rest = np.flatnonzero(~found.known)
@@ -48,11 +50,11 @@ class TableModel(ContactModel):
         other = self.exact.law(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
         return found.resultants.replaced(rest, other)
 
-    def surface(self, ellipse: Ellipse, slip: Slip, friction, rows) -> SurfaceTractions:
+    def surface(self, ellipse: Any, slip: Slip, friction, rows) -> SurfaceTractions:
         """Return the tractions of the exact solver on a grid over each patch."""
         return self.exact.surface(ellipse, slip, friction, rows)
 
-    def stick(self, ellipse: Ellipse, slip: Slip, friction, rows) -> np.ndarray:
+    def stick(self, ellipse: Any, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""
         found = self._table(ellipse, slip, friction, rows)
         share, rest = found.stick_fraction, np.flatnonzero(~found.known)
@@ -60,7 +62,7 @@ class TableModel(ContactModel):
             share[rest] = self.exact.stick(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
         return share
 
-    def power(self, ellipse: Ellipse, slip: Slip, friction, rows) -> Works:
+    def power(self, ellipse: Any, slip: Slip, friction, rows) -> Works:
         """Return the dissipation: the work of the creepages, and of the pressures on unlike materials.
 
         The table does not hold the work of the pressures, so the exact solver gives both on unlike materials.
