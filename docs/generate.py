@@ -10,6 +10,8 @@ import math
 import sys
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation must not stand for the package
+
 from trackroller import parameters as p
 from trackroller.report.pages import markdown
 from trackroller.roller.accuracy import PRESETS
