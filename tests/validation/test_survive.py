@@ -1,4 +1,4 @@
-"""Kills of other kinds than in test_resume and test_workflow, for real; `validation/benchmarks/survive.py` does ten."""
+"""Kill real runs while they solve and while they gather; `validation/benchmarks/survive.py` kills ten times."""
 
 from __future__ import annotations
 

@@ -35,14 +35,14 @@ class Knots(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FrictionLaw:
-    """Friction over its value at rest, as a function of the slip speed that is linear between knots.
+    """Describe how the friction coefficient depends on the slip speed, linearly between knots.
 
     Parameters
     ----------
     speed : numpy.ndarray, shape (m,)
         Slip speeds at the knots [mm/s].
     factor : numpy.ndarray, shape (m,)
-        Friction over its value at rest [1].
+        Friction coefficient at each knot over the coefficient at rest [1].
     form : mapping
         Mapping that describes the law, see `law_of`. Two laws are equal if their tables are equal.
     """

@@ -61,7 +61,7 @@ def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Datas
 
 
 def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -> list[str]:
-    """Conditions that hold for a table of one case and are known to prevent a solution, with the remedy."""
+    """Return why a single case has no solution, as far as known, and what to do about it."""
     if "curve" in options.slip_terms and _beyond_the_axis(case):
         return [
             "With slip_terms: curve the contacts must not lie beyond the axis of the inner curve, "

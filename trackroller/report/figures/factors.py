@@ -29,7 +29,7 @@ from trackroller.report.view import StudyView
 MAX_PANELS = 9
 COLOURS = 5  # as many levels of the deciding factor are told apart
 BINS = 6
-FEWEST = 3  # rows of which a median is drawn
+FEWEST = 3  # a median is drawn from at least this number of rows
 
 
 def by_factor(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:

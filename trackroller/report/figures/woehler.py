@@ -17,7 +17,7 @@ from trackroller.report.findings import strength
 from trackroller.report.numbers import count, listing, rounded, with_unit
 from trackroller.report.view import BODIES, StudyView
 
-BEYOND = 1e4  # the axis ends at so many times the cycles of the knee
+BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
 MAX_MATERIALS = 6
 _FIELDS = ("tensile_strength", "fatigue_strength_ratio", "cycles_at_tensile_strength", "cycles_at_fatigue_limit")
 _DASHES = {0.1: (0, (1, 1.2)), 0.9: (0, (4, 1.5))}

@@ -1,4 +1,4 @@
-"""The choice between several equilibria near self-locking: solutions are followed from little friction upwards."""
+"""Choose between the equilibria near self-locking: follow the solution from low friction upwards."""
 
 from __future__ import annotations
 
