@@ -11,7 +11,7 @@ import numpy as np
 from trackroller.contact.common import _Rows
 from trackroller.contact.normal.measure import Box, patch_box
 
-SLIGHT = 1e-3  # share of the largest pressure below which an element does not count as loaded
+SLIGHT = 5e-3  # share of the largest pressure below which an element does not count as loaded
 
 
 @dataclass(frozen=True)

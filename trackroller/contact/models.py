@@ -13,6 +13,7 @@ import numpy as np
 from trackroller.contact import fastsim, kalker, sliding
 from trackroller.contact.common import Elastic, Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
+from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.linear import LARGEST_RATIO
 from trackroller.contact.protocol import ContactModel
@@ -20,6 +21,7 @@ from trackroller.contact.settings import Accuracy
 from trackroller.contact.table.model import TableModel
 from trackroller.errors import unknown_name
 
+CORRECTION_TOLERANCE = 1e-4  # residual of the friction law over mu p_max where elements correct the table
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models
 MOST_SLENDER = 0.99 * LARGEST_RATIO  # axis ratio up to which FASTSIM has flexibilities
 
@@ -58,7 +60,7 @@ class SlidingModel(ContactModel):
             slip,
             friction,
             spin_model=self.spin_model,
-            points=self.settings.traction_points if constant_law else FINER * self.settings.elements,
+            points=self.settings.traction_points if constant_law else FINER * self.settings.on_grids,
             law=None if constant_law else self.friction_law,
             travel_speed=self.travel[rows],
         )
@@ -80,21 +82,34 @@ class KalkerModel(ContactModel):
         law: FrictionLaw,
         travel_speed: np.ndarray,
         profile_slip: bool = False,
+        trusts_table: bool = False,
     ) -> None:
         chosen = kalker.KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, chosen, travel_speed)
+        if law.is_constant:  # the table behind the corrections holds constant friction only
+            rough = dataclasses.replace(chosen, tolerance=CORRECTION_TOLERANCE)
+            self.correction = Correction(elastic, rough, trusts_table)
 
     def law(self, ellipse, slip, friction, rows, fine):
         return self._law(ellipse, slip, friction, rows, fine)
 
+    def _solution(self, ellipse, slip, friction, rows):
+        found = self._law.kept if self.correction is None else self.correction.solution
+        return found(ellipse, slip, friction, rows)
+
     def surface(self, ellipse, slip, friction, rows):
-        return kalker.to_tractions(ellipse, friction, self._law.kept(ellipse, slip, friction, rows))
+        return kalker.to_tractions(ellipse, friction, self._solution(ellipse, slip, friction, rows))
+
+    def shares(self, ellipse, slip, friction, rows):
+        return None if self.correction is None else self.correction.shares(ellipse, slip, friction, rows)
 
     def power(self, ellipse, slip, friction, rows):
-        return self._law.kept(ellipse, slip, friction, rows).works
+        if self.correction is not None:
+            return self.correction.works(ellipse, slip, friction, rows)
+        return self._solution(ellipse, slip, friction, rows).works
 
     def state(self, n):
-        return self._law.state(n)
+        return self._law.state(n) if self.correction is None else self.correction.state(n)
 
 
 class FastsimModel(ContactModel):
@@ -111,7 +126,7 @@ class FastsimModel(ContactModel):
         profile_slip: bool = False,
     ) -> None:
         self.elastic, self.travel = elastic, travel_speed
-        n = settings.elements  # strips and steps in the proportion of the default settings
+        n = settings.on_grids  # strips and steps in the proportion of the default settings
         self.settings = fastsim.FastsimSettings(
             strips=4 * n // 5, steps=6 * n // 5, points=n, law=law, profile_slip=profile_slip
         )
@@ -212,7 +227,7 @@ def contact_model(
     if name == "kalker":
         return KalkerModel(settings, elastic, law, travel, profile)
     if name == "kalker_table":
-        return TableModel(elastic, KalkerModel(settings, elastic, law, travel))
+        return TableModel(elastic, KalkerModel(settings, elastic, law, travel, trusts_table=True))
     raise unknown_name("contact_model", name, ("sliding", "fastsim", "kalker", "kalker_table"))
 
 

@@ -79,6 +79,7 @@ class ContactModel:
     refines = False  # `surface` is exact for any number of elements of a refined patch
     difference_step = 1e-3  # relative step of derivatives, above the noise of the model
     residual = 1e-7  # relative residual of the equilibrium that the model can reach
+    correction: Any = None  # a `kalker.correction.Correction` with which the equilibrium is found, if there is one
     peak_error = 0.0  # relative error of the peak stress that the model adds, per unit friction coefficient
 
     def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
@@ -88,6 +89,13 @@ class ContactModel:
     def surface(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> SurfaceTractions:
         """Return the tractions on a grid over each patch."""
         raise NotImplementedError
+
+    def shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+        """Return tractions over their bound, (m, 2, ., .), on a grid and on a coarser one, to compare with.
+
+        None if the model knows them at the points of `surface` only.
+        """
+        return None
 
     def power(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
         """Return the dissipation per distance travelled and the part of it that the pressures supply, (m,)."""

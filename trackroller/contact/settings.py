@@ -35,3 +35,9 @@ class Accuracy:
     traction_points: int
     section_points: int
     elements: int
+    grid_elements: int = 0  # of FASTSIM and of patches whose pressure is solved; 0: as many as `elements`
+
+    @property
+    def on_grids(self) -> int:
+        """Return the elements of models that do not interpolate between their elements."""
+        return self.grid_elements or self.elements

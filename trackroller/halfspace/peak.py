@@ -122,22 +122,31 @@ def _seeded(patches: Patches, rules: Rules, settings: PeakSettings) -> Climbs:
     return climbs
 
 
-def _change_by_elements(patches: Patches, found: Peak, rule: np.ndarray) -> np.ndarray:
-    """Return the relative change of the peaks (n, 2) where elements of twice the size have the mean tractions."""
-    n, _, ny, nx = patches.fields.shape
+def _merged(fields: np.ndarray) -> np.ndarray:
+    """Return the mean tractions of elements of twice the size; the fields themselves for odd numbers of elements."""
+    n, _, ny, nx = fields.shape
     if ny % 2 or nx % 2:
-        return np.zeros((n, 2))
-    blocks = patches.fields.reshape(n, 2, ny // 2, 2, nx // 2, 2)
+        return fields
+    blocks = fields.reshape(n, 2, ny // 2, 2, nx // 2, 2)
     inside = np.any(blocks != 0.0, axis=1, keepdims=True).sum(axis=(3, 5))
-    means = blocks.sum(axis=(3, 5)) / np.maximum(inside, 1)
-    coarse = dataclasses.replace(patches, fields=np.ascontiguousarray(means))
+    return blocks.sum(axis=(3, 5)) / np.maximum(inside, 1)
+
+
+def _change_by_elements(patches: Patches, found: Peak, rule: np.ndarray, fields: np.ndarray) -> np.ndarray:
+    """Return the relative change of the peaks (n, 2) with the tractions `fields` of a coarser grid."""
+    n = len(patches.rows)
+    coarse = dataclasses.replace(patches, fields=np.ascontiguousarray(fields))
     of, body = (index.ravel() for index in np.indices((n, 2)))
     places = np.stack([found.x, found.y, found.z], axis=2).reshape(2 * n, 3)
     return np.abs(coarse.stress(of, body, places, rule, rule).reshape(n, 2) / found.stress - 1.0)
 
 
 def find_peaks(
-    patches: np.ndarray, poisson_ratio: np.ndarray, settings: PeakSettings, fields: np.ndarray | None = None
+    patches: np.ndarray,
+    poisson_ratio: np.ndarray,
+    settings: PeakSettings,
+    fields: np.ndarray | None = None,
+    coarse: np.ndarray | None = None,
 ) -> Peak:
     """Find the peak von Mises stress of roller and guide below n ellipses.
 
@@ -147,6 +156,7 @@ def find_peaks(
     poisson_ratio : of roller and guide, (n, 2) [1]
     settings : quadrature and search effort
     fields : traction over its bound at element centres, (n, 2, ny, nx); full sliding if not given
+    coarse : the same on a coarser grid, for the estimated error; means over 2 x 2 elements if not given
 
     Returns
     -------
@@ -169,7 +179,8 @@ def find_peaks(
         some = Patches(patches[group], chosen, ratios, bool(factor > 1))
         found = _search(some, rules, settings, settings.step / factor)
         if fields is not None:
-            found.error[:] += _change_by_elements(some, found, rules.summit)
+            other = _merged(chosen) if coarse is None else coarse[group]
+            found.error[:] += _change_by_elements(some, found, rules.summit, other)
         out.put(group, found)
     out.error[:] += _hidden_error(patches, settings, out.stress, fields is None)
     for place, length in zip((out.x, out.y, out.z), lengths(patches).T, strict=True):

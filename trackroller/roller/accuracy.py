@@ -11,7 +11,7 @@ import functools
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
 from typing import Any
 
@@ -100,10 +100,12 @@ def _composed(name: str, tolerance: float, forces: Rung, peak: Rung, elements: i
 # What a preset keeps in 99 % of the designs measured: error of the peak and of the forces in full sliding, which are
 # cheap; and in 95 %, as fewer designs were measured, of the forces of `kalker`. None: twice the elements of `standard`.
 PROMISES: dict[str, tuple[float, float, float | None]] = {
-    "preview": (2e-2, 5e-3, 1.5e-2),
+    "preview": (2e-2, 5e-3, 2e-2),
     "standard": (4e-3, 2e-5, 8e-3),
     "reference": (3e-4, 1e-7, None),
 }
+# Elements of FASTSIM and of solved patches, which do not interpolate between their elements.
+GRID_ELEMENTS = {"preview": 20, "standard": 40, "reference": 80}
 
 
 def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung | None]:
@@ -122,7 +124,7 @@ def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung | None]
 def _preset(name: str) -> Accuracy:
     forces, peak, rolling = preset_rungs(name, ladders())
     elements = rolling.settings["elements"] if rolling else 2 * _preset("standard").elements
-    return _composed(name, PROMISES[name][0], forces, peak, elements)
+    return replace(_composed(name, PROMISES[name][0], forces, peak, elements), grid_elements=GRID_ELEMENTS[name])
 
 
 PRESETS = {name: _preset(name) for name in ACCURACIES}
@@ -253,7 +255,8 @@ def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[
     }
     if contact_model != "sliding":
         ladder = contact_model if contact_model in rungs else "kalker"
-        own = {ladder: {"elements": settings.elements}, "peak": own["peak"]}
+        elements = settings.elements if ladder == "kalker" else settings.on_grids
+        own = {ladder: {"elements": elements}, "peak": own["peak"]}
     total: dict[str, Levels] = {}
     for ladder, wanted in own.items():
         found = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)

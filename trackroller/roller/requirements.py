@@ -123,6 +123,11 @@ class Mirror:
         """Which of the existing patches `good` (2 n,) have to be solved, shape (2 n,)."""
         return good & ~np.concatenate([np.zeros_like(self.symmetric), self.symmetric])
 
+    def source(self, flat: np.ndarray) -> np.ndarray:
+        """Return the patches (m,) that are solved for the patches `flat` (m,) of 2 n: contact 1 for a mirror image."""
+        n = self.symmetric.size
+        return np.where((flat >= n) & self.symmetric[flat % n], flat % n, flat)
+
     def _copies(self, good: np.ndarray, found: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values (2 n, ...) of the solved patches, with those of contact 1 in contact 2; and which are copies."""
         full = np.full((good.size, *found.shape[1:]), np.nan, dtype=found.dtype if found.dtype != bool else float)

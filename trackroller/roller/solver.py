@@ -12,7 +12,6 @@ from numba.core.registry import cpu_target
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
-from trackroller.roller import equilibrium as eq
 from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
@@ -25,6 +24,7 @@ from trackroller.roller.record import with_inputs
 from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
+from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.scene import Results
 
 if TYPE_CHECKING:
@@ -218,8 +218,7 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarra
 
 def _solve_group(table: CaseTable, options: Options) -> Block:
     scene = stages.prepare(table, options)
-    balance = eq.solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
-    results = Results.start(scene, balance)
+    results = Results.start(scene, balance(scene))
     wanted = set(options.outputs)
     stages.forces(results)
     stages.contact(results, options)

@@ -58,7 +58,8 @@ class Report:
     """Numbers of n solved patches: forces (n, 3) F_T, F_A [N], M_R [N mm]; the others (n,).
 
     stick_fraction [-]; dissipation : summed over the elements; work : of the rigid slip; pressure_work : of the
-    pressures on unlike materials [N]; residual of the friction law over mu p_max; Newton steps; products B tau.
+    pressures on unlike materials [N]; residual of the friction law over mu p_max; Newton steps; products B tau;
+    own_slip per travel speed, which the traction mu p_max of an element causes at itself.
     """
 
     forces: np.ndarray
@@ -69,11 +70,13 @@ class Report:
     residual: np.ndarray
     steps: np.ndarray
     products: np.ndarray
+    own_slip: np.ndarray
 
     @classmethod
     def empty(cls, n: int) -> Report:
         """Return a report of zeros."""
-        return cls(np.zeros((n, 3)), *(np.zeros(n) for _ in fields(cls)[1:]))
+        zeros = {field.name: np.zeros(n) for field in fields(cls)}
+        return cls(**zeros | {"forces": np.zeros((n, 3)), "own_slip": np.ones(n)})
 
     @property
     def energy_residual(self) -> np.ndarray:
@@ -184,6 +187,7 @@ def _one_patch(batch: Batch, law: FrictionLaw, control, found: Found, i: int) ->
     c = math.sqrt(a * b)
     hx, hy = 2.0 * a / (nx * c), 2.0 * b / (ny * c)
     functions = influence(hx, hy, batch.poisson_ratio[i], ny, nx)
+    report.own_slip[i] = ratio * functions.own
     coupling = batch.coupling[i]
     driver = rigid if coupling == 0.0 else rigid + coupling * coupling_slip(height, hx, hy)
     problem = Problem(functions, driver, height, ratio * batch.travel_speed[i], law.speed, law.factor)
@@ -228,29 +232,3 @@ def solve_batch(batch: Batch, law: FrictionLaw, control, found: Found) -> None:
             _one_patch(batch, law, control, found, i)
 
     share_rows(work, batch.ratio.size, 1, 1)
-
-
-@njit(cache=True)
-def refine(coarse, coarse_height, height, fine):
-    """Interpolate tractions `fine` (2, 2 ny, 2 nx) from those of a grid with half the elements, `coarse` (2, ny, nx).
-
-    The share of the traction bound is interpolated linearly; steps between the elements would cause slip there.
-    """
-    ny, nx = coarse_height.shape
-    for i in range(2 * ny):
-        near_i, far_i = i // 2, min(max(i // 2 + 2 * (i % 2) - 1, 0), ny - 1)
-        for j in range(2 * nx):
-            near_j, far_j = j // 2, min(max(j // 2 + 2 * (j % 2) - 1, 0), nx - 1)
-            x, y, total = 0.0, 0.0, 0.0
-            for m, q, weight in (
-                (near_i, near_j, 9.0),
-                (far_i, near_j, 3.0),
-                (near_i, far_j, 3.0),
-                (far_i, far_j, 1.0),
-            ):
-                if coarse_height[m, q] > 0.0:
-                    x += weight * coarse[0, m, q] / coarse_height[m, q]
-                    y += weight * coarse[1, m, q] / coarse_height[m, q]
-                    total += weight
-            share = height[i, j] / total if total > 0.0 else 0.0
-            fine[0, i, j], fine[1, i, j] = x * share, y * share

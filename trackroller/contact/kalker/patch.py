@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
-from trackroller.contact.friction_laws import constant
 from trackroller.contact.grid_patch import GridPatch
-from trackroller.contact.kalker import batch, extrapolation
+from trackroller.contact.kalker import batch, extrapolation, subgrid
 from trackroller.contact.kalker.cells import cells, unit_cells
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.slip import Creepage
@@ -24,7 +23,13 @@ BLOCK = 256  # patches that are solved together, to limit the memory for their t
 
 
 def _level(
-    ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, travel, settings: KalkerSettings, start: np.ndarray
+    ellipse: Ellipse | GridPatch,
+    creep: Creepage,
+    friction,
+    elastic: Elastic,
+    travel,
+    settings: KalkerSettings,
+    start: np.ndarray,
 ) -> batch.Found:
     """Solve on the grid of the tractions `start` (n, 2, elements, elements), which the result overwrites."""
     n, elements = friction.size, start.shape[-1]
@@ -48,7 +53,7 @@ def _level(
         share,
     )
     found = batch.Found.start(start)
-    batch.solve_batch(patches, settings.law or constant(), settings, found)
+    batch.solve_batch(patches, settings.law_in_use, settings, found)
     return found
 
 
@@ -58,13 +63,25 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
     first = np.zeros((n, 2, half, half))
     if started:
         first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
-    report = _level(ellipse, creep, friction, elastic, travel, settings, first).report
+    found = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
-        (low, _), (high, _) = cells(ellipse, half), cells(ellipse, settings.elements)
-        low, high = np.broadcast_to(low, (n, half, half)), np.broadcast_to(high, (n, *traction.shape[2:]))
-        for i in range(n):
-            batch.refine(first[i], low[i], high[i], traction[i])
-    return report
+        height, _ = cells(ellipse, settings.elements)
+        traction[:] = subgrid.shares(cells(ellipse, half)[0], found.traction, found.slip, found.report.own_slip, 2)
+        traction *= height if height.ndim == 2 else height[:, None]
+    return found
+
+
+def _forces(ellipse: Ellipse, friction, settings: KalkerSettings, found: batch.Found) -> np.ndarray:
+    """Return the resultants (n, 3) of one grid: integrals between the centres, or sums over the elements."""
+    if not settings.law_in_use.is_constant or not friction.size:
+        return found.report.forces
+    elements = found.traction.shape[-1]
+    height, _ = cells(ellipse, elements)
+    share = subgrid.shares(height, found.traction, found.slip, found.report.own_slip)
+    finer = ellipse if ellipse.is_hertzian else ellipse.refined(subgrid.PARTS, subgrid.PARTS)
+    between, _ = cells(finer, subgrid.PARTS * elements)
+    bound = (friction * ellipse.max_pressure)[:, None]
+    return bound * subgrid.forces(share, between, ellipse.semi_axis_lateral, ellipse.semi_axis_rolling)
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -75,20 +92,18 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
     found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = found.report
-    value, error = fine.forces, np.full((n, 3), np.nan)
+    value, limit, error = _forces(ellipse, friction, settings, found), np.zeros((n, 3)), np.full((n, 3), np.nan)
     pressed = fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
-        error = np.abs(value - coarse.forces)
-        middle = Creepage(creep.longitudinal + creep.spin * ellipse.centre, creep.lateral, creep.spin)
-        weights = extrapolation.weights(ellipse, middle, friction, elastic, elements, fine.stick_fraction)
-        weight = weights[:, 0]
-        value = value + weights * (value - coarse.forces)
-        pressed = pressed + weight * (pressed - coarse.pressure_work)
-        work = work + weight * (work - coarse.work - coarse.pressure_work)
-        # The observed convergence is of second order wherever a part of the patch slides.
-        energy = extrapolation.energy(energy, coarse.energy_residual)
-    # The moment counts about the nominal point of contact, and the patch may lie beside this point.
+        error = value - _forces(ellipse, friction, settings, coarse)
+        limit, report = extrapolation.WEIGHT * error, coarse.report
+        pressed = pressed + extrapolation.WEIGHT * (pressed - report.pressure_work)
+        work = work + extrapolation.WEIGHT * (work - report.work - report.pressure_work)
+        # observed to be of second order wherever a part of the patch slides
+        energy = extrapolation.energy(energy, report.energy_residual)
+    value = value + limit
+    # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
         Resultants(value[:, 0], value[:, 1], value[:, 2]),
@@ -99,7 +114,9 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         work,
         pressed,
         energy,
-        error,
+        limit,
+        np.abs(error),
+        fine.own_slip,
         fine.residual,
         fine.steps,
         fine.products,
@@ -112,7 +129,9 @@ def _full(value, n: int) -> np.ndarray:
     return np.array(np.broadcast_to(np.asarray(value, float), n), order="C")
 
 
-def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np.ndarray, Elastic]:
+def _prepared(
+    ellipse: Ellipse | GridPatch, friction, elastic: Elastic
+) -> tuple[Ellipse | GridPatch, np.ndarray, Elastic]:
     n = np.size(ellipse.semi_axis_lateral)
     if ellipse.is_hertzian:
         ellipse = Ellipse(
@@ -123,7 +142,7 @@ def _prepared(ellipse: Ellipse, friction, elastic: Elastic) -> tuple[Ellipse, np
 
 
 def solve_patch(
-    ellipse: Ellipse,
+    ellipse: Ellipse | GridPatch,
     creep: Creepage,
     friction,
     elastic: Elastic,
@@ -183,7 +202,7 @@ def solve_patch(
 
 
 def resultants(
-    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
+    ellipse: Ellipse | GridPatch, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
 ) -> Resultants:
     """Return the friction forces [N] and the spin moment [N mm] on the roller, (n,); see `solve_patch`."""
     settings = settings or KalkerSettings()
@@ -234,7 +253,7 @@ def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> Surf
 
 
 def tractions(
-    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
+    ellipse: Ellipse | GridPatch, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
 ) -> SurfaceTractions:
     """Return pressure, shear, slip and adhesion on the grid of elements; see `solve_patch`."""
     settings = settings or KalkerSettings()

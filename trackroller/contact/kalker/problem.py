@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -68,8 +68,12 @@ class PatchSolution:
         the normal, and the pressures do work on this motion.
     energy_residual : ndarray, shape (n,)
         Dissipation summed over the elements, over `friction_energy_per_distance`, less 1 [1]; extrapolated.
+    limit : ndarray, shape (n, 3)
+        What the extrapolation has added to the resultants [N, N, N mm]; 0 without extrapolation.
     error_estimate : ndarray, shape (n, 3)
         |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation.
+    own_slip : ndarray, shape (n,)
+        Slip per travel speed that the traction mu p_max of an element causes at itself [1], see `subgrid`.
     residual : ndarray, shape (n,)
         Largest residual of the friction law over mu p_max [1].
     steps, products : ndarray of int, shape (n,)
@@ -86,7 +90,9 @@ class PatchSolution:
     friction_energy_per_distance: np.ndarray
     pressure_work: np.ndarray
     energy_residual: np.ndarray
+    limit: np.ndarray
     error_estimate: np.ndarray
+    own_slip: np.ndarray
     residual: np.ndarray
     steps: np.ndarray
     products: np.ndarray
@@ -107,3 +113,46 @@ def joined(parts: list[PatchSolution], order) -> PatchSolution:
     rest = [np.concatenate([getattr(p, f.name) for p in parts])[order] for f in fields(PatchSolution)[1:]]
     forces = [np.concatenate([getattr(p.resultants, f.name) for p in parts])[order] for f in fields(Resultants)]
     return PatchSolution(Resultants(*forces), *rest)
+
+
+class Store:
+    """Last solutions of patches in numbered slots, tractions and slips in single precision."""
+
+    def __init__(self, slots: int) -> None:
+        self.known = np.zeros(slots, bool)
+        self._rows = np.zeros(slots, int)  # of the solution, by slot
+        self._solution: PatchSolution | None = None
+
+    def put(self, slot: np.ndarray, solution: PatchSolution) -> None:
+        """Keep a solution of m patches in the slots (m,)."""
+        kept = {name: getattr(solution, name).astype(np.float32) for name in ("traction", "slip")}
+        solution = replace(solution, **kept)
+        fresh = ~self.known[slot]
+        if fresh.any():
+            parts = [part for part in (self._solution, solution.take(fresh)) if part is not None]
+            count = 0 if self._solution is None else len(self._solution.residual)
+            self._rows[slot[fresh]] = count + np.arange(int(fresh.sum()))
+            self._solution = joined(parts, slice(None))
+            self.known[slot[fresh]] = True
+        if self._solution is not None and not fresh.all():
+            for kept_values, values in zip(_arrays(self._solution), _arrays(solution), strict=True):
+                kept_values[self._rows[slot[~fresh]]] = values[~fresh]
+
+    def get(self, slot: np.ndarray) -> PatchSolution:
+        """Return the solutions in the slots (m,)."""
+        if self._solution is None:
+            raise LookupError("no patch has been solved")
+        return self._solution.take(self._rows[slot])
+
+    def state(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the residual in each slot and whether it has converged; 0 and True where nothing was solved."""
+        residual, converged = np.zeros(self.known.size), np.ones(self.known.size, bool)
+        if self._solution is not None:
+            rows = self._rows[self.known]
+            residual[self.known], converged[self.known] = self._solution.residual[rows], self._solution.converged[rows]
+        return residual, converged
+
+
+def _arrays(solution: PatchSolution) -> list[np.ndarray]:
+    r = solution.resultants
+    return [r.lateral_force, r.driving_force, r.spin_moment, *(getattr(solution, f.name) for f in fields(solution)[1:])]

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
-from trackroller.contact.table.spline import LARGEST_COUPLING, RATIOS, TableSolution, solve_patch, stored
+from trackroller.contact.table.spline import (
+    LARGEST_COUPLING,
+    RATIOS,
+    TableSolution,
+    nearest_forces,
+    solve_patch,
+    stored,
+)
 
-__all__ = ["LARGEST_COUPLING", "RATIOS", "TableSolution", "solve_patch", "stored"]
+__all__ = ["LARGEST_COUPLING", "RATIOS", "TableSolution", "nearest_forces", "solve_patch", "stored"]

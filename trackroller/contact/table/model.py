@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.table import spline as table
 
@@ -35,43 +35,48 @@ class TableModel(ContactModel):
 
     def __init__(self, elastic: Elastic, exact: ContactModel) -> None:
         self.elastic, self.exact = elastic, exact
+        self.correction = exact.correction
         self._beyond = np.zeros(np.shape(elastic.coupling), bool)  # rollers outside the table's range
 
-    def _table(self, ellipse: Ellipse, slip: Slip, friction, rows) -> table.TableSolution:
-        return table.solve_patch(ellipse, slip.longitudinal, slip.spin, friction, self.elastic.take(rows))
+    def _table(self, patch: Any, slip: Slip, friction, rows) -> table.TableSolution:
+        return table.solve_patch(patch, slip.longitudinal, slip.spin, friction, self.elastic.take(rows))
 
-    def law(self, ellipse: Any, slip: Slip, friction, rows, fine: bool) -> Resultants:
+    def law(self, patch: Any, slip: Slip, friction, rows, fine: bool) -> Resultants:
         """Return the resultants on the roller, arrays (m,)."""
-        found = self._table(ellipse, slip, friction, rows)
+        found = self._table(patch, slip, friction, rows)
         rest = np.flatnonzero(~found.known)
         if not rest.size:
             return found.resultants
         self._beyond[rows[rest]] = True
-        other = self.exact.law(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
+        other = self.exact.law(patch.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
         return found.resultants.replaced(rest, other)
 
-    def surface(self, ellipse: Any, slip: Slip, friction, rows) -> SurfaceTractions:
+    def surface(self, patch: Any, slip: Slip, friction, rows) -> SurfaceTractions:
         """Return the tractions of the exact solver on a grid over each patch."""
-        return self.exact.surface(ellipse, slip, friction, rows)
+        return self.exact.surface(patch, slip, friction, rows)
 
-    def stick(self, ellipse: Any, slip: Slip, friction, rows) -> np.ndarray:
+    def shares(self, patch: Any, slip: Slip, friction, rows):
+        """Return the tractions of the exact solver over their bound, see `ContactModel.shares`."""
+        return self.exact.shares(patch, slip, friction, rows)
+
+    def stick(self, patch: Any, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""
-        found = self._table(ellipse, slip, friction, rows)
+        found = self._table(patch, slip, friction, rows)
         share, rest = found.stick_fraction, np.flatnonzero(~found.known)
         if rest.size:
-            share[rest] = self.exact.stick(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
+            share[rest] = self.exact.stick(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
         return share
 
-    def power(self, ellipse: Any, slip: Slip, friction, rows) -> Works:
+    def power(self, patch: Any, slip: Slip, friction, rows) -> Works:
         """Return the dissipation: the work of the creepages, and of the pressures on unlike materials.
 
         The table does not hold the work of the pressures, so the exact solver gives both on unlike materials.
         """
-        found = self._table(ellipse, slip, friction, rows)
+        found = self._table(patch, slip, friction, rows)
         work, pressed = found.friction_energy_per_distance, np.zeros(len(rows))
         rest = np.flatnonzero(~found.known | (self.elastic.coupling[rows] != 0.0))
         if rest.size:
-            other = self.exact.power(ellipse.take(rest), slip.take(rest), friction[rest], rows[rest])
+            other = self.exact.power(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
             work[rest], pressed[rest] = other.dissipated, other.by_pressure
         return Works(work, pressed)
 
@@ -81,4 +86,5 @@ class TableModel(ContactModel):
 
     def used(self, n: int) -> np.ndarray:
         """Return the name of the model that gave the forces of each of n rollers."""
-        return np.where(self._beyond, self.exact.name, self.name).astype(object)
+        beyond = self._beyond if self.correction is None else self._beyond | self.correction.beyond
+        return np.where(beyond, self.exact.name, self.name).astype(object)

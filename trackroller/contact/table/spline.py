@@ -1,16 +1,17 @@
-"""Resultants of the exact rolling theory from a stored table, as Kalker's USETAB, for `preview`.
+"""Resultants of the exact rolling theory from a stored table, as in Kalker's program USETAB.
 
-Without lateral creepage the dimensionless problem has five numbers: the axis ratio g = b/a, Poisson's ratio, the two
-creepages over what friction can bend, and kappa = K/mu. Creepages enter as a length and an angle,
+Without lateral creepage, the dimensionless problem has five numbers: the axis ratio g = b/a, Poisson's ratio, two
+normalised creepages, and kappa = K/mu. The creepages enter as a length and an angle,
 
     X = xi, Y = phi L,  L = c sqrt(g + 1/g)/2,  c = sqrt(a b),  r = hypot(X, Y) G c^2 C11/(mu N),
     rho = r/(r + 4),  theta = atan2(|X|, |Y|),
 
-so that rho = 0 is the linear theory and rho = 1 complete sliding; both are exact in the table. What is interpolated,
-F_A/(mu N rho sin(theta)), F_T/(mu N rho cos(theta)) and M_R/(mu N c rho cos(theta)), is smooth and even at both ends of
-theta, which makes the forces odd in the creepages as they must be. Unlike materials act in the main as one more
-longitudinal creepage, r_x + kappa C11 s(g) with a polynomial s in ln g; what they do beyond that is a second, coarser
-table in kappa. Both are tensor products of cubic splines; made by `trackroller.contact.table.build`.
+so that rho = 0 is the linear theory and rho = 1 is full sliding. The table is exact in both limits. It interpolates
+F_A/(mu N rho sin(theta)), F_T/(mu N rho cos(theta)) and M_R/(mu N c rho cos(theta)). These functions are smooth and
+even at both ends of theta, so the forces are odd functions of the creepages, as symmetry demands. Unlike materials act
+mainly as an additional longitudinal creepage, r_x + kappa C11 s(g), with a polynomial s in ln g. A second, coarser
+table in kappa holds the remaining effect of unlike materials. Both tables are tensor products of cubic splines.
+`trackroller.contact.table.build` makes them.
 """
 
 from __future__ import annotations
@@ -22,8 +23,9 @@ from importlib import resources as files
 import numpy as np
 from numba import njit
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants
+from trackroller.contact.common import Elastic, Resultants
 from trackroller.contact.linear import creepage_coefficients
+from trackroller.contact.protocol import Patch
 from trackroller.numerics.knots import interval
 from trackroller.numerics.threads import share_rows
 
@@ -31,12 +33,13 @@ TABLE = "kalker_table.npz"
 HALF_WAY = 4.0  # r at rho = 1/2
 RATIOS = (0.05, 20.0)  # of b/a
 LARGEST_COUPLING = 1.5  # of |K|/mu
+LARGEST_SLIP = 1e100  # r where friction can bend nothing
 FIELDS = ("lateral", "driving", "spin", "stick")
 
 
 @dataclass(frozen=True)
 class Spline:
-    """Tensor product of cubic splines: four knot vectors and the coefficients (n1, n2, n3, n4, fields)."""
+    """Tensor product of cubic splines: four knot vectors, and coefficients (n1, n2, n3, n4, fields)."""
 
     knots: tuple[np.ndarray, ...]
     values: np.ndarray
@@ -44,11 +47,18 @@ class Spline:
 
 @dataclass(frozen=True)
 class TableSolution:
-    """What the table gives for n patches; NaN where `known` is False, that is outside its range.
+    """Solution of n patches from the table.
 
-    resultants : on the roller [N, N, N mm]
-    stick_fraction : share of the ellipse that sticks [-]
-    friction_energy_per_distance : dissipation [N], the work of the creepages -(xi F_A + phi M_R)
+    Attributes
+    ----------
+    resultants : Resultants
+        Forces [N] and spin moment [N mm] on the roller, (n,).
+    stick_fraction : numpy.ndarray, shape (n,)
+        Share of the adhesion area in the ellipse [1].
+    friction_energy_per_distance : numpy.ndarray, shape (n,)
+        Dissipation [N], the work of the creepages -(xi F_A + phi M_R).
+    known : numpy.ndarray of bool, shape (n,)
+        False outside the range of the table, where the other values are NaN.
     """
 
     resultants: Resultants
@@ -59,7 +69,7 @@ class TableSolution:
 
 @njit(cache=True, nogil=True)
 def _basis(knots, x, out):
-    """The four cubic B-splines that do not vanish at x, in `out`; returns the index of the first (de Boor)."""
+    """Write the four nonzero cubic B-splines at x into `out`; return the index of the first one (de Boor)."""
     low = interval(x, knots, 3, knots.size - 4)
     out[0] = 1.0
     for degree in range(1, 4):
@@ -75,7 +85,7 @@ def _basis(knots, x, out):
 
 @njit(cache=True, nogil=True)
 def _evaluate(first, last, knots, values, points, out):
-    """Rows first..last of the tensor product at points (n, 4) into out (n, fields)."""
+    """Write rows first to last - 1 of the tensor product at points (n, 4) into `out` (n, fields)."""
     k0, k1, k2, k3 = knots
     basis, start = np.empty((4, 4)), np.empty(4, np.int64)
     for row in range(first, last):
@@ -93,7 +103,20 @@ def _evaluate(first, last, knots, values, points, out):
 
 
 def evaluate(spline: Spline, points: np.ndarray) -> np.ndarray:
-    """Values (n, fields) of `spline` at `points` (n, 4), which must lie between the outer knots."""
+    """Return the values of a tensor-product spline.
+
+    Parameters
+    ----------
+    spline : Spline
+        The spline.
+    points : numpy.ndarray, shape (n, 4)
+        Points between the outer knots.
+
+    Returns
+    -------
+    numpy.ndarray, shape (n, fields)
+        Values.
+    """
     points = np.ascontiguousarray(points, dtype=float)
     out = np.empty((len(points), spline.values.shape[4]))
     share_rows(lambda a, b: _evaluate(a, b, spline.knots, spline.values, points, out), len(points), 512)
@@ -102,9 +125,18 @@ def evaluate(spline: Spline, points: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Tables:
-    """`like` over (rho, theta, ln g, nu), `unlike` over (rho, theta from -90 to 90 deg, ln g, kappa), `shift` s(ln g).
+    """The two tables and their errors.
 
-    `errors` against the exact solver on a fresh random sample, as `table.build` measured them.
+    Attributes
+    ----------
+    like : Spline
+        Bodies with K = 0, over (rho, theta, ln g, nu).
+    unlike : Spline
+        Additional effect of unlike materials, over (rho, theta from -90 to 90 deg, ln g, kappa).
+    shift : numpy.ndarray
+        Coefficients of the polynomial s(ln g).
+    errors : dict of str to float
+        Differences from the exact solver on a random sample, measured by `table.build`.
     """
 
     like: Spline
@@ -123,7 +155,7 @@ def _read_spline(stored_arrays, name: str) -> Spline:
 
 @lru_cache(maxsize=1)
 def stored() -> Tables:
-    """The tables that come with the package."""
+    """Return the tables that the package contains."""
     place = files.files("trackroller.contact.table").joinpath(TABLE)
     with files.as_file(place) as path, np.load(path, allow_pickle=False) as f:
         like, unlike = (_read_spline(f, name) for name in ("like", "unlike"))
@@ -133,9 +165,9 @@ def stored() -> Tables:
 
 @dataclass(frozen=True)
 class Dimensionless:
-    """Normalised patches, arrays (n,): g, Poisson's ratio, r_x and r_y = components of r, kappa, C11.
+    """Normalised patches, arrays (n,): g, Poisson's ratio, components r_x and r_y of r, kappa, C11.
 
-    Where friction can bend nothing (mu N = 0), r is huge instead of infinite.
+    Without friction force (mu N = 0), r is a very large number instead of infinity.
     """
 
     g: np.ndarray
@@ -146,8 +178,8 @@ class Dimensionless:
     c11: np.ndarray
 
 
-def normalise(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic) -> Dimensionless:
-    """The five numbers of patches with creepages xi [-] and phi [1/mm], arrays (n,)."""
+def normalise(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) -> Dimensionless:
+    """Return the dimensionless numbers of patches with creepages xi [1] and phi [1/mm]; see `solve_patch`."""
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     g, square = b / a, a * b
     ratio = np.clip(np.where(np.isfinite(g), g, 1.0), *RATIOS)
@@ -159,23 +191,32 @@ def normalise(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic) 
         return Dimensionless(g, elastic.poisson_ratio, longitudinal / bend, spin * arm / bend, kappa, c11)
 
 
-def solve_patch(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic) -> TableSolution:
-    """Steady rolling with rigid slip w = (-phi y, xi + phi x) by the table.
+def solve_patch(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) -> TableSolution:
+    """Solve steady rolling with the rigid slip w = (-phi y, xi + phi x) by the table.
 
     Parameters
     ----------
-    ellipse : Hertzian patches, arrays (n,); b/a from 0.05 to 20
-    longitudinal, spin : xi [-] and phi [1/mm], (n,)
-    friction : coefficient mu [1], (n,); 0 gives no traction
-    elastic : combined constants, arrays (n,); |K|/mu up to 1.5
+    ellipse : Ellipse
+        Hertzian patches, arrays (n,); b/a from 0.05 to 20.
+    longitudinal, spin : array_like, shape (n,)
+        xi [1] and phi [1/mm].
+    friction : array_like, shape (n,)
+        Friction coefficient mu [1]; 0 gives no traction.
+    elastic : Elastic
+        Combined constants, arrays (n,); |K|/mu up to 1.5.
 
-    Error against the exact solver: `stored().errors`. Patches outside the range are NaN, never extrapolated.
+    Returns
+    -------
+    TableSolution
+        Values of the n patches. Patches outside the range are NaN; the table never extrapolates.
+
+    Notes
+    -----
+    `stored().errors` has the differences from the exact solver.
     """
     xi, phi, mu = (np.asarray(v, float) for v in (longitudinal, spin, friction))
     d = normalise(ellipse, xi, phi, mu, elastic)
-    edge = 1.0 + 1e-9
-    known = (d.g >= RATIOS[0] / edge) & (d.g <= RATIOS[1] * edge) & (np.abs(d.kappa) <= LARGEST_COUPLING)
-    known |= ~np.isfinite(d.g * d.kappa)  # no patch: NaN stays NaN
+    known = _held(d)
     rows = np.flatnonzero(known)
     unit = np.full((len(FIELDS), known.size), np.nan)
     inside = Dimensionless(*(np.broadcast_to(getattr(d, f.name), known.shape)[rows] for f in fields(d)))
@@ -187,18 +228,54 @@ def solve_patch(ellipse: Ellipse, longitudinal, spin, friction, elastic: Elastic
     return TableSolution(forces, np.clip(unit[3], 0.0, 1.0), work, known)
 
 
+def _held(d: Dimensionless) -> np.ndarray:
+    """Return which patches lie in the table's range, (n,); where there is no patch NaN stays NaN."""
+    edge = 1.0 + 1e-9
+    held = (d.g >= RATIOS[0] / edge) & (d.g <= RATIOS[1] * edge) & (np.abs(d.kappa) <= LARGEST_COUPLING)
+    return held | ~np.isfinite(d.g * d.kappa)
+
+
+def nearest_forces(
+    ellipse: Patch, longitudinal, spin, friction, elastic: Elastic
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the forces of the nearest patch that the table holds, and the place of the slip.
+
+    Parameters are those of `solve_patch`. A patch outside the range takes the forces at the end of the range.
+
+    Returns
+    -------
+    F_T/(mu N), F_A/(mu N) and M_R/(mu N c), (3, n); r_x/(4 + r) in (-1, 1), (n,); which patches the table holds, (n,).
+    NaN where there is no patch.
+    """
+    xi, phi, mu = (np.asarray(v, float) for v in (longitudinal, spin, friction))
+    d = normalise(ellipse, xi, phi, mu, elastic)
+    d = Dimensionless(*np.broadcast_arrays(*(getattr(d, f.name) for f in fields(d))))
+    along, across = (np.clip(v, -LARGEST_SLIP, LARGEST_SLIP) for v in (d.along, d.across))
+    place = along / (HALF_WAY + np.hypot(along, across))
+    there = np.isfinite(d.g * place)
+    near = Dimensionless(
+        np.where(there, np.clip(d.g, *RATIOS), 1.0),
+        d.poisson,
+        np.where(there, along, 0.0),
+        np.where(there, across, 0.0),
+        np.clip(np.where(there, d.kappa, 0.0), -LARGEST_COUPLING, LARGEST_COUPLING),
+        d.c11,
+    )
+    return np.where(there, unit_forces(near)[:3], np.nan), place, _held(d)
+
+
 def unit_forces(d: Dimensionless) -> np.ndarray:
-    """F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of stick, shape (4, n)."""
+    """Return F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of the adhesion area, (4, n)."""
     tables = stored()
     log_g = np.log(np.clip(d.g, *RATIOS))
     out = like_forces(tables.like, d, d.along + d.kappa * d.c11 * np.polyval(tables.shift, log_g))
     rows = np.flatnonzero(d.kappa != 0.0)
     if rows.size:
-        # turning both creepages and K round turns the tractions round; mirroring x turns the spin round
+        # If both creepages and K change their signs, the tractions do so as well. A reflection of x reverses the spin.
         turned, side = np.sign(d.kappa[rows]), np.sign(d.across[rows])
         rho, angle = _polar(d.along[rows] * turned, d.across[rows])
         more = evaluate(tables.unlike, np.stack([rho, angle, log_g[rows], np.abs(d.kappa[rows])], axis=1)).T
-        # mirrored, the spin changes sign and with it F_T and M_R, while F_A stays
+        # A reflection of x changes the signs of the spin, of F_T and of M_R, and keeps F_A.
         side *= np.cos(angle)
         out[:, rows] += np.stack([side * more[0], turned * more[1], side * more[2], more[3]])
     return out
@@ -210,7 +287,7 @@ def _polar(along: np.ndarray, across: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def like_forces(like: Spline, d: Dimensionless, along: np.ndarray) -> np.ndarray:
-    """Bodies of one kind with the longitudinal part `along` of r, else as `unit_forces`."""
+    """Return the values of `unit_forces` for K = 0 and the longitudinal component `along` of r, (4, n)."""
     rho, angle = _polar(along, d.across)
     side, theta = np.sign(d.across), np.abs(angle)
     v = evaluate(like, np.stack([rho, theta, np.log(np.clip(d.g, *RATIOS)), d.poisson], axis=1)).T

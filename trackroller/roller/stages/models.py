@@ -58,5 +58,5 @@ def _patches(table: CaseTable, options: Options, rolling_radius: np.ndarray) -> 
         key = (guide, roller, *columns[row], side)
         return key, lambda: gap(*key)
 
-    even = 2 * -(-options.settings.elements // 2)
+    even = 2 * -(-options.settings.on_grids // 2)
     return Patches(gaps, contact_modulus(*bodies(table)), even)

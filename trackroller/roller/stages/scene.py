@@ -45,6 +45,12 @@ class Scene:
         """Return the slip with the turning of the rollers `rows`, if the turning counts."""
         return slip if self.turning is None else slip.detailed(turning=self.turning[rows])
 
+    def contacts(self, balance: eq.Equilibrium) -> tuple[Patch, Slip]:
+        """Return the ellipses and the slip of both contacts in an equilibrium, arrays (2 n,)."""
+        both = np.tile(np.arange(self.n), 2)
+        ellipse, slip = self.loads.contacts(balance.normal_force.T.reshape(-1), np.tile(balance.shift, 2), both)
+        return ellipse, self.kinematics(slip, both)
+
     def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
         """Return the resultants on the roller; this is the contact law of the equilibrium."""
         return self.model.law(patch, self.kinematics(slip, rows), friction, rows, fine)
@@ -86,8 +92,7 @@ class Results:
         """Make patches and slips from the normal forces and rolling radius shifts of the equilibrium."""
         both = np.tile(np.arange(scene.n), 2)
         normal = balance.normal_force.T.reshape(-1)
-        ellipse, slip = scene.loads.contacts(normal, np.tile(balance.shift, 2), both)
-        slip = scene.kinematics(slip, both)
+        ellipse, slip = scene.contacts(balance)
         friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
         patch = scene.model.settled(ellipse, slip, friction[both], both)
         # the friction law of each patch has to hold beside the balance of the roller
@@ -145,7 +150,9 @@ def surface_tractions(results: Results) -> SurfaceTractions:
         asked = mirror.asked(good)
         patch, slip, friction, rows = results.of(asked)
         rolling = replace(slip, shift=np.where(results.slides_along[asked] == 0, slip.shift, 0.0))
-        t = mirror.spread_surface(good, results.scene.model.surface(patch, rolling, friction, rows))
+        # in full slip the tractions are known; without friction the model has nothing to solve
+        rubs = np.where(results.slides_along[asked] == 0, friction, 0.0)
+        t = mirror.spread_surface(good, results.scene.model.surface(patch, rolling, rubs, rows))
         mu, along = results.friction[good], results.slides_along[good]
         full = (along != 0)[:, None, None]
         results.surface = replace(

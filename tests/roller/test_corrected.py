@@ -1,0 +1,87 @@
+"""Equilibrium by the table of the exact theory, corrected by elements."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.contact.kalker import batch, correction
+from trackroller.contact.kalker.correction import Correction
+from trackroller.roller.accuracy import PRESETS
+from trackroller.roller.case import to_table
+from trackroller.roller.equilibrium import corrected, solve_equilibrium
+from trackroller.roller.options import Options
+from trackroller.roller.stages import mechanics
+from trackroller.roller.stages.balance import balance
+
+QUICK = dataclasses.replace(PRESETS["standard"], elements=16)
+CASES = [
+    tr.Case(),
+    tr.Case(motor_force=0, friction_coefficient=0.1),
+    tr.Case(axial_force=0, motor_force=-10),
+    tr.Case(roller_material="PA6", motor_force=0, friction_coefficient=0.3),
+    tr.Case(roller_profile_radius=-6.3, contact_angle=45),
+    tr.Case(roller_material="PA6", friction_coefficient=0.1, motor_force=0),  # beyond the table's |K|/mu
+]
+
+
+def scene_of(cases):
+    return mechanics.prepare(to_table(cases), Options(contact_model="kalker", accuracy=QUICK))
+
+
+@pytest.fixture(scope="module")
+def both():
+    """The corrected equilibrium, and the one that asks the elements every time."""
+    scene = scene_of(CASES)
+    return scene, balance(scene), solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
+
+
+def test_the_corrected_law_ends_where_the_elements_do(both):
+    scene, found, exact = both
+    assert np.array_equal(found.regime, exact.regime) and found.converged.all()
+    limit = scene.loads.friction[:, None] * exact.normal_force
+    for name in ("lateral_force", "driving_force"):
+        off = (getattr(found.forces, name) - getattr(exact.forces, name)) / limit
+        assert np.max(np.abs(off[:-1])) < 3e-4, (name, off)
+        assert np.max(np.abs(off[-1])) < 2e-3, (name, off)  # the table is far from the answer
+    np.testing.assert_allclose(found.normal_force, exact.normal_force, rtol=1e-3)
+
+
+def test_few_patches_are_solved(both):
+    scene, *_ = both
+    assert scene.model.correction.count <= 4.5 * len(CASES)
+
+
+def test_a_corrected_law_is_exact_at_the_solved_slip():
+    """The corrected forces are those of the elements there, and the next correction changes nothing."""
+    scene = scene_of(CASES)
+    found = balance(scene)
+    own = Correction(scene.model.correction.elastic, scene.model.correction.settings)
+    patch, slip = scene.contacts(found)
+    rows = np.tile(np.arange(scene.n), 2)
+    friction = scene.loads.friction[rows]
+    first, second = (own.solve(patch, slip, friction, rows) for _ in range(2))
+    assert first.max() > 1e-4 and second.max() < 2e-4
+    law, solution = own.law(patch, slip, friction, rows), own.solution(patch, slip, friction, rows)
+    at_first = solution.resultants.lateral_force / (friction * patch.normal_force)
+    assert np.max(np.abs(law.lateral_force / (friction * patch.normal_force) - at_first)) < 5e-3
+
+
+def test_rollers_that_do_not_settle_are_solved_by_the_elements_alone(monkeypatch):
+    monkeypatch.setattr(corrected, "ROUNDS", 1)
+    monkeypatch.setattr(corrected, "SETTLED", 0.0)
+    scene = scene_of(CASES[:1])
+    found, exact = balance(scene), solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
+    assert found.shift == pytest.approx(exact.shift, rel=1e-12)
+    assert not scene.model.correction.store.known.any()
+
+
+def test_the_second_solution_of_a_patch_takes_one_grid(monkeypatch):
+    """It starts from the first, and the extrapolation of the first serves it."""
+    grids = []
+    plain = batch.solve_batch
+    monkeypatch.setattr(batch, "solve_batch", lambda *given: (grids.append(given[3].traction.shape), plain(*given)))
+    monkeypatch.setattr(correction, "NEAR", 0.3)
+    balance(scene_of(CASES[:2]))
+    assert [shape[-1] for shape in grids[:3]] == [8, 16, 16]

@@ -1,0 +1,188 @@
+"""A cheap contact law that is corrected by a few solutions of the exact theory.
+
+The table of the exact theory gives the forces of a patch at any slip. Elements solve the patch at the slip where the
+roller balances, and the difference is added to the table's forces from then on. The corrected law is exact at the
+solved slip and keeps the table's derivatives elsewhere, so that one or two solutions of a patch end the equilibrium
+(deferred correction). With two solutions of a patch the difference also changes linearly with the slip.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import cast
+
+import numpy as np
+
+from trackroller.contact import table
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Works
+from trackroller.contact.kalker import subgrid
+from trackroller.contact.kalker.cells import unit_cells
+from trackroller.contact.kalker.patch import solve_patch
+from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
+from trackroller.contact.protocol import Patch
+from trackroller.contact.slip import Creepage
+
+NEAR = 0.02  # change of the slip's place below which an iteration starts from the last solution of the patch
+LEAST_STEP = 1e-9  # change of the slip's place from which a derivative of the difference is taken
+STEEPEST = 3.0  # largest such derivative
+REACH = 2.0  # steps over which the derivative is trusted
+
+
+class Correction:
+    """The corrected law of n rollers and the solutions behind it.
+
+    Parameters
+    ----------
+    elastic : Elastic
+        Combined constants of the rollers, arrays (n,).
+    settings : KalkerSettings
+        Discretisation of the elements; the friction law must be constant.
+    trusts_table : bool
+        True leaves the forces of patches in the table's range uncorrected; elements then give their tractions only.
+    """
+
+    difference_step = 1e-5  # relative step of derivatives of the corrected law
+    residual = 1e-10  # relative residual of the equilibrium that the corrected law can reach
+
+    def __init__(self, elastic: Elastic, settings: KalkerSettings, trusts_table: bool = False) -> None:
+        n = np.size(elastic.shear_modulus)
+        self.elastic, self.settings, self.trusts_table = elastic, settings, trusts_table
+        self.offset, self.slope = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))  # over mu F_N, mu F_N and mu F_N c
+        self.limit = np.zeros((n, 2, 3))  # extrapolation to small elements, in the same units
+        self.place, self.reach = np.full((n, 2), np.nan), np.zeros((n, 2))
+        self.error = np.full((n, 2), np.nan)
+        self.beyond = np.zeros(n, bool)  # rollers outside the table's range
+        self.count = 0  # of solved patches
+        self.store = Store(2 * n)
+
+    def _table(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and what it holds, (m,)."""
+        elastic = self.elastic.take(rows)
+        forces, place, held = table.nearest_forces(patch, slip.longitudinal, slip.spin, friction, elastic)
+        return forces.T, place, held
+
+    def _corrected(self, forces: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> np.ndarray:
+        reach = self.reach[rows, side]
+        step = np.clip(np.where(reach > 0.0, place - self.place[rows, side], 0.0), -reach, reach)
+        return forces + self.offset[rows, side] + self.slope[rows, side] * step[:, None]
+
+    def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool = True) -> Resultants:
+        """Return the resultants on the roller by the corrected table, arrays (m,)."""
+        forces, place, _ = self._table(patch, slip, friction, rows)
+        forces = self._corrected(forces, place, rows, _side(slip))
+        scale = _scale(patch, friction)
+        return Resultants(*(forces * scale).T)
+
+    def solve(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Solve patches by elements and correct the law there.
+
+        Returns
+        -------
+        Largest change of a force over mu F_N (or of M_R over mu F_N c) that the solution brought, (m,).
+        """
+        change = np.zeros(len(rows))
+        forces, place, held = self._table(patch, slip, friction, rows)
+        self.beyond[rows[~held]] = True
+        pick = np.flatnonzero(~(held & self.trusts_table))
+        if pick.size:
+            own, side = rows[pick], _side(slip)[pick]
+            before = self._corrected(forces[pick], place[pick], own, side)
+            exact = self._elements(patch.take(pick), slip.take(pick), friction[pick], own, place[pick])
+            self._learn(exact - forces[pick], place[pick], own, side)
+            change[pick] = np.max(np.abs(exact - before), axis=1)
+        return change
+
+    def _learn(self, offset: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> None:
+        """Store the differences `offset` (m, 3) at the places of the slip, and their derivatives if known."""
+        change = place - self.place[rows, side]
+        known = np.abs(change) > LEAST_STEP
+        slope = (offset - self.offset[rows, side]) / np.where(known, change, 1.0)[:, None]
+        self.slope[rows, side] = np.where(known[:, None], np.clip(slope, -STEEPEST, STEEPEST), 0.0)
+        self.reach[rows, side] = np.where(known, REACH * np.abs(change), 0.0)
+        self.offset[rows, side], self.place[rows, side] = offset, place
+
+    def _elements(self, patch: Patch, slip: Slip, friction, rows: np.ndarray, place=np.nan, forces=True) -> np.ndarray:
+        """Return the forces (m, 3) of the elements over mu F_N and mu F_N c; keep the solutions.
+
+        Without `forces` only the tractions are needed, so that nothing is extrapolated.
+        """
+        side, scale = _side(slip), _scale(patch, friction)
+        near = np.abs(place - self.place[rows, side]) <= NEAR
+        exact = np.empty((len(rows), 3))
+        self.count += len(rows)
+        for started in (False, True):
+            pick = np.flatnonzero(near == started)
+            if not pick.size:
+                continue
+            own, slot = rows[pick], _slots(rows[pick], side[pick])
+            settings, start = dataclasses.replace(self.settings, extrapolate=forces), None
+            if started:
+                settings = dataclasses.replace(settings, extrapolate=False)
+                start = self.store.get(slot).traction
+            creep = Creepage.of_slip(slip.take(pick), settings.profile_slip)
+            found = solve_patch(patch.take(pick), creep, friction[pick], self.elastic.take(own), settings, start)
+            exact[pick] = _columns(found.resultants) / scale[pick]
+            if started:
+                exact[pick] += self.limit[own, side[pick]]
+                found = dataclasses.replace(found, energy_residual=self.store.get(slot).energy_residual)
+            else:
+                self.limit[own, side[pick]] = found.limit / scale[pick]
+                self.error[own, side[pick]] = np.max(found.error_estimate[:, :2] / scale[pick, :2], axis=1)
+            self.store.put(slot, found)
+        return exact
+
+    def solution(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
+        """Return the last solutions of patches, arrays (m,); patches without one are solved."""
+        slot = _slots(rows, _side(slip))
+        if not slot.size:
+            ellipse = cast(Ellipse, patch)  # the correction is made for ellipses only
+            return solve_patch(ellipse, Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings)
+        missing = np.flatnonzero(~self.store.known[slot])
+        if missing.size:
+            given = patch.take(missing), slip.take(missing), friction[missing], rows[missing]
+            self._elements(*given, forces=not self.trusts_table)
+        return self.store.get(slot)
+
+    def shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the tractions over their bound between the elements, and those of elements of twice the size."""
+        found = self.solution(patch, slip, friction, rows)
+        height, _ = unit_cells(self.settings.elements, self.settings.elements)
+        return subgrid.both_shares(height, found.traction, found.slip, found.own_slip)
+
+    def works(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
+        """Return the dissipation and the work of the pressures at the given slip, arrays (m,)."""
+        found = self.solution(patch, slip, friction, rows)
+        if self.settings.profile_slip:
+            return found.works
+        r = self.law(patch, slip, friction, rows)
+        work = found.pressure_work - slip.longitudinal * r.driving_force - slip.spin * r.spin_moment
+        lost = 0.0 if self.trusts_table else found.energy_residual
+        return Works(work * (1.0 + lost), found.pressure_work)
+
+    def forget(self, rows: np.ndarray) -> None:
+        """Drop the solutions of the rollers `rows`, so that their patches are solved again when asked for."""
+        self.store.known[np.concatenate([2 * rows, 2 * rows + 1])] = False
+
+    def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the larger residual of the friction law in both patches of n rollers, and whether it is met, (n,)."""
+        residual, converged = self.store.state()
+        return residual.reshape(n, 2).max(axis=1), np.logical_and.reduce(converged.reshape(n, 2), axis=1)
+
+
+def _side(slip: Slip) -> np.ndarray:
+    return (slip.sine < 0).astype(int)
+
+
+def _slots(rows: np.ndarray, side: np.ndarray) -> np.ndarray:
+    return 2 * rows + side
+
+
+def _columns(r: Resultants) -> np.ndarray:
+    return np.stack([r.lateral_force, r.driving_force, r.spin_moment], axis=1)
+
+
+def _scale(patch: Patch, friction: np.ndarray) -> np.ndarray:
+    """Return mu F_N, mu F_N and mu F_N c of patches, (m, 3); 1e-300 where there is no friction."""
+    capacity = np.maximum(friction * patch.normal_force, 1e-300)
+    c = np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)
+    return capacity[:, None] * np.stack([np.ones_like(c), np.ones_like(c), c], axis=1)

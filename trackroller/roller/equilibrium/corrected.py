@@ -1,0 +1,102 @@
+"""Equilibrium under a contact law that is expensive, by a cheap one that is corrected where the rollers balance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+
+import numpy as np
+
+from trackroller.contact.common import Resultants
+from trackroller.roller.equilibrium.newton import Bounds, digits_of_forces, newton_polish
+from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
+from trackroller.roller.equilibrium.solution import ROLLING, Equilibrium, solve_equilibrium
+
+ROUNDS = 6  # of correction at most
+# Largest change of a force over mu F_N by a correction after which the balance is final. The next correction would
+# change the forces by a small share of it.
+SETTLED = 2e-3
+
+_ARRAYS = tuple(f.name for f in fields(Loads) if f.type == "np.ndarray")
+# rollers (m,) and their equilibrium -> largest change of the law there (m,)
+Correct = Callable[[np.ndarray, Equilibrium], np.ndarray]
+
+
+def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Equilibrium, np.ndarray]:
+    """Find the equilibrium of n rollers under a law that is corrected on the way.
+
+    Parameters
+    ----------
+    loads : Loads
+        Applied loads, friction and geometry, arrays (n,).
+    law : ContactLaw
+        The cheap law with the corrections so far.
+    correct : Correct
+        Corrects the law at the balance of the given rollers, and returns by how much the forces change there over
+        mu F_N.
+
+    Returns
+    -------
+    The equilibrium, and the rollers (m,) that have not settled.
+    """
+    found = solve_equilibrium(loads, law)
+    rows = _rolling(found, loads, np.arange(loads.friction.size))
+    for _ in range(ROUNDS):
+        if not rows.size:
+            break
+        change = correct(rows, found)
+        moved = rows[~(change == 0.0)]
+        if moved.size:
+            found = balance_again(loads, law, moved, found)
+        rows = _rolling(found, loads, rows[~(change <= SETTLED)])
+    return found, rows
+
+
+def _rolling(found: Equilibrium, loads: Loads, rows: np.ndarray) -> np.ndarray:
+    return rows[(found.regime[rows] == ROLLING) & (loads.friction[rows] > 0.0)]
+
+
+def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, found: Equilibrium) -> Equilibrium:
+    """Return `found` with the rollers `rows` balanced again, from where they were."""
+    roller = Roller(loads, law, rows)
+    bounds = Bounds(roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP))
+    near = newton_polish(roller, roller.w_of(found.shift[rows]), found.normal_force[rows].T.copy(), bounds)
+    with np.errstate(invalid="ignore"):
+        good = (near.residual <= loads.converged) & ~roller.lifts(near.normal)
+        good &= roller.wedged(near.normal, near.forces)
+    again = Equilibrium(
+        np.full(rows.size, ROLLING, np.int8),
+        near.residual <= loads.converged,
+        np.fmax(near.residual, digits_of_forces(roller, near)),
+        roller.grips(near.normal, near.forces),
+        roller.shift(near.w),
+        near.normal.T,
+        Resultants(*near.forces.transpose(0, 2, 1)),
+    )
+    found = merged(found, rows[good], again, np.flatnonzero(good))
+    lost = rows[~good]
+    return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size)) if lost.size else found
+
+
+def solve_some(loads: Loads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
+    """Return the equilibrium of the rollers `rows` alone, found from the beginning; arrays (m,)."""
+
+    def numbered(ellipse, slip, friction, places, fine):
+        return law(ellipse, slip, friction, rows[places], fine)
+
+    arrays = {name: getattr(loads, name)[rows] for name in _ARRAYS}
+    return solve_equilibrium(replace(loads, shape=loads.shape.take(rows), **arrays), numbered)
+
+
+def merged(found: Equilibrium, rows: np.ndarray, other: Equilibrium, places: np.ndarray) -> Equilibrium:
+    """Return `found` with the rollers `rows` taken from the `places` of `other`."""
+
+    def put(old: np.ndarray, new: np.ndarray) -> np.ndarray:
+        out = old.copy()
+        out[rows] = new[places]
+        return out
+
+    names = [f.name for f in fields(Equilibrium) if f.name != "forces"]
+    values = {name: put(getattr(found, name), getattr(other, name)) for name in names}
+    parts = (put(getattr(found.forces, f.name), getattr(other.forces, f.name)) for f in fields(Resultants))
+    return Equilibrium(**values, forces=Resultants(*parts))

@@ -1,0 +1,45 @@
+"""The stage that balances the rollers."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from trackroller.contact.common import Resultants, Slip
+from trackroller.contact.protocol import Patch
+from trackroller.roller import equilibrium as eq
+from trackroller.roller.equilibrium.corrected import merged, solve_corrected, solve_some
+from trackroller.roller.stages.scene import Scene
+
+
+def balance(scene: Scene) -> eq.Equilibrium:
+    """Return the equilibrium of the cases of a scene, arrays (n,).
+
+    A model that offers a corrected law is solved with it. Rollers that do not settle so are solved with the law itself.
+    """
+    correction = scene.model.correction
+    if correction is None:
+        return eq.solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
+
+    def law(patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+        return correction.law(patch, scene.kinematics(slip, rows), friction, rows, fine)
+
+    def correct(rows: np.ndarray, found: eq.Equilibrium) -> np.ndarray:
+        wanted = np.zeros(scene.n, bool)
+        wanted[rows] = True
+        asked = np.flatnonzero(scene.mirror.asked(np.tile(wanted, 2)))
+        patch, slip = scene.contacts(found)
+        number = asked % scene.n
+        change = correction.solve(patch.take(asked), slip.take(asked), scene.loads.friction[number], number)
+        largest = np.zeros(scene.n)
+        np.maximum.at(largest, number, change)  # NaN stays NaN
+        return largest[rows]
+
+    loads = replace(scene.loads, difference_step=correction.difference_step, converged=correction.residual)
+    found, unsettled = solve_corrected(loads, scene.mirror.law(law), correct)
+    if unsettled.size:
+        correction.forget(unsettled)
+        own = solve_some(scene.loads, scene.mirror.law(scene.law), unsettled)
+        found = merged(found, unsettled, own, np.arange(unsettled.size))
+    return found
