@@ -52,8 +52,22 @@ def random_study(seed: int) -> xr.Dataset:
     if "validity" in ds:
         masks = [1 << i for i in range(len(FLAGS))]
         ds["validity"].attrs = {"flag_meanings": " ".join(FLAGS), "flag_masks": masks}
-    ds.attrs["study"] = yaml.safe_dump({"name": "random", "design": kind, "factors": {k: {} for k in columns}})
+    study = {"name": "random", "design": kind, "factors": {k: {} for k in columns}}
+    if limits := _constraints(columns, results, np.random.default_rng([seed, 1])):
+        study["constraints"] = limits
+    ds.attrs["study"] = yaml.safe_dump(study)
     return ds
+
+
+def _constraints(columns: dict[str, np.ndarray], results: dict, rng: np.random.Generator) -> list[str]:
+    """Constraints on a factor, a list, a result or the regime, each as 'name operator value'; often none."""
+    limits = ["regime != lift_off"] if "regime" in results else []
+    for name, values in {**columns, "roller_peak_stress": results["peak_stress"][1][:, :, 0].max(axis=1)}.items():
+        if name in ("material_pair", "motor_force"):
+            limits.append(f"{name} != {values[rng.integers(len(values))].item()!r}")
+        elif np.isfinite(values).all():
+            limits.append(f"{name} {rng.choice(['<', '>='])} {np.quantile(values, rng.uniform(0.2, 0.8)):.4g}")
+    return [str(v) for v in rng.permutation(limits)[: rng.integers(0, 3)]] if rng.random() < 0.3 else []
 
 
 def _design(kind: str, rng: np.random.Generator) -> tuple[dict[str, np.ndarray], list[int]]:

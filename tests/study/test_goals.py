@@ -82,7 +82,7 @@ def solved(data=LHS, regime=None, **fake):
         (GOALS | {"constraints": ["max_pressure + 2"]}, ["constraints", "comparison"]),
         (GOALS | {"constraints": "slip < 1"}, ["constraints", "list"]),
         (GOALS | {"constraints": ["().__class__ == 1"]}, ["constraints", "not allowed"]),
-        ({"constraints": ["slip < 1"]}, ["constraints", "pareto"]),
+        ({"constraints": ["slop < 1"]}, ["constraints", "slip"]),
     ],
 )
 def test_wrong_goals_of_a_study_are_refused_with_field_and_remedy(data, parts):
@@ -168,6 +168,32 @@ def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
     assert "constant" in sens["note"].sel(output="friction_power").item()
     assert np.isnan(sens["delta"].sel(output="friction_power")).all()
     assert "No index can be given" in words.tornado(sens, "friction_power").text
+
+
+def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set():
+    """Power over 12 W only where life depends on velocity alone; below, the axial force decides."""
+    ds = solved(
+        LHS | {"constraints": ["friction_power < 12", "regime != full_slip"], "analysis": {"keep": ["rolling"]}},
+        lambda x, v: x > 0.9,
+        roller_life_hours=lambda x, v: np.where(v < 1.2, 10 ** (x + 0.01 * v), 10 ** (8 + v)),
+        friction_power=lambda x, v: 10 * v,
+    )
+    free = ds.copy()
+    free.attrs = {**ds.attrs, "study": parse_study(LHS).merged()}
+    kept = (ds["velocity"].values < 1.2) & (ds["axial_force"].values <= 0.9)
+    index = {}
+    for name, one in (("limited", ds), ("free", free)):
+        sens = analyse_dataset(one, ["roller_life_hours"])
+        index[name] = float(sens["first"].sel(output="roller_life_hours", factor="axial_force"))
+        if name == "limited":
+            assert f"{kept.sum()} of 400 rows used" in sens["note"].values[0]
+            assert f"{360 - kept.sum()} outside the constraints" in sens["note"].values[0]
+    assert index["limited"] > 0.9 > 0.3 > index["free"]
+    view = StudyView.of(ds)
+    np.testing.assert_array_equal(view.valid, kept)
+    told = dict(contents(ds)["summary"])
+    assert f"{kept.sum()} of the 360 meet `friction_power < 12`" in told["Valid designs"][0].text
+    assert told["Best"][0].values["life"] == ds["roller_life_hours"].values[kept].max() < 1e3
 
 
 def test_zero_and_infinite_lives_are_left_out_and_counted():

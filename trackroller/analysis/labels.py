@@ -40,28 +40,30 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
     return text
 
 
-def treatment(regime: np.ndarray, keep: Iterable[str]) -> str:
+def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | None = None) -> str:
     """Return a sentence on the treatment of the regimes.
 
     Parameters
     ----------
     regime : number of the regime of each case, shape (n,)
     keep : names of the regimes whose cases were used
+    allowed : whether each case meets the constraints of the study, shape (n,)
 
     Returns
     -------
-    How many cases each regime has, and which regimes were left out.
+    How many cases each regime has, which regimes were left out, and how many cases miss a constraint.
     """
     counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
     words = dict(zip(REGIMES, REGIME_LABELS, strict=True))
     text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
     left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
-    if not left:
-        return f"{text}; no row left out for its regime"
-    return (
-        f"{text}; {' and '.join(left)} rows left out of every index and never filled in; "
-        "their occurrence is analysed as an output of its own"
-    )
+    if left:
+        text += f"; {' and '.join(left)} rows left out of every index and never filled in; "
+        text += "their occurrence is analysed as an output of its own"
+    else:
+        text += "; no row left out for its regime"
+    missed = 0 if allowed is None else int((~allowed).sum())
+    return text + (f"; {missed} rows miss a constraint and are left out of every index" if missed else "")
 
 
 def correlated(design: SampledDesign) -> str:

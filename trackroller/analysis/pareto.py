@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.limits import column, meeting
 from trackroller.analysis.restore import design_of
-from trackroller.errors import InputError, nearest
-from trackroller.numerics.expressions import condition
-from trackroller.parameters import EXACTNESS, MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.errors import InputError
+from trackroller.parameters import EXACTNESS, REGIMES
 from trackroller.study.design.factors import label
 from trackroller.study.design.sampling import SampledDesign, current_name
 from trackroller.study.goals import names_in
-from trackroller.study.outputs import case_dims, flat, outputs, read_study, regimes
+from trackroller.study.outputs import case_dims, read_study, regimes
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.ndarray | None = None) -> np.ndarray:
@@ -106,15 +106,16 @@ def pareto(
     design = design_of(ds)
     dims = case_dims(ds, design.factors)
     regime = regimes(ds, dims)
-    columns = {name: _column(ds, design, name, dims) for name in dict.fromkeys([*objectives, *sorted(wanted)])}
-    values = {name: column[0] for name, column in columns.items()}
+    names = dict.fromkeys([*objectives, *sorted(wanted)])
+    columns = {name: column(ds, dims, name, design.columns) for name in names}
+    values = {name: found[0] for name, found in columns.items()}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
     table = np.stack([np.asarray(values[n], dtype=float) for n in objectives], axis=1)
     allowed, excluded = _allowed(table, values, constraints, own, kept)
     optimal = pareto_mask(table, objectives.values(), allowed)
     shown = {n: c for n, c in design.columns.items() if not (model and n == "contact_model")}
-    data: dict[str, Any] = {name: ("row", _labels(column)[allowed]) for name, column in shown.items()}
+    data: dict[str, Any] = {name: ("row", _labels(values)[allowed]) for name, values in shown.items()}
     for name, (value, units, long_name) in columns.items():
         data[name] = ("row", value[allowed], {"units": units, "long_name": long_name})
     data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
@@ -140,8 +141,7 @@ def _allowed(
     excluded = {}
     # constraints come first, so that a row without a value counts for them
     checks = {"regime": kept}
-    known = {**values, **{name: name for name in REGIMES}}
-    checks |= {text: np.broadcast_to(condition(text, known), own.shape) for text in constraints}
+    checks |= meeting(constraints, values, own.size)
     checks["an undefined goal"] = ~np.isnan(table).any(axis=1)
     for reason, good in checks.items():
         excluded[reason] = int((allowed & ~good).sum())
@@ -206,32 +206,3 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
         if variable in ds and len(found) == 1:
             found[name] = "min"
     return found if len(found) == 2 else {}
-
-
-def _column(ds: xr.Dataset, design: SampledDesign, name: str, dims: tuple[str, ...]) -> tuple[np.ndarray, str, str]:
-    """Return values (n,), units and name of a factor, a parameter, the regime or an output in every regime."""
-    if name == "regime":
-        return np.array(REGIMES, dtype=object)[regimes(ds, dims)], "", "regime"
-    if name in design.columns:
-        values = _labels(design.columns[name])
-    elif name in PARAMETERS or name in MATERIAL_FIELDS:
-        values = flat(ds, name, dims) if name in ds.variables and ds[name].ndim else _constant(ds, name, design.size)
-    else:
-        try:
-            found = outputs(ds, design.factors, [name], REGIMES[:3], natural=[name], unlimited=True)[0]
-        except InputError as error:
-            close = nearest(name, REGIMES)
-            remedy = f"Did you mean '{close}'?" if close else error.remedy
-            raise InputError("pareto or constraints", name, error.allowed, remedy) from None
-        return found.values, found.units, found.long_name
-    known = PARAMETERS.get(name)
-    return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
-
-
-def _constant(ds: xr.Dataset, name: str, rows: int) -> np.ndarray:
-    """Return a parameter that is the same in all cases, from the result or else from its study file."""
-    if name in ds.variables:
-        return np.full(rows, ds[name].item())
-    base = read_study(ds).get("base", {})
-    value = base.get(name, PARAMETERS[name].default if name in PARAMETERS else "")
-    return np.full(rows, np.nan if value is None else value)

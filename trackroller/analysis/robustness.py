@@ -16,6 +16,7 @@ import xarray as xr
 from scipy import stats
 from scipy.optimize import brentq
 
+from trackroller.analysis.limits import allowed_cases
 from trackroller.damage.fatigue import DECADES, scatter_ranges, woehler_exponent
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
@@ -68,7 +69,8 @@ def robustness(
     dims = case_dims(ds, design.factors)
     regime = regimes(ds, dims).reshape(shape)
     wanted = list(names) if names is not None else default_names(ds, design.factors, dims)
-    columns = outputs(ds, design.factors, wanted, natural=wanted, unlimited=True)
+    met = allowed_cases(ds, dims, design.columns)
+    columns = outputs(ds, design.factors, wanted, natural=wanted, unlimited=True, allowed=met)
     found = []
     for column in columns:
         body = "guide" if "guide" in column.name else "roller"

@@ -18,6 +18,7 @@ import xarray as xr
 from trackroller.analysis import convergence, indices
 from trackroller.analysis.givendata import MEASURES, firsts, given_data
 from trackroller.analysis.labels import RELIABLE, correlated, labelled, note, treatment
+from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.pairs import pairs
 from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import material_deviations, robustness
@@ -175,7 +176,9 @@ def analyse_dataset(
     how = Settings(seed, int(given.get("resamples", 300)), tuple(given.get("measures", MEASURES)))
     if design.method == "inner_outer":
         return robustness(ds, design, names, material_deviations(ds, given.get("material_scatter", False)))
-    columns = outputs(ds, design.factors, names, keep, natural, scale=scale or given.get("scale", ""))
+    dims = case_dims(ds, design.factors)
+    met = allowed_cases(ds, dims, design.columns)
+    columns = outputs(ds, design.factors, names, keep, natural, scale=scale or given.get("scale", ""), allowed=met)
     if not columns or not design.factors:
         raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
     found = [_METHODS[design.method](column.values, design, how) for column in columns]
@@ -193,7 +196,6 @@ def analyse_dataset(
         ("take_times", times, "factor on the samples after which the intervals are narrow enough"),
     ):
         result[name] = ("output", values, {"long_name": words} | ({} if values.dtype == object else {"units": "1"}))
-    regime = regimes(ds, case_dims(ds, design.factors))
     result.attrs = {
         **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
         "method": design.method,
@@ -203,7 +205,7 @@ def analyse_dataset(
         "bootstrap_seed": seed,
         "resamples": how.resamples,
         "interval": "95 %",
-        "treatment": treatment(regime, keep) + correlated(design),
+        "treatment": treatment(regimes(ds, dims), keep, met) + correlated(design),
         "study": ds.attrs.get("study", ""),
     }
     return result

@@ -28,8 +28,8 @@ OF_BODY = ("yield", "static", "deep_life", "half_space")  # flags that may hold 
 
 
 def valid_designs(view: StudyView) -> Sentence:
-    """Say how many designs roll, how many of these stay inside the model, and why the others do not."""
-    total, rolls, valid = len(view.table), int(view.rolling.sum()), int(view.valid.sum())
+    """Say how many designs roll, stay inside the model and meet the constraints, and why the others do not."""
+    total, rolls, inside, valid = len(view.table), *(int(m.sum()) for m in (view.rolling, view.inside, view.valid))
     lost = {REGIME_LABELS[c]: int((view.regime == c).sum()) for c in (1, 2, 3)}
     lost["not converged"] = int(((view.regime == 0) & ~view.rolling).sum())
     why = ", ".join(f"{count(n)} {words}" for words, n in lost.items() if n)
@@ -39,13 +39,17 @@ def valid_designs(view: StudyView) -> Sentence:
         text += "."
     elif not view.flags:
         text += "; the data set carries no validity flags."
-    elif valid == rolls:
+    elif inside == rolls:
         text += "; none of them leaves the range of the model."
     else:
-        kept = f"{count(valid)} of them stay" if valid else "none of them stays"
+        kept = f"{count(inside)} of them stay" if inside else "none of them stays"
         text += f"; {kept} inside the model: elsewhere {_reason_words(reasons)}."
-        text += f" All statements on life and stress use the {count(valid)}." if valid else ""
-    values = {"total": total, "rolling": rolls, "valid": valid, "lost": lost, "reasons": reasons}
+    if inside and view.met is not None:
+        told = listing([f"`{limit}`" for limit in view.study["constraints"]])
+        text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {told}."
+    if valid and valid < rolls:
+        text += f" All statements on life and stress use the {count(valid)}."
+    values = {"total": total, "rolling": rolls, "inside": inside, "valid": valid, "lost": lost, "reasons": reasons}
     return Sentence("valid", text, values, np.ones(total, dtype=bool))
 
 

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from trackroller.analysis.limits import allowed_cases
 from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.report.columns import INNER, any_with, base_values, case_columns, factor_names, flag_meanings
 from trackroller.report.numbers import SPOKEN, setting
@@ -42,6 +43,7 @@ class StudyView:
     flags : meaning of each validity flag; the order gives the bits of the columns `validity*`
     derived : factors that other parameters follow from
     study : the study file with its defaults
+    met : cases that meet the constraints of the study, shape (n,) bool; None without constraints
     """
 
     table: pd.DataFrame
@@ -52,6 +54,7 @@ class StudyView:
     flags: Mapping[str, str] = field(default_factory=dict)
     derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     study: Mapping[str, Any] = field(default_factory=dict)
+    met: np.ndarray | None = None
 
     @classmethod
     def of(cls, ds: xr.Dataset) -> StudyView:
@@ -71,7 +74,8 @@ class StudyView:
             for p in PARAMETERS
             if p in ds.variables and p in table and p not in names and table[p].nunique() > 1
         }
-        return cls(table, tuple(names), base, grid, dict(ds.attrs), flag_meanings(ds), derived, read_study(ds))
+        found = dict(ds.attrs), flag_meanings(ds), derived, read_study(ds), allowed_cases(ds, tuple(dims), names)
+        return cls(table, tuple(names), base, grid, *found)
 
     def levels(self, name: str, table: pd.DataFrame | None = None) -> list[Any]:
         """List the values of a factor.
@@ -177,13 +181,18 @@ class StudyView:
         return (self.regime == 0) & (self.column("converged", 1.0) == 1)
 
     @cached_property
-    def valid(self) -> np.ndarray:
+    def inside(self) -> np.ndarray:
         """Cases that roll, converged, and carry no flag of a design outside the model, shape (n,)."""
         outside = np.zeros(len(self.table), dtype=bool)
         for flag in OUTSIDE:
             if flag in self.flags:
                 outside |= self.flagged(flag)
         return self.rolling & ~outside
+
+    @cached_property
+    def valid(self) -> np.ndarray:
+        """Cases inside the model that meet the constraints of the study, shape (n,)."""
+        return self.inside if self.met is None else self.inside & self.met
 
     def has(self, *columns: str) -> bool:
         """Say whether these columns are there with at least one number in each."""

@@ -171,8 +171,6 @@ def _check_constraints(config: Any, factors: Mapping[str, Any], free: list[str])
         dummy: dict[str, Any] = dict.fromkeys(free, 1.0) | {name: "" for name in words[len(free) :]}
         dummy |= {name: "" for name, spec in factors.items() if not _numeric(spec)} | {name: name for name in REGIMES}
         expressions.condition(text, dummy)
-    if config.constraints and not config.pareto:
-        raise InputError("constraints", list(config.constraints), "limits of a Pareto set", "Add the key pareto.")
 
 
 def _numeric(spec: Mapping[str, Any]) -> bool:

@@ -167,9 +167,9 @@ def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
 
 
 def _usable(
-    ds: xr.Dataset, dims: tuple[str, ...], regime: np.ndarray, keep: tuple[str, ...]
+    ds: xr.Dataset, dims: tuple[str, ...], regime: np.ndarray, keep: tuple[str, ...], allowed: np.ndarray | None
 ) -> tuple[np.ndarray, dict[str, int]]:
-    """Return True for converged rows of the regimes to keep, and the number of other rows by reason."""
+    """Return True for converged, allowed rows of the regimes to keep, and the number of other rows by reason."""
     for name in keep:
         if name not in REGIMES:
             raise unknown_name("analysis.keep", name, REGIMES)
@@ -182,7 +182,12 @@ def _usable(
     converged = flat(ds, "converged", dims) != 0 if "converged" in ds else np.ones(len(regime), dtype=bool)
     if count := int((usable & ~converged).sum()):
         lost["not converged"] = count
-    return usable & converged, lost
+    usable &= converged
+    if allowed is not None:
+        if count := int((usable & ~allowed).sum()):
+            lost["outside the constraints"] = count
+        usable = usable & allowed
+    return usable, lost
 
 
 def _countable(
@@ -211,6 +216,7 @@ def outputs(
     natural: Iterable[str] = (),
     unlimited: bool = False,
     scale: str | Mapping[str, str] = "",
+    allowed: np.ndarray | None = None,
 ) -> list[Output]:
     """Return the columns to analyse.
 
@@ -230,6 +236,8 @@ def outputs(
         Keep infinite lives, for ranking, instead of counting them as unusable.
     scale : str or mapping
         "natural" or "log10", for all outputs or by output.
+    allowed : numpy.ndarray, optional
+        Rows that meet the constraints of the study, shape (n,). Other rows become NaN and are counted.
 
     Returns
     -------
@@ -248,7 +256,7 @@ def outputs(
         raise InputError("study", list(ds.sizes), "a dimension `case`, or one dimension a factor")
     keep = tuple(keep)
     regime = regimes(ds, dims)
-    usable, lost = _usable(ds, dims, regime, keep)
+    usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
     options, natural = _available(ds, factors, dims), set(natural)
     found = []
