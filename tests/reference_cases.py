@@ -4,6 +4,8 @@ import functools
 import json
 from pathlib import Path
 
+import xarray as xr
+
 import trackroller as tr
 
 DATA = Path(__file__).parent / "data"
@@ -18,3 +20,8 @@ def published_cases() -> list[dict]:
 def case_of(record: dict) -> tr.Case:
     """The `Case` of a record; JSON has no infinity, so it stands there as text."""
     return tr.Case.from_dict({k: float(v) if v == "inf" else v for k, v in record["case"].items()})
+
+
+def solve_sliding(*args, **options) -> xr.Dataset:
+    """Solve in full sliding, as published: quick, and independent of the default contact model."""
+    return tr.solve(*args, contact_model="sliding", **options)

@@ -15,6 +15,7 @@ factors:
   axial_force: {{linspace: [0, 60, {levels}]}}
   friction_coefficient: {{values: [0.1, 0.2]}}
 outputs: [{outputs}]
+contact_model: sliding
 chunk_size: {size}
 """
 

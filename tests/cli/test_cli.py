@@ -17,6 +17,7 @@ factors:
   axial_force: {values: [0, 20, 40]}
   friction_coefficient: {values: [0.1, 0.2]}
 outputs: [forces]
+contact_model: sliding
 """
 
 

@@ -18,6 +18,7 @@ factors:
   friction_coefficient: {values: [0.1, 0.2, 0.3]}
   axial_force: {values: [0, 15, 30]}
 outputs: [forces, contact, peak_stress, life]
+contact_model: sliding
 accuracy: preview
 """
 

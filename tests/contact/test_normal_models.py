@@ -8,6 +8,7 @@ from unittest import mock
 import numpy as np
 import pytest
 import xarray as xr
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.contact import kalker, sliding
@@ -165,7 +166,7 @@ def test_forces_stay_in_balance_on_an_uneven_profile_cut_by_its_edge():
     """Equations (7) and (9) hold, the pressures carry the load, an edge is told, and stress rises at it."""
     arcs = {"arcs": [{"radius": -7, "to": 0.1}, {"radius": -6.4}], "edge": {"outer": 0.25}}
     case = tr.Case(roller_profile=arcs, **LOADS)
-    ds = tr.solve(case, ("forces", "contact", "peak_stress", "tractions"), normal="halfspace")
+    ds = solve_sliding(case, ("forces", "contact", "peak_stress", "tractions"), normal="halfspace")
     s, c = math.sin(math.radians(30)), math.cos(math.radians(30))
     (n1, n2), (t1, t2) = ds.normal_force.values, ds.lateral_force.values
     assert c * (t1 + t2) + s * (n1 - n2) + case.axial_force == pytest.approx(0, abs=1e-5)
@@ -179,20 +180,20 @@ def test_forces_stay_in_balance_on_an_uneven_profile_cut_by_its_edge():
     np.testing.assert_allclose(ends, 0.25, atol=1e-9)
     bit = list(ds.validity.attrs["flag_meanings"].split()).index("conformal")
     assert int(ds.validity) & (1 << bit)
-    whole = tr.solve(tr.Case(**LOADS), ("contact", "peak_stress"), normal="halfspace")
+    whole = solve_sliding(tr.Case(**LOADS), ("contact", "peak_stress"), normal="halfspace")
     assert np.all(ds.max_pressure.values > whole.max_pressure.values)
     assert float(ds.error_estimate.max()) > 3 * float(whole.error_estimate.max())  # a sharp edge does not converge
 
 
 def test_full_slip_and_no_friction_work_on_solved_patches():
     frictionless = tr.Case(motor_force=0.0, friction_coefficient=0.0)
-    slips = tr.solve(tr.Case(motor_force=-500.0), ("forces", "contact", "peak_stress"), normal="halfspace")
-    rolls = tr.solve(frictionless, normal="halfspace")
+    slips = solve_sliding(tr.Case(motor_force=-500.0), ("forces", "contact", "peak_stress"), normal="halfspace")
+    rolls = solve_sliding(frictionless, normal="halfspace")
     assert int(slips.regime) == 1 and int(rolls.regime) == 0
-    expected = tr.solve(tr.Case(motor_force=-500.0), ("forces", "peak_stress"))
+    expected = solve_sliding(tr.Case(motor_force=-500.0), ("forces", "peak_stress"))
     np.testing.assert_allclose(slips.driving_force, expected.driving_force, rtol=1e-9)
     np.testing.assert_allclose(slips.peak_stress, expected.peak_stress, rtol=5e-3)
-    np.testing.assert_allclose(rolls.peak_stress, tr.solve(frictionless).peak_stress, rtol=6e-3)
+    np.testing.assert_allclose(rolls.peak_stress, solve_sliding(frictionless).peak_stress, rtol=6e-3)
 
 
 def circle_points(radius, n=81):
@@ -204,14 +205,14 @@ def test_a_drawn_circle_gives_what_the_circle_gives_through_every_entrance(tmp_p
     monkeypatch.chdir(tmp_path)
     points = circle_points(6.0)
     (tmp_path / "guide.csv").write_text("\n".join(f"{x!r}; {z!r}" for x, z in points), encoding="utf-8")
-    circle = tr.solve(tr.Case(**LOADS), "contact", normal="halfspace")
+    circle = solve_sliding(tr.Case(**LOADS), "contact", normal="halfspace")
     cases = [tr.Case(guide_profile={"points": points}, **LOADS), {"guide_profile": {"file": "guide.csv"}, **LOADS}]
-    drawn = tr.solve(cases, "contact", normal="halfspace")
+    drawn = solve_sliding(cases, "contact", normal="halfspace")
     text = json.dumps({"points": points, "frame": "section"})
     design = xr.Dataset(
         {"guide_profile": ("case", np.array([text], object)), **{k: ("case", [v]) for k, v in LOADS.items()}}
     )
-    by_design = tr.solve(design, "contact", normal="halfspace")
+    by_design = solve_sliding(design, "contact", normal="halfspace")
     for name in ("max_pressure", "patch_area", "semi_axis_lateral"):
         np.testing.assert_allclose(drawn[name][0], circle[name], rtol=2e-3, err_msg=name)
         np.testing.assert_array_equal(drawn[name][1], drawn[name][0])
@@ -222,9 +223,9 @@ def test_batches_give_the_same_bits_however_they_are_cut():
     profiles = [None, {"arc": -7, "edge": {"outer": 0.3}}]
     cases = [tr.Case(roller_profile=p, axial_force=a, motor_force=0.0) for p in profiles for a in (0.0, 25.0)]
     outputs = ("forces", "contact")
-    together = tr.solve(cases, outputs, normal="halfspace")
+    together = solve_sliding(cases, outputs, normal="halfspace")
     for i in (3, 1):
-        alone = tr.solve([cases[i]], outputs, normal="halfspace")
+        alone = solve_sliding([cases[i]], outputs, normal="halfspace")
         for name in ("lateral_force", "max_pressure", "patch_area", "rolling_radius_shift"):
             np.testing.assert_array_equal(alone[name][0], together[name][i], err_msg=name)
 
@@ -252,12 +253,12 @@ accuracy: preview
 
 def test_options_that_do_not_fit_are_refused():
     with pytest.raises(tr.InputError, match="halfspace"):
-        tr.solve(tr.Case(**PARABOLAS))
+        solve_sliding(tr.Case(**PARABOLAS))
     assert Options(normal="halfspace").normal == "halfspace"
 
 
 def test_subsurface_fields_hold_the_peak():
-    ds = tr.solve(tr.Case(**LOADS), ("peak_stress", "subsurface"), normal="halfspace", accuracy="preview")
+    ds = solve_sliding(tr.Case(**LOADS), ("peak_stress", "subsurface"), normal="halfspace", accuracy="preview")
     for field in (ds.von_mises_xz.max(("section_z", "section_x")), ds.von_mises_yz.max(("section_z", "section_y"))):
         np.testing.assert_allclose(field, ds.peak_stress, rtol=0.04)
 
@@ -286,8 +287,8 @@ def test_peaks_of_slender_sliding_patches_keep_within_one_per_cent(guide, roller
         "axis_distance": 40.0,
     }
     drawn = {"guide_profile": {"parabola": guide}, "roller_profile": {"parabola": roller}}
-    hertz = tr.solve(tr.Case(**loads, **shape), ("contact", "peak_stress"), accuracy="reference")
-    grid = tr.solve(tr.Case(**loads, **shape, **drawn), ("contact", "peak_stress"), normal="halfspace")
+    hertz = solve_sliding(tr.Case(**loads, **shape), ("contact", "peak_stress"), accuracy="reference")
+    grid = solve_sliding(tr.Case(**loads, **shape, **drawn), ("contact", "peak_stress"), normal="halfspace")
     ratio = float((hertz.semi_axis_lateral / hertz.semi_axis_rolling)[0])
     assert ratio < 0.25 or ratio > 8
     np.testing.assert_allclose(grid.peak_stress, hertz.peak_stress, rtol=1e-2)
@@ -354,7 +355,7 @@ def test_unlike_and_like_materials_in_one_batch_keep_their_digits():
 def test_the_peak_below_a_groove_edge_is_found_and_said_to_be_unknown():
     """The edge cuts the patch of contact 2: its pressure is singular there, and so is the stress."""
     cut = tr.Case(motor_force=0, friction_coefficient=0.1, roller_profile={"arc": -7, "edge": {"outer": 0.3}})
-    ds = tr.solve(cut, normal="halfspace", outputs=("peak_stress", "tractions"))
+    ds = solve_sliding(cut, normal="halfspace", outputs=("peak_stress", "tractions"))
     peak = ds.peak_stress.sel(contact=2, body="roller")
     t = ds.sel(contact=2)
     x, y = t.patch_x.values, t.patch_y.values
@@ -376,7 +377,7 @@ def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
     drawn = {"points": np.column_stack([x, waves]).tolist()}
     case = tr.Case(motor_force=0, friction_coefficient=0.1, guide_profile=drawn)
     rough, fine = (
-        tr.solve(case, normal="halfspace", accuracy=a, outputs=("contact", "peak_stress", "tractions"))
+        solve_sliding(case, normal="halfspace", accuracy=a, outputs=("contact", "peak_stress", "tractions"))
         for a in ("standard", "reference")
     )
     np.testing.assert_allclose(rough.pressure.max(("y", "x")), rough.max_pressure, rtol=0.05)
@@ -387,8 +388,8 @@ def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
 def test_a_flat_pressure_is_not_stopped_by_the_bound_of_an_ellipse():
     """`stop_if` bounds the peak below a solved pressure by points of this pressure, not of a Hertzian ellipse."""
     flat = tr.Case(guide_profile={"parabola": 6.0, "edge": {"inner": 0.15, "outer": 0.15}}, friction_coefficient=0.0)
-    stopped = lambda limit: tr.solve(flat, ("peak_stress",), normal="halfspace", stop_if=f"peak_stress > {limit}")  # noqa: E731
-    peak = float(tr.solve(flat, ("peak_stress",), normal="halfspace").peak_stress.max())
+    stopped = lambda limit: solve_sliding(flat, ("peak_stress",), normal="halfspace", stop_if=f"peak_stress > {limit}")  # noqa: E731
+    peak = float(solve_sliding(flat, ("peak_stress",), normal="halfspace").peak_stress.max())
     assert not bool(stopped(1.02 * peak).stopped)
     assert bool(stopped(0.3 * peak).stopped)
 
@@ -396,7 +397,7 @@ def test_a_flat_pressure_is_not_stopped_by_the_bound_of_an_ellipse():
 def test_an_offset_pressure_tilts_the_roller():
     """F_N x_p of an off-centre pressure adds to the tilting moment, eqs (13), (14)."""
     case = tr.Case(guide_profile={"parabola": 6.0, "edge": {"outer": 0.05}}, friction_coefficient=0.2)
-    ds = tr.solve(case, ("forces", "contact"), normal="halfspace", accuracy="preview")
+    ds = solve_sliding(case, ("forces", "contact"), normal="halfspace", accuracy="preview")
     alpha, reach = math.radians(30), 21.75
     (n_1, n_2), (t_1, t_2) = ds.normal_force.values, ds.lateral_force.values
     offset = float((ds.normal_force * ds.pressure_centre).sum())

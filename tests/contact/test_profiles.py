@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.contact.cross_sections import arcs, drawn, noise_of, parabola, smoothed, with_edges
@@ -172,8 +173,8 @@ def test_a_wrong_profile_is_refused_by_name(mapping, words):
 def test_a_curve_without_the_contacts_inclination_is_refused():
     flat = [[float(x), 5.0 - 0.001 * x * x] for x in np.linspace(-4, 4, 41)]
     with pytest.raises(tr.InputError, match=r"guide_profile.*30 deg"):
-        tr.solve(tr.Case(guide_profile={"points": flat}), normal="halfspace", outputs="forces")
-    rows = tr.solve(
+        solve_sliding(tr.Case(guide_profile={"points": flat}), normal="halfspace", outputs="forces")
+    rows = solve_sliding(
         [tr.Case(contact_angle=a, guide_profile={"points": circle_points(6.0, high=3.5)}) for a in (50.0, 30.0)],
         normal="halfspace",
         outputs="forces",
@@ -181,7 +182,7 @@ def test_a_curve_without_the_contacts_inclination_is_refused():
     )
     assert rows.regime.values.tolist() == [3, 0] and np.isnan(rows.normal_force[0]).all()  # one of many: a failed row
     with pytest.raises(tr.InputError, match="distance of the contacts"):
-        tr.solve(tr.Case(roller_profile={"arc": -7, "width": 5}), normal="halfspace", outputs="forces")
+        solve_sliding(tr.Case(roller_profile={"arc": -7, "width": 5}), normal="halfspace", outputs="forces")
 
 
 def test_files_are_read_into_points(tmp_path, monkeypatch):
@@ -223,11 +224,13 @@ def test_points_in_other_units_are_refused_in_both_frames(factor):
     """Micrometres, metres, inches: the contact would lie elsewhere than the nominal geometry says, or nowhere."""
     scaled = (np.array(circle_points(6.0)) * factor).tolist()
     with pytest.raises(tr.InputError, match=r"guide_profile.*mm"):
-        tr.solve(tr.Case(guide_profile={"points": scaled}), normal="halfspace", outputs="forces")
+        solve_sliding(tr.Case(guide_profile={"points": scaled}), normal="halfspace", outputs="forces")
     near = (np.array([[u, -u * u / 14] for u in np.linspace(-1, 1, 41)]) * factor).tolist()
     if factor != 1 / 25.4:  # a narrow piece might be meant
         with pytest.raises(tr.InputError, match=r"roller_profile.*mm"):
-            tr.solve(tr.Case(roller_profile={"points": near, "frame": "contact"}), normal="halfspace", outputs="forces")
+            solve_sliding(
+                tr.Case(roller_profile={"points": near, "frame": "contact"}), normal="halfspace", outputs="forces"
+            )
 
 
 @pytest.mark.parametrize("body", ["guide_profile", "roller_profile"])
@@ -235,32 +238,32 @@ def test_heights_in_micrometres_are_refused_where_x_is_in_mm(body):
     """Nothing but a speck of such a curve is flat enough to bear."""
     curve = [[u, -u * u / 14 * 1000] for u in np.linspace(-1, 1, 41).tolist()]
     with pytest.raises(tr.InputError, match=rf"{body}.*25 deg.*x and z in mm"):
-        tr.solve(tr.Case(**{body: {"points": curve, "frame": "contact"}}), normal="halfspace", outputs="forces")
+        solve_sliding(tr.Case(**{body: {"points": curve, "frame": "contact"}}), normal="halfspace", outputs="forces")
 
 
 @pytest.mark.parametrize("groove", [{"arc": -5.9}, {"arcs": [{"radius": -7, "to": 0.4}, {"radius": -5.5}]}])
 def test_a_groove_that_touches_far_from_the_nominal_contact_is_refused(groove):
     """Tighter than the guide it rides on the rim; a hollow worn beside the contact is no such thing."""
     with pytest.raises(tr.InputError, match=r"roller_profile.*outward of the nominal contact.*lever arms"):
-        tr.solve(tr.Case(roller_profile=groove), normal="halfspace", outputs="forces")
+        solve_sliding(tr.Case(roller_profile=groove), normal="halfspace", outputs="forces")
 
 
 def test_smoothing_that_moves_the_contact_away_is_blamed_itself():
     points = {"points": circle_points(6.0), "smooth": 2.0}
     with pytest.raises(tr.InputError, match=r"guide_profile\.smooth = 2\.0.*inclined by.*30 deg.*standard deviation"):
-        tr.solve(tr.Case(guide_profile=points), normal="halfspace", outputs="forces")
+        solve_sliding(tr.Case(guide_profile=points), normal="halfspace", outputs="forces")
     with pytest.raises(tr.InputError, match=r"overlap.*smooth less"):
         wide = [[x, math.sqrt(36 - x * x)] for x in np.linspace(-4.5, 4.5, 181).tolist()]
-        tr.solve(tr.Case(guide_profile={"points": wide, "smooth": 0.1}), normal="halfspace", outputs="forces")
+        solve_sliding(tr.Case(guide_profile={"points": wide, "smooth": 0.1}), normal="halfspace", outputs="forces")
 
 
 def test_a_curve_upside_down_or_on_one_side_only_says_so():
     down = [[x, -z] for x, z in circle_points(6.0)]
     with pytest.raises(tr.InputError, match="other way round"):
-        tr.solve(tr.Case(guide_profile={"points": down}), normal="halfspace", outputs="forces")
+        solve_sliding(tr.Case(guide_profile={"points": down}), normal="halfspace", outputs="forces")
     left = [row for row in circle_points(6.0) if row[0] < 0]
     with pytest.raises(tr.InputError, match="x >= 0"):
-        tr.solve([tr.Case(guide_profile={"points": left})], normal="halfspace", outputs="forces")
+        solve_sliding([tr.Case(guide_profile={"points": left})], normal="halfspace", outputs="forces")
 
 
 def test_order_duplicates_and_gaps_are_named_by_row(tmp_path, monkeypatch):
@@ -285,7 +288,7 @@ def test_coarse_and_uneven_points_give_the_circle():
     x = np.sort(np.random.default_rng(1).uniform(-4.2, 4.2, 120))
     uneven = np.stack([x, np.sqrt(36 - x * x)], axis=1).tolist()
     told = [None, {"points": circle_points(6.0, n=20)}, {"points": uneven}]
-    ds = tr.solve([tr.Case(guide_profile=p) for p in told], "contact", normal="halfspace", accuracy="preview")
+    ds = solve_sliding([tr.Case(guide_profile=p) for p in told], "contact", normal="halfspace", accuracy="preview")
     assert np.all(ds.regime == 0)
     np.testing.assert_allclose(ds.max_pressure[1:], ds.max_pressure[:1].values.repeat(2, 0), rtol=1e-2)
 

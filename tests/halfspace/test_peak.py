@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from reference_cases import case_of, published_cases
+from reference_cases import case_of, published_cases, solve_sliding
 
 import trackroller as tr
 from trackroller.contact.common import Ellipse, Slip
@@ -104,7 +104,7 @@ def test_surface_is_the_limit_of_depth():
 def test_peaks_match_the_reference_maxima():
     """True maxima over the closed half-space within 0.25 % (the reference claims about 0.05 % for itself)."""
     records = [c for c in published_cases() if c.get("exact_peak")]
-    ds = tr.solve([case_of(c) for c in records])
+    ds = solve_sliding([case_of(c) for c in records])
     for i, record in enumerate(records):
         for body in ("roller", "guide"):
             exact = [p["peak"] for p in record["exact_peak"][body]]
@@ -114,7 +114,7 @@ def test_peaks_match_the_reference_maxima():
 def test_published_peaks_where_they_lie_below_the_surface():
     """With the published options the published peaks come within 0.5 % where they are below the surface."""
     records = [c for c in published_cases() if c.get("published") and not c["axes_swapped_in_published_program"]]
-    ds = tr.solve([case_of(c) for c in records], hertz="published", stress_bodies="published")
+    ds = solve_sliding([case_of(c) for c in records], hertz="published", stress_bodies="published")
     compared = 0
     for i, record in enumerate(records):
         for j in (0, 1):
@@ -172,7 +172,7 @@ def random_cases(n, seed=3):
 def test_error_estimate_covers_the_error():
     """`standard` lies within 0.2 % of `reference` and within its own estimate in nearly all of a random sample."""
     cases = random_cases(120)
-    a, b = tr.solve(cases), tr.solve(cases, accuracy="reference")
+    a, b = solve_sliding(cases), solve_sliding(cases, accuracy="reference")
     sound = ((a.validity & 8) == 0).values[:, None, None] & np.isfinite(b.peak_stress.values)
     error = np.abs(a.peak_stress / b.peak_stress - 1).values[sound]
     estimate = (a.error_estimate + b.error_estimate).values[sound]
@@ -183,17 +183,17 @@ def test_error_estimate_covers_the_error():
 def test_accuracy_is_a_ladder():
     """preview, standard and reference err less and less against a still finer search."""
     cases = random_cases(24, seed=8)
-    peaks = {name: tr.solve(cases, accuracy=name).peak_stress for name in ("preview", "standard", "reference")}
+    peaks = {name: solve_sliding(cases, accuracy=name).peak_stress for name in ("preview", "standard", "reference")}
     off = [float(np.nanmedian(np.abs(peaks[n] / peaks["reference"] - 1))) for n in ("preview", "standard")]
     assert off[1] < off[0] < 0.01
-    assert tr.solve(cases[:1], accuracy=1e-3).attrs["accuracy"] == "0.001"
+    assert solve_sliding(cases[:1], accuracy=1e-3).attrs["accuracy"] == "0.001"
 
 
 def test_friction_brings_the_peak_to_the_surface():
     """Tendencies: below the surface without friction, on it with much; more load, more stress, less life."""
-    ds = tr.solve([tr.Case(friction_coefficient=mu, motor_force=0) for mu in (0.0, 0.1, 0.5)])
+    ds = solve_sliding([tr.Case(friction_coefficient=mu, motor_force=0) for mu in (0.0, 0.1, 0.5)])
     assert np.all(ds.peak_z[0] > 0) and np.all(ds.peak_z[2] == 0)
     assert np.all(ds.peak_stress[2] > ds.peak_stress[1])
-    loads = tr.solve([tr.Case(radial_force=-f) for f in (150, 250, 400)])
+    loads = solve_sliding([tr.Case(radial_force=-f) for f in (150, 250, 400)])
     assert np.all(np.diff(loads.peak_stress, axis=0) > 0)
     assert np.all(np.diff(loads.roller_life_hours) < 0)

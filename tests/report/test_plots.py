@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 import xarray as xr
+from reference_cases import solve_sliding
 from synthetic_results import PAIRS, grid_study, sampled_study
 
 import trackroller as tr
@@ -178,7 +179,7 @@ OUTPUTS = ("forces", "contact", "peak_stress", "tractions", "subsurface")
 
 @pytest.fixture(scope="module")
 def solved():
-    return tr.solve(tr.Case(), outputs=OUTPUTS)
+    return solve_sliding(tr.Case(), outputs=OUTPUTS)
 
 
 def test_a_case_gets_shear_energy_and_sections_of_both_contacts(solved, tmp_path):
@@ -191,9 +192,9 @@ def test_a_case_gets_shear_energy_and_sections_of_both_contacts(solved, tmp_path
 
 def test_frictionless_and_tall_contacts_are_drawn(tmp_path):
     """mu = 0 has no tractions to show; an ellipse longer in the rolling direction has its panels side by side."""
-    free = tr.solve(tr.Case(friction_coefficient=0.0, motor_force=0.0), outputs=OUTPUTS)
+    free = solve_sliding(tr.Case(friction_coefficient=0.0, motor_force=0.0), outputs=OUTPUTS)
     assert {i.name for i in plot_case(free, tmp_path / "free")} == {"contact_1_stress", "contact_2_stress"}
-    tall = tr.solve(tr.Case(roller_profile_radius=5.0), outputs=("forces", "contact", "tractions"))
+    tall = solve_sliding(tr.Case(roller_profile_radius=5.0), outputs=("forces", "contact", "tractions"))
     assert {i.name for i in plot_case(tall, tmp_path / "tall")} == {"contact_shear", "contact_energy"}
 
 
@@ -207,7 +208,7 @@ def test_a_lifted_contact_is_left_out(solved, tmp_path):
 
 
 def test_several_cases_at_once_are_refused(tmp_path):
-    ds = tr.solve([tr.Case(), tr.Case()], outputs=("forces",))
+    ds = solve_sliding([tr.Case(), tr.Case()], outputs=("forces",))
     with pytest.raises(InputError, match="one case"):
         plot_case(ds, tmp_path)
 
@@ -226,6 +227,6 @@ def test_drawing_leaves_the_callers_matplotlib_alone(grid):
 @pytest.mark.parametrize("motor_force", [-30.0, 0.0])
 def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force):
     """No contact left to draw is no reason to raise."""
-    ds = tr.solve(tr.Case(axial_force=150.0, motor_force=motor_force), outputs=OUTPUTS)
+    ds = solve_sliding(tr.Case(axial_force=150.0, motor_force=motor_force), outputs=OUTPUTS)
     assert int(ds["regime"]) == 2
     assert "contact_1_stress" not in {i.name for i in plot_case(ds, tmp_path)}

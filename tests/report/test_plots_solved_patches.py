@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 from matplotlib.patches import PathPatch
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.report.figures.contact_outline import Patch, widths
@@ -19,7 +20,7 @@ EDGED = {"motor_force": -15, "roller_profile": {"arc": -7, "edge": {"outer": 0.1
 
 @pytest.fixture(scope="module")
 def edged():
-    return tr.solve(tr.Case(**EDGED), OUTPUTS, normal="halfspace", accuracy="preview")
+    return solve_sliding(tr.Case(**EDGED), OUTPUTS, normal="halfspace", accuracy="preview")
 
 
 def loaded_x(ds, contact: int) -> tuple[float, float]:

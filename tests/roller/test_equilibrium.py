@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference_cases import case_of, published_cases
+from reference_cases import case_of, published_cases, solve_sliding
 
 import trackroller as tr
 
@@ -14,7 +14,7 @@ EXACT = [c for c in published_cases() if c.get("exact")]
 
 @pytest.fixture(scope="module")
 def solved():
-    return tr.solve([case_of(c) for c in EXACT], outputs=FORCES, accuracy="reference")
+    return solve_sliding([case_of(c) for c in EXACT], outputs=FORCES, accuracy="reference")
 
 
 def test_forces_match_the_independent_quadrature(solved):
@@ -44,7 +44,7 @@ def test_friction_power_matches_the_reference(solved):
 def test_published_hertz_reproduces_the_published_forces():
     """With the table of the published program its normal forces come within 0.3 %."""
     records = [c for c in EXACT if c.get("published") and not c["axes_swapped_in_published_program"]]
-    ds = tr.solve([case_of(c) for c in records], outputs=("forces",), hertz="published")
+    ds = solve_sliding([case_of(c) for c in records], outputs=("forces",), hertz="published")
     for i, record in enumerate(records):
         load = max(record["published"]["normal_force"])
         np.testing.assert_allclose(ds.normal_force[i], record["published"]["normal_force"], atol=3e-3 * load)
@@ -53,7 +53,7 @@ def test_published_hertz_reproduces_the_published_forces():
 def test_regimes_are_results():
     """Full slip and lift-off of the reference are flags, with the transmitted force in full slip."""
     records = [c for c in published_cases() if c.get("regime")]
-    ds = tr.solve([case_of(c) for c in records])
+    ds = solve_sliding([case_of(c) for c in records])
     names = ds.regime.attrs["flag_meanings"].split()
     assert [names[r] for r in ds.regime.values] == [c["regime"] for c in records]
     slipping = ds.isel(case=[names[r] for r in ds.regime.values].index("full_slip"))
@@ -102,7 +102,7 @@ def test_every_case_balances_or_says_why(draw):
     """Rolling cases balance to 1e-10 as seen from outside; the others carry a flag; mirrored loads mirror results."""
     case = build(draw)
     mirrored = tr.Case.from_dict({**case.as_dict(), "axial_force": -case.axial_force})
-    both = tr.solve([case, mirrored], outputs=("forces",))
+    both = solve_sliding([case, mirrored], outputs=("forces",))
     ds, other = both.isel(case=0), both.isel(case=1)
     if ds.regime == 0:
         assert ds.converged == 1
@@ -119,22 +119,22 @@ def test_every_case_balances_or_says_why(draw):
 def test_frictionless_limit_is_continuous():
     """mu = 0 exactly agrees with mu -> 0: forces, slip and stress; a motor force then means full slip."""
     free = dict(motor_force=0.0)
-    zero, tiny = (tr.solve(tr.Case(friction_coefficient=mu, **free)) for mu in (0.0, 1e-9))
+    zero, tiny = (solve_sliding(tr.Case(friction_coefficient=mu, **free)) for mu in (0.0, 1e-9))
     assert zero.regime == tiny.regime == 0
     np.testing.assert_allclose(zero.normal_force, tiny.normal_force, rtol=1e-8)
     assert float(zero.rolling_radius_shift) == pytest.approx(float(tiny.rolling_radius_shift), rel=1e-6)
     np.testing.assert_allclose(zero.peak_stress, tiny.peak_stress, rtol=1e-5)
     assert np.all(zero.lateral_force == 0) and np.all(zero.spin_moment == 0)
-    assert tr.solve(tr.Case(friction_coefficient=0.0, motor_force=-1.0)).regime == 1
+    assert solve_sliding(tr.Case(friction_coefficient=0.0, motor_force=-1.0)).regime == 1
 
 
 def test_driving_braking_and_the_slip_limit():
     """More motor force, more slip of its own sign; beyond mu sum(F_N) full slip; continuous in the force there."""
     force = np.array([-69.2, -60, -30, -10, 0, 10, 30, 60, 68.0])
-    ds = tr.solve([tr.Case(motor_force=f) for f in force], outputs=("forces",))
+    ds = solve_sliding([tr.Case(motor_force=f) for f in force], outputs=("forces",))
     assert np.all(ds.regime == 0)
     assert np.all(np.diff(ds.rolling_radius_shift) > 0)
-    beyond = tr.solve(tr.Case(motor_force=-69.5), outputs=("forces",))
+    beyond = solve_sliding(tr.Case(motor_force=-69.5), outputs=("forces",))
     assert beyond.regime == 1
     np.testing.assert_allclose(beyond.normal_force, ds.normal_force[0], rtol=0.02)
 
@@ -145,7 +145,7 @@ def test_scale_of_units_does_not_matter():
     lengths = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius")
     loads = ("radial_force", "axial_force", "motor_force")
     big = tr.Case(**{k: getattr(base, k) * s for k in lengths}, **{k: getattr(base, k) * s * s for k in loads})
-    a, b = tr.solve(base), tr.solve(big)
+    a, b = solve_sliding(base), solve_sliding(big)
     np.testing.assert_allclose(b.normal_force, a.normal_force * s * s, rtol=1e-10)
     np.testing.assert_allclose(b.max_pressure, a.max_pressure, rtol=1e-10)
     assert float(b.slip) == pytest.approx(float(a.slip), rel=1e-8)

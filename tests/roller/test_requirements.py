@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.roller import requirements
@@ -52,12 +53,16 @@ def assert_same(one, other, tolerance):
 
 def test_shortcuts_change_no_number_of_the_sliding_model():
     outputs = EVERYTHING[:-1]
-    assert_same(tr.solve(scenes(), outputs=outputs), tr.solve(scenes(), outputs=outputs, shortcuts=False), 1e-9)
+    assert_same(
+        solve_sliding(scenes(), outputs=outputs), solve_sliding(scenes(), outputs=outputs, shortcuts=False), 1e-9
+    )
 
 
 def test_shortcuts_change_the_sections_within_their_quadrature():
     few = scenes(3)
-    assert_same(tr.solve(few, outputs="subsurface"), tr.solve(few, outputs="subsurface", shortcuts=False), 2e-3)
+    assert_same(
+        solve_sliding(few, outputs="subsurface"), solve_sliding(few, outputs="subsurface", shortcuts=False), 2e-3
+    )
 
 
 @pytest.mark.parametrize("model", ["fastsim", "kalker"])
@@ -71,8 +76,8 @@ def test_symmetric_and_repeated_scenes_are_solved_once(monkeypatch):
     """Six cases of one mechanics without axial force ask for one patch instead of twelve."""
     seen = searched_patches(monkeypatch)
     cases = [{"axial_force": 0.0, "velocity": float(v)} for v in (10, 20, 30, 40, 50, 60)]
-    spared = tr.solve(cases)
-    whole = tr.solve(cases, shortcuts=False)
+    spared = solve_sliding(cases)
+    whole = solve_sliding(cases, shortcuts=False)
     assert seen == [1, 12]
     assert_same(spared, whole, 1e-9)
     assert len(np.unique(spared.life_hours.sel(contact=1, body="roller"))) == 6, "hours follow each case's speed"
@@ -85,7 +90,7 @@ def test_frictionless_loads_share_one_search(monkeypatch):
         {"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.01 * f, "radial_force": -float(f)}
         for f in (50, 200, 900)
     ]
-    found = tr.solve(cases, outputs=("contact", "peak_stress"))
+    found = solve_sliding(cases, outputs=("contact", "peak_stress"))
     assert seen == [1]
     ratio = found.peak_stress / found.max_pressure
     assert np.allclose(ratio, ratio.isel(case=0, contact=0), rtol=1e-12)
@@ -100,7 +105,7 @@ def test_velocity_counts_where_friction_depends_on_it():
 def test_stopped_cases_would_have_failed_and_the_others_are_untouched():
     loads, frictions = (200.0, 1500.0, 4000.0, 9000.0), (0.05, 0.4)
     cases = [{"radial_force": -f, "friction_coefficient": m} for f in loads for m in frictions]
-    whole, cut = tr.solve(cases), tr.solve(cases, stop_if="peak_stress > R_m")
+    whole, cut = solve_sliding(cases), solve_sliding(cases, stop_if="peak_stress > R_m")
     stopped = cut.stopped.values == 1
     assert stopped.any() and not stopped.all()
     limit = to_table(cases).roller.tensile_strength[0]
@@ -133,7 +138,7 @@ def test_the_bound_that_stops_is_below_the_peak(model):
 
 
 def test_stop_before_stresses_by_pressure_or_regime():
-    found = tr.solve(
+    found = solve_sliding(
         [{}, {"motor_force": 500.0}, {"radial_force": -5000.0}], stop_if="regime == full_slip or max_pressure > 1500"
     )
     assert found.stopped.values.tolist() == [0, 1, 1]
@@ -154,7 +159,7 @@ def test_stop_before_stresses_by_pressure_or_regime():
 )
 def test_bad_conditions_are_refused_by_name(text, told):
     with pytest.raises(tr.InputError, match="stop_if") as caught:
-        tr.solve(tr.Case(), stop_if=text)
+        solve_sliding(tr.Case(), stop_if=text)
     assert told in str(caught.value)
 
 
@@ -163,7 +168,7 @@ def test_explained_counts_are_those_that_run(monkeypatch):
     seen = searched_patches(monkeypatch)
     cases = [{"axial_force": 0.0}, {"axial_force": 0.0, "velocity": 10.0}, {"axial_force": 20.0}]
     told = {stage.name: stage for stage in explain(to_table(cases), Options())}
-    tr.solve(cases)
+    solve_sliding(cases)
     assert [told["peak stress"].count] == seen == [3]
     assert told["peak stress"].total == 6
     assert not told["friction work"].runs and not told["subsurface sections"].runs
@@ -173,4 +178,4 @@ def test_explained_counts_are_those_that_run(monkeypatch):
 
 def test_no_stress_without_a_stress_output(monkeypatch):
     monkeypatch.setattr(ellipse_stresses, "find_peaks", lambda *a: pytest.fail("searched for a peak nobody asked for"))
-    assert "peak_stress" not in tr.solve(tr.Case(), outputs=("forces", "contact", "friction_work"))
+    assert "peak_stress" not in solve_sliding(tr.Case(), outputs=("forces", "contact", "friction_work"))

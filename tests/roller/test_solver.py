@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller import parameters
@@ -13,10 +14,10 @@ def test_single_case_has_no_case_dimension_and_a_batch_has():
     """Case, mapping, list and data set are all accepted and give the same numbers."""
     import xarray as xr
 
-    one = tr.solve(tr.Case())
-    many = tr.solve([tr.Case(), {"friction_coefficient": 0.1}])
+    one = solve_sliding(tr.Case())
+    many = solve_sliding([tr.Case(), {"friction_coefficient": 0.1}])
     design = xr.Dataset({"friction_coefficient": ("case", [0.3, 0.1])})
-    from_design = tr.solve(design)
+    from_design = solve_sliding(design)
     assert "case" not in one.dims and many.sizes["case"] == 2
     np.testing.assert_array_equal(many.peak_stress, from_design.peak_stress)
     np.testing.assert_array_equal(one.peak_stress, many.peak_stress[0])
@@ -24,7 +25,7 @@ def test_single_case_has_no_case_dimension_and_a_batch_has():
 
 def test_every_variable_is_labelled():
     """Each variable has units, a long name, and dimensions of the table; flags have meanings."""
-    ds = tr.solve([tr.Case()], outputs=parameters.OUTPUT_GROUPS)
+    ds = solve_sliding([tr.Case()], outputs=parameters.OUTPUT_GROUPS)
     for name in ds.data_vars:
         assert ds[name].attrs["units"] and ds[name].attrs["long_name"]
         if name in VARIABLES:
@@ -36,7 +37,7 @@ def test_every_variable_is_labelled():
 
 def test_validity_flags_name_the_body():
     """A plastic body exceeds its own strength, not that of the steel; the case has the flags of both."""
-    ds = tr.solve([tr.Case(), tr.Case(roller_material="PA6"), tr.Case(guide_material="PA6")])
+    ds = solve_sliding([tr.Case(), tr.Case(roller_material="PA6"), tr.Case(guide_material="PA6")])
     static, body = validity_bit("static"), ds.validity_body.transpose("case", "body").values
     assert (body & static > 0).tolist() == [[False, False], [True, False], [False, True]]
     np.testing.assert_array_equal(body[:, 0] | body[:, 1], ds.validity)
@@ -44,7 +45,7 @@ def test_validity_flags_name_the_body():
 
 def test_only_what_is_asked_for():
     """Groups bring their variables and no others; the data set survives netCDF."""
-    ds = tr.solve(tr.Case(), outputs="forces")
+    ds = solve_sliding(tr.Case(), outputs="forces")
     assert "normal_force" in ds and "peak_stress" not in ds and "max_pressure" not in ds
 
 
@@ -52,7 +53,7 @@ def test_netcdf_round_trip(tmp_path):
     """A result written and read by plain xarray keeps numbers, units and flags."""
     import xarray as xr
 
-    ds = tr.solve([tr.Case()])
+    ds = solve_sliding([tr.Case()])
     ds.to_netcdf(tmp_path / "r.nc")
     back = xr.open_dataset(tmp_path / "r.nc")
     np.testing.assert_array_equal(back.peak_stress, ds.peak_stress)
@@ -61,7 +62,7 @@ def test_netcdf_round_trip(tmp_path):
 
 def test_sections_pass_through_the_peak():
     """The largest von Mises stress on the two sections comes close to the peak and never above it."""
-    ds = tr.solve(tr.Case(), outputs=("peak_stress", "subsurface"))
+    ds = solve_sliding(tr.Case(), outputs=("peak_stress", "subsurface"))
     for plane in ("xz", "yz"):
         top = ds[f"von_mises_{plane}"].max(dim=[d for d in ds[f"von_mises_{plane}"].dims if d.startswith("section")])
         assert np.all(top <= ds.peak_stress * 1.003) and np.all(top > 0.9 * ds.peak_stress)
@@ -69,11 +70,11 @@ def test_sections_pass_through_the_peak():
 
 def test_life_of_both_bodies():
     """The weaker contact decides; the guide's hours need its overrollings per hour."""
-    ds = tr.solve(tr.Case(guide_overrollings_per_hour=600.0))
+    ds = solve_sliding(tr.Case(guide_overrollings_per_hour=600.0))
     assert float(ds.roller_life_hours) == pytest.approx(float(ds.life_hours.sel(body="roller").min()))
     assert float(ds.guide_life_hours) == pytest.approx(float(ds.life_cycles.sel(body="guide").min()) / 600)
-    assert np.isnan(tr.solve(tr.Case()).guide_life_hours)
-    slow = tr.solve(tr.Case(velocity=30.0))
+    assert np.isnan(solve_sliding(tr.Case()).guide_life_hours)
+    slow = solve_sliding(tr.Case(velocity=30.0))
     assert float(slow.roller_life_hours) == pytest.approx(2 * float(ds.roller_life_hours))
 
 
@@ -96,7 +97,7 @@ def test_life_of_both_bodies():
 def test_bad_values_are_named_with_the_remedy(values, words):
     """The message names the field, the value and what is allowed."""
     with pytest.raises(tr.InputError) as caught:
-        tr.solve(values)
+        solve_sliding(values)
     for word in words:
         assert word in str(caught.value)
 
@@ -123,19 +124,19 @@ def test_bad_options_are_refused(option, value):
 def test_friction_from_the_database():
     """A case without friction coefficient takes the typical value of its pair, 'upper' the upper one."""
     pair = dict(roller_material="PA6", friction_coefficient=None)
-    named = tr.solve([pair, {**pair, "friction_coefficient": "upper"}], outputs=("contact",))
-    explicit = tr.solve([{**pair, "friction_coefficient": mu} for mu in (0.22, 0.30)], outputs=("contact",))
+    named = solve_sliding([pair, {**pair, "friction_coefficient": "upper"}], outputs=("contact",))
+    explicit = solve_sliding([{**pair, "friction_coefficient": mu} for mu in (0.22, 0.30)], outputs=("contact",))
     np.testing.assert_array_equal(named.max_shear, explicit.max_shear)
 
 
 def test_empty_batch():
     """No cases give an empty data set, not an error."""
-    assert tr.solve([]).sizes["case"] == 0
+    assert solve_sliding([]).sizes["case"] == 0
 
 
 def test_a_table_of_hertz_is_refused_where_there_is_no_ellipse():
     with pytest.raises(tr.InputError, match=r"hertz = 'published'.*normal: halfspace"):
-        tr.solve(tr.Case(), hertz="published", normal="halfspace")
+        solve_sliding(tr.Case(), hertz="published", normal="halfspace")
 
 
 def test_blocks_keep_the_flags_of_each_body():

@@ -29,7 +29,9 @@ def files(tmp_path_factory) -> dict[str, Path]:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         for name, text in STUDIES.items():
-            Path(f"{name}.yaml").write_text(f"name: {name}\nbase: {{motor_force: 0}}\naccuracy: preview\n{text}")
+            Path(f"{name}.yaml").write_text(
+                f"name: {name}\nbase: {{motor_force: 0}}\ncontact_model: sliding\naccuracy: preview\n{text}"
+            )
             assert CliRunner().invoke(app, ["run", f"{name}.yaml", "-q", "--report"]).exit_code == 0
         Path("shift.yaml").write_text(SPECTRUM)
         assert CliRunner().invoke(app, ["spectrum", "shift.yaml", "-o", "shift.nc"]).exit_code == 0

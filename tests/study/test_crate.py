@@ -28,6 +28,7 @@ base: {roller_material: hard steel}
 design: table
 table: tables/cases.csv
 outputs: [forces, life]
+contact_model: sliding
 accuracy: preview
 """
 

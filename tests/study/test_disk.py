@@ -16,6 +16,7 @@ factors:
   axial_force: {linspace: [0, 60, 40]}
   friction_coefficient: {linspace: [0.05, 0.4, 10]}
 outputs: [forces]
+contact_model: sliding
 chunk_size: 100
 """
 

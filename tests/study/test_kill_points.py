@@ -18,6 +18,7 @@ from trackroller.study.run import run_study
 SMALL = {
     "name": "s",
     "outputs": ["forces"],
+    "contact_model": "sliding",
     "chunk_size": 4,
     "design": "lhs",
     "samples": 4,

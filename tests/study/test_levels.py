@@ -70,6 +70,7 @@ def test_status_tells_failed_profiles_in_words(tmp_path):
         {
             "name": "p",
             "outputs": ["forces"],
+            "contact_model": "sliding",
             "normal": "halfspace",
             "accuracy": "preview",
             "design": "grid",

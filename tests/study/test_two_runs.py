@@ -25,6 +25,7 @@ LOADS = [float(v) for v in range(20, 40)]
 DATA = {
     "name": "s",
     "outputs": ["forces"],
+    "contact_model": "sliding",
     "chunk_size": 10,
     "factors": {"axial_force": {"values": LOADS}, "friction_coefficient": {"values": [0.1, 0.2]}},
 }

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.contact.slip import pole_split, rolling_slip
@@ -32,7 +33,7 @@ def test_sample_is_fixed_wide_and_solvable():
     assert mu.min() < 0.1 and mu.max() > 0.9 and alpha.min() < 20 and alpha.max() > 75
     assert load.max() > 100 * load.min()
     assert {np.sign(c.motor_force) for c in cases} == {-1, 0, 1}
-    ds = tr.solve(cases, outputs=("forces", "contact"), accuracy="preview")
+    ds = solve_sliding(cases, outputs=("forces", "contact"), accuracy="preview")
     assert (ds.regime <= 1).all()
 
 
@@ -59,7 +60,7 @@ def test_tolerance_bound_is_an_order_statistic():
 
 def test_errors_are_relative_to_their_scales_and_another_regime_is_infinite():
     cases = [tr.Case(), tr.Case(motor_force=0)]
-    ds = tr.solve(cases, outputs=OUTPUTS, accuracy="preview")
+    ds = solve_sliding(cases, outputs=OUTPUTS, accuracy="preview")
     ds["friction"] = ("case", [0.3, 0.3])
     other = ds.copy(deep=True)
     assert all(np.nanmax(e) == 0 for e in relative_errors(other, ds).values())
@@ -110,7 +111,7 @@ def test_presets_are_rungs_in_order():
 
 def test_results_carry_their_expected_error():
     """Attributes tell the measured error of the setting, and life errs by the Woehler exponent times its peak."""
-    ds = tr.solve(tr.Case(), accuracy=1e-2)
+    ds = solve_sliding(tr.Case(), accuracy=1e-2)
     assert (
         0 < ds.peak_stress.attrs["expected_relative_error"] <= ds.peak_stress.attrs["relative_error_99_percent"] < 0.02
     )
@@ -125,7 +126,7 @@ def test_tolerances_hold_on_a_fresh_sample():
     cases = sample(40, seed=4711)
     reference, _ = reference_solution(cases, "sliding", OUTPUTS)
     for tolerance in (2e-2, 3e-3):
-        errors = relative_errors(tr.solve(cases, outputs=OUTPUTS, accuracy=tolerance), reference)
+        errors = relative_errors(solve_sliding(cases, outputs=OUTPUTS, accuracy=tolerance), reference)
         worst = np.max([errors[q] for q in (*ac.FORCE_QUANTITIES, "peak_stress")], axis=0)
         assert np.sum(worst > tolerance) <= 1
 
@@ -191,7 +192,7 @@ def test_forces_of_patches_that_reach_the_equator_converge():
         guide_material="PA6",
     )
     rough, fine = (
-        tr.solve(case, outputs=("forces", "contact"), accuracy=tradeoff_settings.accuracy_of(n)) for n in (12, 40)
+        solve_sliding(case, outputs=("forces", "contact"), accuracy=tradeoff_settings.accuracy_of(n)) for n in (12, 40)
     )
     equator = 2.1 * np.tan(np.radians(90 - 75) / 2)
     assert (fine.semi_axis_lateral > equator).all()
