@@ -7,8 +7,8 @@ import pytest
 
 from trackroller.contact import kalker, linear
 from trackroller.contact.common import Elastic, Ellipse
-from trackroller.contact.linear_polynomial import LinearTheory
 from trackroller.errors import InputError
+from validation.derivations.linear_creepage import LinearTheory
 
 # Kalker (1990), Three-Dimensional Elastic Bodies in Rolling Contact, table E.3
 TABLE = np.loadtxt(Path(__file__).parents[1] / "data" / "kalker_coefficients.csv", delimiter=",", skiprows=2)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trackroller.contact.common import Elastic, Ellipse
-from trackroller.contact.kalker.shift import shift_patch
+from validation.exact.shift import shift_patch
 
 CIRCLE = Ellipse(np.array([0.25]), np.array([0.25]), np.array([800.0]))
 FORCE = float(CIRCLE.normal_force[0])

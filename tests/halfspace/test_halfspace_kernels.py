@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from trackroller.halfspace import kernel_writer, kernels, potentials
+from trackroller.halfspace import kernels
+from validation.derivations import kernel_writer, potentials
 
 COMPONENTS = potentials.COMPONENTS
 POINTS = [(0.7, -0.4, 0.5), (-0.3, 0.2, 1.5), (1e-3, 2e-3, 0.8), (0.9, 0.6, 0.02), (-0.5, -0.8, 0.3)]

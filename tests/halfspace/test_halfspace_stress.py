@@ -5,7 +5,8 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from trackroller.errors import InputError
-from trackroller.halfspace import influence, reference, stress
+from trackroller.halfspace import influence, stress
+from validation.exact import stresses as reference
 
 NU = 0.3
 

@@ -8,7 +8,7 @@ from trackroller.halfspace import ellipse_kernels
 from trackroller.halfspace.ellipse import NO_FIELD
 from trackroller.halfspace.ellipse_kernels import PATCH, PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU, Place
 from trackroller.halfspace.kernels import point_kernel
-from trackroller.halfspace.plane_waves import plane_wave_stress
+from validation.derivations.plane_waves import plane_wave_stress
 
 sum_waves, sum_rays = ellipse_kernels.sum_waves, ellipse_kernels.sum_rays
 

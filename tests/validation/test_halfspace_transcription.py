@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from trackroller.halfspace.reference import quadrature_on_ellipse
 from validation.benchmarks import published_transcription as transcription
+from validation.exact.stresses import quadrature_on_ellipse
 
 
 def test_all_styles_agree_and_approach_the_exact_field():

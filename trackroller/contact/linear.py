@@ -1,8 +1,9 @@
 """Kalker's linear creepage coefficients for any ellipse, and the forces of the linear theory.
 
-The coefficients come from a stored table of `LinearTheory`. Chebyshev polynomials interpolate it in the logarithm of
-the axis ratio and in Poisson's ratio. `tests/contact` compares the coefficients with Kalker's printed table (1990,
-table E.3) and with rectangular elements. The printed table is about 1 % low at the axis ratios 5 and 10.
+The coefficients come from a stored table, which `python -m validation.derivations.linear_creepage` writes. Chebyshev
+polynomials interpolate it in the logarithm of the axis ratio and in Poisson's ratio. `tests/contact` compares the
+coefficients with Kalker's printed table (1990, table E.3) and with rectangular elements. The printed table is about
+1 % low at the axis ratios 5 and 10.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebval, chebvander
 
 from trackroller.contact.common import Elastic, Ellipse, Resultants
-from trackroller.contact.linear_polynomial import LinearTheory
 from trackroller.errors import InputError
 
 LARGEST_RATIO = 50.0  # of b/a; the smallest ratio is its inverse
@@ -33,32 +33,9 @@ class CreepageCoefficients:
     c33: np.ndarray
 
 
-def _nodes() -> tuple[np.ndarray, np.ndarray]:
+def nodes() -> tuple[np.ndarray, np.ndarray]:
+    """Return the nodes of the table: axis ratios (21,) and Poisson's ratios (7,) [1]."""
     return np.exp(np.log(LARGEST_RATIO) * chebpts1(NODES[0])), 0.25 + 0.25 * chebpts1(NODES[1])
-
-
-def tabulate(degree: int = 20) -> np.ndarray:
-    """Compute the stored table at the interpolation nodes.
-
-    Parameters
-    ----------
-    degree : int
-        Degree of the polynomials of `LinearTheory`.
-
-    Returns
-    -------
-    numpy.ndarray, shape (147, 6)
-        Rows (ratio, nu, C11, C22, C23, C33) [1].
-    """
-    theory = LinearTheory(degree)
-    ratios, poisson = _nodes()
-    return np.array([[r, nu, *theory.coefficients(r, nu)] for r in ratios for nu in poisson])
-
-
-def write_table(path) -> None:
-    """Write the table of `tabulate` to a CSV file."""
-    header = "linear creepage coefficients, computed by trackroller.contact.linear.tabulate\nratio,nu,C11,C22,C23,C33"
-    np.savetxt(path, tabulate(), delimiter=",", fmt="%.9g", header=header)
 
 
 @lru_cache(maxsize=1)
@@ -141,7 +118,7 @@ def resultants(ellipse: Ellipse, longitudinal, lateral, spin, elastic: Elastic) 
 @lru_cache(maxsize=1)
 def _sliding_integrals() -> np.ndarray:
     """Return Chebyshev coefficients in ln(ratio) of the logarithms of the integrals of `sliding_flexibility`."""
-    ratio, _ = _nodes()
+    ratio, _ = nodes()
     a, b = 1.0 / ratio[:, None], 1.0
     t = np.pi * (np.arange(8192) + 0.5) / 8192
     cos, sin = np.cos(t), np.sin(t)

@@ -6,7 +6,7 @@ point the direction is split into its value d_0 there and the difference d - d_0
 - p and mu p d_0 are Hertzian, so that their stresses are a single integral over plane waves,
   sigma = 1/(2 pi^2) Re int_0^pi [A G(zeta) - i lambda z B G'(zeta)] dphi, zeta = X cos(phi) + Y sin(phi) + i lambda z,
   G = pi (2 + zeta ln((zeta - 1)/(zeta + 1))), lambda^2 = (cos(phi)/a)^2 + (sin(phi)/b)^2, where A + B k z are the
-  transforms of the Boussinesq-Cerruti potentials (eqs (1)-(5); `plane_waves.plane_wave_stress`);
+  transforms of the Boussinesq-Cerruti potentials (eqs (1)-(5); `validation/derivations/plane_waves.py`);
 - mu p (d - d_0) vanishes at the point: its Cerruti integral in polar coordinates about the point has no
   singularity at any depth, including z = 0 and the edge of the patch.
 

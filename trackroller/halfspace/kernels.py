@@ -1,6 +1,6 @@
 """Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
 
-Written by `python -m trackroller.halfspace.kernel_writer`; `potentials` explains the derivation.
+Written by `python -m validation.derivations.kernel_writer`; `validation/derivations/potentials.py` derives them.
 Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, yz, xz,
 then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
 FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.

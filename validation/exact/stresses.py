@@ -1,6 +1,6 @@
-"""Closed forms for stresses in a half-space and one independent quadrature, for tests and users.
+"""Closed forms for stresses in a half-space and one independent quadrature, as references for tests.
 
-Conventions as in `stress.py`: z into the body, tractions on the body, components in the order of COMPONENTS
+Conventions as in `trackroller/halfspace/stress.py`: z into the body, tractions on the body, components in the order
 (sigma_x, sigma_y, sigma_z, tau_xy, tau_yz, tau_xz). Lengths in mm, stresses in MPa; arrays broadcast.
 Sources: Love 1929 (Phil. Trans. A 228, 377); Johnson 1985 (Contact Mechanics, ch. 3 and 4); Hamilton 1983 (Proc. IMechE
 197C, 53); Sackfield & Hills 1983 (J. Strain Anal. 18, 101 and 107).

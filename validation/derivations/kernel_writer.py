@@ -1,4 +1,4 @@
-"""Write `kernels.py` from the derivation in `potentials`: `python -m trackroller.halfspace.kernel_writer`."""
+"""Write `kernels.py` from the derivation in `potentials`: `python -m validation.derivations.kernel_writer`."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ from pathlib import Path
 
 import sympy as sp
 
-from trackroller.halfspace.potentials import KERNELS, LOADS, check_dilatation, kernel_elements
+from trackroller.halfspace import kernels
+from validation.derivations.potentials import KERNELS, LOADS, check_dilatation, kernel_elements
 
 _HEADER = '''"""Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
 
-Written by `python -m trackroller.halfspace.kernel_writer`; `potentials` explains the derivation.
+Written by `python -m validation.derivations.kernel_writer`; `validation/derivations/potentials.py` derives them.
 Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, yz, xz,
 then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
 FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.
@@ -81,9 +82,9 @@ def module_source() -> str:
 
 
 def main() -> None:
-    """Write `kernels.py` beside this file."""
-    here = Path(__file__)
-    here.with_name("kernels.py").write_text(module_source(), encoding="utf-8")
+    """Write `trackroller/halfspace/kernels.py`."""
+    here = Path(kernels.__file__)
+    here.write_text(module_source(), encoding="utf-8")
     for module in here.parent.glob("*.py"):
         if "halfspace.kernels import" in module.read_text(encoding="utf-8"):
             module.touch()  # otherwise numba would use code that it compiled with the former kernels

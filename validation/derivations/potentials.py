@@ -1,6 +1,6 @@
 """Derive the half-space stress kernels from the Boussinesq-Cerruti potentials.
 
-`kernel_writer` turns the result into `kernels.py`.
+`kernel_writer` turns the result into `trackroller/halfspace/kernels.py`.
 
 With Omega = z ln(R + z) - R, R = sqrt(x^2 + y^2 + z^2) (eq. (2) of the paper, point load at the origin) the
 displacements of the half-space z >= 0 under tractions q = (q_x, q_y, q_z) acting on the body are, with

@@ -2,7 +2,7 @@
 
 A traction that varies as exp(i k s) along a direction s has the potential function Omega -> 2 pi exp(-k z)/k^3 (since
 d^2 Omega/dz^2 = 1/rho, whose transform is 2 pi exp(-k z)/k). The potentials then give the stresses of such a wave as
-(A + B k z) exp(-k z) in the frame (s, t, z). `python -m trackroller.halfspace.plane_waves` prints them.
+(A + B k z) exp(-k z) in the frame (s, t, z). `python -m validation.derivations.plane_waves` prints them.
 """
 
 from __future__ import annotations

@@ -9,8 +9,12 @@ there.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
+
+from trackroller.contact import linear
 
 MATCH = 1e4  # weight of the displacements against the leading edge in the least squares
 
@@ -125,3 +129,33 @@ class LinearTheory:
         moment = a * self.force_x @ p_y - b * self.force_y @ p_x
         c_23 = 0.5 * (self.force @ p_x[:, 2] - moment[1])  # C23 = C32 by reciprocity
         return np.array([-self.force @ p_y[:, 0], -self.force @ p_x[:, 1], c_23, -moment[2]])
+
+
+def tabulate(degree: int = 20) -> np.ndarray:
+    """Compute the stored table at the interpolation nodes.
+
+    Parameters
+    ----------
+    degree : int
+        Degree of the polynomials of `LinearTheory`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (147, 6)
+        Rows (ratio, nu, C11, C22, C23, C33) [1].
+    """
+    theory = LinearTheory(degree)
+    ratios, poisson = linear.nodes()
+    return np.array([[r, nu, *theory.coefficients(r, nu)] for r in ratios for nu in poisson])
+
+
+def write_table(path) -> None:
+    """Write the table of `tabulate` to a CSV file."""
+    header = (
+        "linear creepage coefficients, computed by validation.derivations.linear_creepage\nratio,nu,C11,C22,C23,C33"
+    )
+    np.savetxt(path, tabulate(), delimiter=",", fmt="%.9g", header=header)
+
+
+if __name__ == "__main__":
+    write_table(Path(linear.__file__).with_name(linear.TABLE))
