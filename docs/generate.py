@@ -13,10 +13,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation must not stand for the package
 
 from trackroller import parameters as p
-from trackroller.report.pages import markdown
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.dataset import VALIDITY_BITS, VARIABLES
 from validation.adopt.common import PICTURES, shortened
+from validation.pages import markdown
 from validation.tradeoff import page as tradeoff_page
 
 FOLDER = Path(__file__).parent

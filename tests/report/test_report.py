@@ -85,7 +85,7 @@ def test_it_is_one_file_without_network_or_script(report):
     sources = re.findall(r'(?:src|href)="([^"]*)"', text)
     assert sources and all(s.startswith(("data:", "#")) for s in sources)
     assert "<script" not in text and "@import" not in text and "url(" not in text
-    assert not list(report.parent.glob(".*.part"))
+    assert not list(report.parent.glob(".*.tmp"))
 
 
 def test_names_from_the_study_are_escaped_and_tags_balance(report):

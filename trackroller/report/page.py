@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import logging
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import jinja2
-import markupsafe
 import numpy as np
 import xarray as xr
 
@@ -20,15 +17,16 @@ from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.comparison import report_section
 from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
+from trackroller.report.html import data_uri, render
 from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
 from trackroller.report.known_errors import friction_error
 from trackroller.report.numbers import capital, count, long_name, percent, plain, rounded
-from trackroller.report.pages import inline
 from trackroller.report.papers import conventions, papers
 from trackroller.report.summary import in_short
 from trackroller.report.tables import Table, best_table, cell, reason_table, regime_table, validity_table
 from trackroller.report.view import StudyView
 from trackroller.report.workbook import export
+from trackroller.study.files import write_text
 
 log = logging.getLogger(__name__)
 SAMPLED = ("lhs", "sobol", "morris", "saltelli", "inner_outer")  # designs that `samples` counts for
@@ -72,16 +70,6 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     pathlib.Path
         The path of the report.
     """
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("trackroller.report", "templates"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.filters["marked"] = lambda text: markupsafe.Markup(inline(str(text)))
-    environment.filters["cell"] = cell
-    environment.tests["text"] = lambda value: isinstance(value, str)
     sens = None
     if sensitivity_nc is not None and Path(sensitivity_nc).is_file():
         with xr.open_dataset(sensitivity_nc) as opened:
@@ -89,14 +77,9 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     with xr.open_dataset(study_nc) as opened:
         content = contents(opened.load(), sens)
     content["figures"] = _placed(figures(Path(figures_dir)))
-    text = environment.get_template("report.html.j2").render(content)
-    out_html = Path(out_html)
-    out_html.parent.mkdir(parents=True, exist_ok=True)
-    part = out_html.with_name(f".{out_html.name}.part")
-    part.write_text(text, encoding="utf-8")
-    part.replace(out_html)
-    export([t for key in ("decide", "why", "ends", "models") for t in content[key]], out_html.parent / "tables")
-    return out_html
+    write_text(Path(out_html), render("report.html.j2", content, cell=cell))
+    export([t for key in ("decide", "why", "ends", "models") for t in content[key]], Path(out_html).parent / "tables")
+    return Path(out_html)
 
 
 def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
@@ -272,7 +255,5 @@ def _placed(found: list[dict[str, str]]) -> dict[str, list[dict[str, Any]]]:
 def _data_uri(folder: Path, name: str) -> str:
     svg, png = folder / f"{name}.svg", folder / f"{name}.png"
     if svg.is_file() and (svg.stat().st_size <= MAX_SVG or not png.is_file()):
-        return f"data:image/svg+xml;base64,{base64.b64encode(svg.read_bytes()).decode('ascii')}"
-    if png.is_file():
-        return f"data:image/png;base64,{base64.b64encode(png.read_bytes()).decode('ascii')}"
-    return ""
+        return data_uri(svg)
+    return data_uri(png) if png.is_file() else ""

@@ -13,6 +13,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from trackroller.report.tables import Table, cell
+from trackroller.study.files import write_whole
 
 
 def export(tables: Sequence[Table], folder: Path) -> list[Path]:
@@ -34,12 +35,14 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
             csv.writer(file).writerows([table.heads, *table.rows])
         paths.append(path)
     book = folder / "tables.xlsx"
-    part = book.with_name(f".{book.name}.part")
-    with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as file:
-        for name, text in _workbook(tables).items():
-            file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), text)
-    part.replace(book)
+    write_whole(book, lambda beside: _save(beside, _workbook(tables)))
     return [*paths, book]
+
+
+def _save(path: Path, parts: dict[str, str]) -> None:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, text in parts.items():
+            file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), text)
 
 
 _XML = '<?xml version="1.0" encoding="UTF-8" standalone="yes"?>\n'

@@ -25,7 +25,7 @@ from trackroller.materials import builtin_database, load_database
 from trackroller.materials.file import find_user_file
 from trackroller.study.config import load_study
 from trackroller.study.design.build import table_path
-from trackroller.study.files import write_whole
+from trackroller.study.files import write_text
 from trackroller.study.provenance import versions
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def write_crate(study: Study, root: Path) -> Path:
     _copy_inputs(study, root)
     graph = _graph(study, root)
     text = json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
-    write_whole(root / METADATA, lambda beside: beside.write_text(text, encoding="utf-8"))
+    write_text(root / METADATA, text)
     return root / METADATA
 
 
@@ -85,7 +85,7 @@ def _copy_inputs(study: Study, root: Path) -> None:
         name = Path(study.config.table).name
         shutil.copyfile(table_path(study), folder / name)
         text = study.merged(table=name)
-    write_whole(root / STUDY_FILE, lambda beside: beside.write_text(text, encoding="utf-8"))
+    write_text(root / STUDY_FILE, text)
     user = find_user_file()
     if user is not None:
         shutil.copyfile(user, root / MATERIALS_FILE)

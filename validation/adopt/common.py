@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from trackroller.report.pages import Block
+from validation.pages import Block
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs"
 DATA, FIGURES, PAGES = FOLDER / "data", FOLDER / "figures", FOLDER / "validation"

@@ -9,9 +9,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from trackroller.report.pages import markdown
 from validation.adopt.common import DATA, PICTURES, copy_figures, main, shortened
 from validation.extremes.page import blocks, read
+from validation.pages import markdown
 
 KEPT = DATA / "extremes.json"
 LEFT_OUT = ("The scenes", "Kernels against many digits")

@@ -10,8 +10,8 @@ import json
 import shutil
 from pathlib import Path
 
-from trackroller.report.pages import markdown
 from validation.adopt.common import DATA, PICTURES, copy_figures, main
+from validation.pages import markdown
 from validation.paper.compute import STORED, stored
 from validation.paper.page import blocks
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from trackroller.report.pages import Block, page_html
+from validation.pages import Block, page_html
 
 Record = dict[str, Any]
 NOTES = (

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.parameters import PARAMETERS
-from trackroller.report.pages import Block, page_html
 from trackroller.study.files import write_whole
+from validation.pages import Block, page_html
 from validation.paper.compute import reference, results
 from validation.paper.figures import draw_all
 

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from trackroller.report.pages import Block, page_html
 from trackroller.study.files import write_whole
+from validation.pages import Block, page_html
 from validation.peers.compare import compare
 
 TITLE = "Other programs beside ours"
@@ -15,7 +15,7 @@ HEADS = ("quantity", "compared with", "cases", "median deviation", "largest devi
 
 
 def blocks(found: dict[str, Any]) -> list[Block]:
-    """Return the page as blocks of `trackroller.report.pages`."""
+    """Return the page as blocks of `validation.pages`."""
     rows = [
         (f"`{r['quantity']}`", r["against"], r["cases"], f"{100 * r['median']:.2g} %", f"{100 * r['largest']:.2g} %")
         for r in found["rows"]

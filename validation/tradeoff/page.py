@@ -11,9 +11,9 @@ from typing import Any
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.report.pages import Block, page_html
 from trackroller.roller.accuracy import PROMISES, accuracy_settings, preset_rungs, read_ladders, rounded_up
 from trackroller.study.files import write_whole
+from validation.pages import Block, page_html
 from validation.tradeoff.errors import QUANTITIES
 from validation.tradeoff.figures import draw_all
 from validation.tradeoff.summary import summary

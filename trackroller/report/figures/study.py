@@ -32,6 +32,7 @@ from trackroller.report.figures.sensitivity import (
 from trackroller.report.figures.woehler import woehler
 from trackroller.report.known_errors import FRICTION_OUTPUTS, friction_error
 from trackroller.report.view import StudyView
+from trackroller.study.files import WorkError
 
 log = logging.getLogger(__name__)
 Draw = Callable[[], "tuple[Any, style.FigureInfo] | None"]
@@ -84,7 +85,7 @@ def _saved(draw: Draw, out_dir: Path) -> style.FigureInfo | None:
         if drawn is None:
             return None
         style.save(drawn[0], out_dir, drawn[1].name)
-    except OSError:  # a full disk is not the figure's fault
+    except WorkError:  # a full disk is not the figure's fault
         raise
     except Exception as problem:
         log.warning("a figure was not drawn: %s", problem, exc_info=True)

@@ -6,10 +6,12 @@ Figures are built without pyplot, so that drawing needs no display and leaves th
 from __future__ import annotations
 
 import contextlib
+import io
 import json
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,7 @@ from matplotlib.textpath import TextToPath
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from trackroller.report.numbers import number
+from trackroller.study.files import write_text, write_whole
 
 COLUMN_MM = 85.0  # a column of a two-column page
 WIDE_MM = 170.0  # the one wide column of the report
@@ -156,22 +159,17 @@ def finish(figure: Figure) -> None:
 
 def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     """Write `name`.svg and `name`.png, both whole or not at all, and return the two paths."""
-    out_dir.mkdir(parents=True, exist_ok=True)
     _set_title(figure)
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
     for path in paths:
-        part = path.with_name(f".{path.name}.part")
         metadata = {"Date": None} if path.suffix == ".svg" else None  # the same data gives the same file
-        figure.savefig(part, format=path.suffix[1:], metadata=metadata)
-        part.replace(path)
+        drawn = io.BytesIO()
+        figure.savefig(drawn, format=path.suffix[1:], metadata=metadata)
+        write_whole(path, partial(Path.write_bytes, data=drawn.getvalue()))
     return paths
 
 
 def write_index(infos: Sequence[FigureInfo], out_dir: Path, name: str = "index.json") -> Path:
     """Write captions and sentences of the figures in `out_dir`, for the report."""
-    out_dir.mkdir(parents=True, exist_ok=True)
-    path = out_dir / name
-    part = path.with_name(f".{name}.part")
-    part.write_text(json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    part.replace(path)
-    return path
+    write_text(out_dir / name, json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n")
+    return out_dir / name

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import base64
 import re
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import jinja2
 from markupsafe import Markup, escape
 
+from trackroller.report import html
 from trackroller.report.numbers import life, number, rounded
 from trackroller.report.sheet.drawing import drawing
 from trackroller.report.sheet.facts import collect
 from trackroller.roller.record import inputs_of
-from trackroller.study.files import write_whole
+from trackroller.study.files import write_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,27 +50,21 @@ def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "", database: Mate
     InputError
         If `ds` is not the result of one case.
     """
-    text = render(ds, name, database)
-    write_whole(Path(path), lambda beside: beside.write_text(text, encoding="utf-8"))
+    write_text(Path(path), render(ds, name, database))
     return Path(path)
 
 
 def render(ds: xr.Dataset, name: str = "", database: MaterialDatabase | None = None) -> str:
     """Return the sheet as HTML text; see `write_sheet`."""
     inputs_of(ds)
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("trackroller.report", "templates"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.filters |= {"symbols": symbols, "life": life, "number": number, "rounded": rounded, "bar": bar}
-    drawn = drawing(ds) if "normal_force" in ds else ""
-    page = environment.get_template("sheet.html.j2")
-    return page.render(
-        facts=collect(ds, database), name=name or "Track roller", drawing=drawn, figures=_figures(ds), full=FULL
-    )
+    content = {
+        "facts": collect(ds, database),
+        "name": name or "Track roller",
+        "drawing": drawing(ds) if "normal_force" in ds else "",
+        "figures": _figures(ds),
+        "full": FULL,
+    }
+    return html.render("sheet.html.j2", content, symbols=symbols, life=life, number=number, rounded=rounded, bar=bar)
 
 
 def symbols(text: str) -> Markup:
@@ -98,8 +91,7 @@ def _figures(ds: xr.Dataset) -> list[dict[str, str]]:
         return [
             {
                 "caption": infos[name].caption,
-                "source": "data:image/svg+xml;base64,"
-                + base64.b64encode((Path(folder) / f"{name}.svg").read_bytes()).decode("ascii"),
+                "source": html.data_uri(Path(folder) / f"{name}.svg"),
             }
             for name in SHOWN
             if name in infos

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import base64
 import html
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from trackroller.report.html import inline
 
 Block = tuple[str, Any]
 
@@ -68,13 +69,3 @@ def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
         f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
         f"<style>{_CSS}</style></head><body>{''.join(body)}</body></html>\n"
     )
-
-
-def inline(text: str) -> str:
-    """Text with `code`, *emphasis* and links as HTML, all else escaped.
-
-    Of links only their words stay.
-    """
-    text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", html.escape(text, quote=False))
-    text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
-    return re.sub(r"\*([^*]+)\*", r"<em>\1</em>", text)
