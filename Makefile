@@ -36,9 +36,9 @@ $(CI_STAMP): $(STAMP) requirements-ci.lock
 	$(BIN)/python -m pip install --disable-pip-version-check -q --require-hashes -r requirements-ci.lock
 	touch $@
 
-# ends with the path of the report and how long it took; progress in cases instead of lists of files
+# ends with the path of the report and how long it took; --quiet shows progress in cases and errors, nothing else
 study: $(STAMP)
-	$(BIN)/snakemake --quiet rules progress host --cores $(CORES) --config study=$(STUDY)
+	$(BIN)/snakemake --quiet progress host --cores $(CORES) --config study=$(STUDY)
 
 # the evidence: edge cases, trade-off, the paper, contact models side by side, other programs
 validate: $(STAMP)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -28,6 +30,13 @@ def lay_study(folder: Path, levels: int = 6, outputs: str = "forces", size: int 
     return folder
 
 
+def copy_program(folder: Path) -> Path:
+    """Copy the package and its workflow, with the compiled kernels, into a folder; return the copied Snakefile."""
+    for part in ("trackroller", "workflow", "config", "profiles"):
+        shutil.copytree(ROOT / part, folder / part)
+    return Path(shutil.copy(ROOT / "Snakefile", folder))
+
+
 def command(*words: str, snakefile: Path = ROOT / "Snakefile") -> list[str]:
     """Return the words that start Snakemake on two cores, and name each rule that it runs."""
     return [SNAKEMAKE, "-s", str(snakefile), "--quiet", "host", "--cores", "2", "--nocolor", *words]
@@ -37,7 +46,9 @@ def snakemake(folder: Path, *words: str, code: int = 0, snakefile: Path = ROOT /
     """Run Snakemake in a folder, require an exit code, and return what it printed."""
     words = tuple(command(*words, snakefile=snakefile))
     hangs = 900  # [s], more than the slowest machine needs
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=hangs)
+    paths = os.pathsep.join([str(snakefile.parent), os.environ.get("PYTHONPATH", "")])
+    env = os.environ | {"PYTHONPATH": paths}  # a copied workflow takes the package beside it
+    done = subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True, timeout=hangs)
     told = done.stdout + done.stderr
     assert done.returncode == code, told
     return told

@@ -5,9 +5,10 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.file import find_user_file
@@ -103,12 +104,42 @@ def study_inputs(study: Study) -> list[str]:
     return found + ([str(user)] if user is not None else [])
 
 
-def progress(folder: StudyFolder) -> str:
-    """Return one line that says how many cases of a study are solved."""
+def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
+    """Say how many cases of a study are solved; on a terminal, each message replaces the one before.
+
+    Parameters
+    ----------
+    folder : StudyFolder
+        The study's folder.
+    to : text stream
+        Where the message is written.
+    """
     plan = json.loads(folder.plan_file.read_text(encoding="utf-8"))
     total = plan["distinct"]
     done = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
-    return f"{folder.root.name}: {done:,} of {total:,} cases solved ({100 * done // max(total, 1)} %)"
+    line = f"{folder.root.name}: {done:,} of {total:,} cases solved ({100 * done // max(total, 1)} %)"
+    print(line, file=to, flush=True, end="\r" if to.isatty() and done < total else "\n")
+
+
+def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str]) -> None:
+    """Let Snakemake's log handlers pass only warnings, errors and the message that there is nothing to do.
+
+    Parameters
+    ----------
+    handlers : iterable of logging.Handler
+        The handlers of Snakemake's logger.
+    report : callable
+        Returns the path of the report, which that message names.
+    """
+
+    def wanted(record: logging.LogRecord) -> bool:
+        if record.getMessage().startswith("Nothing to be done"):
+            record.msg, record.args = f"Nothing to be done. Report: {report()}", ()
+            return True
+        return record.levelno > logging.INFO
+
+    for handler in handlers:
+        handler.addFilter(wanted)
 
 
 def finished(folder: StudyFolder, seconds: float) -> str:
@@ -119,8 +150,10 @@ def finished(folder: StudyFolder, seconds: float) -> str:
     return f"Report: {report}, made in {took}" if report.is_file() else f"Done in {took}; there is no report yet."
 
 
-def log_to(path: str) -> None:
-    """Send the log lines and warnings of this process to a rule's log file."""
+def log_to(path: str, step: str = "") -> None:
+    """Send the log lines and warnings of this process to a rule's log file, and tell the user the step's name."""
+    if step:
+        print(step, file=sys.stderr, flush=True)
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s", force=True)
     logging.captureWarnings(True)

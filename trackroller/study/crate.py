@@ -10,6 +10,7 @@ RO-Crate 1.1, https://w3id.org/ro/crate/1.1; Workflow Run Crate 0.5, https://w3i
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import shutil
@@ -25,7 +26,7 @@ from trackroller.materials import builtin_database, load_database
 from trackroller.materials.file import find_user_file
 from trackroller.study.config import load_study
 from trackroller.study.design.build import table_path
-from trackroller.study.files import write_text
+from trackroller.study.files import write_text, write_whole
 from trackroller.study.provenance import versions
 
 if TYPE_CHECKING:
@@ -78,17 +79,19 @@ def write_crate(study: Study, root: Path) -> Path:
 
 
 def _copy_inputs(study: Study, root: Path) -> None:
-    folder = root / INPUTS
-    folder.mkdir(parents=True, exist_ok=True)
-    text = study.merged()
+    """Write the inputs of a study, and remove those of an earlier version of it."""
+    text, user, copies = study.merged(), find_user_file(), {}
     if study.config.table is not None:
         name = Path(study.config.table).name
-        shutil.copyfile(table_path(study), folder / name)
+        copies[f"{INPUTS}/{name}"] = Path(table_path(study))
         text = study.merged(table=name)
-    write_text(root / STUDY_FILE, text)
-    user = find_user_file()
     if user is not None:
-        shutil.copyfile(user, root / MATERIALS_FILE)
+        copies[MATERIALS_FILE] = user
+    for old in set(_files(root, INPUTS)) - {*copies, STUDY_FILE}:
+        (root / old).unlink()
+    for name, source in copies.items():
+        write_whole(root / name, functools.partial(shutil.copyfile, source))
+    write_text(root / STUDY_FILE, text)
 
 
 def _files(root: Path, *names: str) -> Iterator[str]:

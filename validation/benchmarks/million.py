@@ -47,6 +47,7 @@ STUDY = {
     "second_order": False,
     "seed": 1,
     "outputs": ["forces", "contact", "life"],
+    "contact_model": "sliding",
     "accuracy": "preview",
 }
 

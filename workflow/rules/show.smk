@@ -1,4 +1,4 @@
-# What the results mean: indices, figures and one report to send.
+# What the results mean: indices, figures and one report to send; and the RO-Crate, which holds a digest of each file.
 
 
 rule sensitivity:
@@ -48,3 +48,24 @@ rule report:
         "../envs/trackroller.yaml"
     script:
         "../scripts/report.py"
+
+
+rule crate:
+    input:
+        inputs=study_inputs(PLAN.study),
+        design=rules.design.output,
+        study=rules.gather.output,
+        sensitivity=rules.sensitivity.output,
+        figures=rules.figures.output,
+        report=rules.report.output,
+        code=digest_file(f"{RESULTS}/code", "trackroller.study.crate"),
+    output:
+        f"{RESULTS}/ro-crate-metadata.json",
+    log:
+        f"{RESULTS}/logs/crate.log",
+    conda:
+        "../envs/trackroller.yaml"
+    params:
+        config=CONFIG,
+    script:
+        "../scripts/crate.py"

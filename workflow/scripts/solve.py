@@ -1,10 +1,9 @@
 """Solve a chunk of cases."""
 
 import logging
-import sys
 from pathlib import Path
 
-from trackroller.cli.workflow import log_to, progress
+from trackroller.cli.workflow import log_to, show_progress
 from trackroller.study.files import StudyFolder
 from trackroller.study.solve import solve_chunk
 
@@ -12,4 +11,4 @@ log_to(snakemake.log[0])
 folder = StudyFolder(Path(snakemake.output[0]).parent.parent)
 summary = solve_chunk(folder, snakemake.wildcards.chunk)
 logging.getLogger("trackroller").info(summary)
-print(progress(folder), file=sys.stderr)
+show_progress(folder)
