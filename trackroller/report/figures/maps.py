@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -17,12 +18,12 @@ from matplotlib.patches import Rectangle
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.claims import classes
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import sampled
 from trackroller.report.findings import extremes
 from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
-from trackroller.report.view import MOST_LEVELS, StudyView
+from trackroller.report.view import StudyView
 
 MAX_TICKS = 9
+BINS = 8  # classes of a factor with many levels in a sample
 Pair = tuple[str, str]
 
 
@@ -42,12 +43,7 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
         return None
     figure = style.new_figure(84, style.WIDE_MM)
     axes = figure.subplots()
-    cells = view.grid or all(len(view.levels(f)) <= MOST_LEVELS for f in pair)
-    if cells:
-        image = _life_cells(axes, view, rows, pair, column)
-    else:
-        drawn, held = sampled(rows)
-        image = _life_points(axes, drawn, pair, column)
+    image = _life_cells(axes, view, rows, pair, column)
     bar = figure.colorbar(
         image, ax=axes, aspect=25, pad=0.02, extend="max" if np.isposinf(rows[column]).any() else "neither"
     )
@@ -59,8 +55,7 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
     style.head(figure, capital(over), held)
     style.finish(figure)
-    how = "Each cell is the median of its cases" if cells and not view.grid else "Outlined parts do not roll"
-    how = how if cells else "One mark a case; squares: full slip, triangles: lift-off"
+    how = "Outlined parts do not roll" if view.grid else "Each cell is the median of its cases"
     inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
     said = extremes(view, column, words, unit, pair, inside)
     return figure, style.FigureInfo("life_map", f"{capital(over)}. {how}. {held}".strip(), said.text)
@@ -75,12 +70,9 @@ def _life_pair(view: StudyView) -> Pair | None:
     def worth(pair: Pair) -> tuple[float, ...]:
         rows, _ = view.hold(pair)
         regimes = rows["regime"].nunique() if "regime" in rows and view.grid else 1
-        few = [len(view.levels(f)) <= MOST_LEVELS for f in pair]
-        alike = view.grid or few[0] == few[1]  # a sample is drawn as cells or as points, not as rows of points
         several = float(sum(len(view.levels(f)) > 2 for f in pair))
         return (
             float(np.isfinite(rows[column]).any()),
-            float(alike),
             several,
             float(regimes),
             sum(swing[f] for f in pair),
@@ -104,13 +96,32 @@ def _swing(view: StudyView, name: str, column: str) -> float:
     return float(np.ptp([logs[index == k].mean() for k in range(len(ends)) if (index == k).any()]))
 
 
-def _table(rows: pd.DataFrame, pair: Pair, column: str, levels: tuple[list, list]) -> np.ndarray:
-    """Values (medians of a sample) over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
-    cells = np.full((len(levels[1]), len(levels[0])), np.nan)
-    place = [{v: i for i, v in enumerate(part)} for part in levels]
-    medians = rows.groupby(list(pair), as_index=False)[column].median()
-    for x, y, value in zip(medians[pair[0]], medians[pair[1]], medians[column], strict=True):
-        cells[place[1][y], place[0][x]] = value
+def places(view: StudyView, name: str, inside: np.ndarray) -> tuple[np.ndarray, list[Any]]:
+    """Return the column or row of cells in which each chosen case lies, and the level or the ends of each.
+
+    A grid has a cell for each level; in a sample a factor of many levels has `BINS` classes.
+
+    Parameters
+    ----------
+    inside : the chosen cases, shape (n,) bool
+    """
+    if not view.grid:
+        return classes(view, name, inside, BINS)
+    levels = view.levels(name)
+    index = {level: i for i, level in enumerate(levels)}
+    return view.table[name][inside].map(index).to_numpy(), levels
+
+
+def cell_name(name: str, end: Any) -> str:
+    """Write the level of a cell, or the ends (low, high) of its class."""
+    return f"{end[0]:.3g}…{end[1]:.3g}" if isinstance(end, tuple) else tick_text(name, end)
+
+
+def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) -> np.ndarray:
+    """Medians over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
+    cells = np.full(shape, np.nan)
+    medians = values.groupby([keys[1], keys[0]]).median()
+    cells[medians.index.get_level_values(0), medians.index.get_level_values(1)] = medians
     return cells
 
 
@@ -121,25 +132,27 @@ def _norm(life: np.ndarray) -> LogNorm:
 
 
 def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
-    levels = view.levels(pair[0]), view.levels(pair[1])
-    life = _table(rows, pair, column, levels)
+    inside = np.isin(np.arange(len(view.table)), rows.index)
+    found = [places(view, name, inside) for name in pair]
+    keys, shape = [index for index, _ in found], (len(found[1][1]), len(found[0][1]))
+    life = _table(rows[column], keys, shape)
     axes.set_facecolor("0.75")  # cells without a life
     cells = np.ma.masked_invalid(np.where(np.isposinf(life), 1e300, life))
     image = axes.pcolormesh(cells, cmap="cividis", norm=_norm(life), edgecolor="face", linewidth=0.1)
-    _ticks(axes, pair, levels)
+    for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, found, strict=True):
+        set_ticks(axis, [cell_name(name, end) for end in ends])
+    axes.tick_params(length=2)
     if "regime" in rows and view.grid:
-        regime = _table(rows, pair, "regime", levels)
+        regime = _table(rows["regime"], keys, shape)
         for code in (1, 2, 3):
             _hatched(axes, regime == code, code)
     return image
 
 
-def _ticks(axes: Axes, pair: Pair, levels: tuple[list, list]) -> None:
-    """Write level values at the middle of the cells, thinned when there are many."""
-    for axis, name, values in ((axes.xaxis, pair[0], levels[0]), (axes.yaxis, pair[1], levels[1])):
-        shown = range(0, len(values), -(-len(values) // MAX_TICKS))
-        axis.set_ticks([i + 0.5 for i in shown], [tick_text(name, values[i]) for i in shown])
-        axis.set_tick_params(length=2)
+def set_ticks(axis: Axis, texts: list[str]) -> None:
+    """Write texts at the middle of the cells, thinned when there are many."""
+    shown = range(0, len(texts), -(-len(texts) // MAX_TICKS))
+    axis.set_ticks([i + 0.5 for i in shown], [texts[i] for i in shown])
 
 
 def tick_text(name: str, value: Any) -> str:
@@ -173,30 +186,3 @@ def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
         "bbox": box,
     }
     axes.text(middle[1], middle[0], REGIME_LABELS[code], **label).set_in_layout(False)
-
-
-def _life_points(axes: Axes, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
-    """Draw a sample: one mark a case, its regime in the shape of the mark."""
-    norm = _norm(rows[column].to_numpy())
-    regime = rows["regime"].to_numpy() if "regime" in rows else np.zeros(len(rows))
-    image = None
-    for code, marker in ((0, "o"), (1, "s"), (2, "^")):
-        part = rows[regime == code]
-        if not len(part):
-            continue
-        look: dict[str, Any] = {"marker": marker}
-        look |= {"linewidth": 0.6 if code else 0.2, "edgecolor": "black" if code else "0.6"}
-        points = axes.scatter(
-            part[pair[0]],
-            part[pair[1]],
-            c=part[column],
-            cmap="cividis",
-            norm=norm,
-            s=13,
-            label=REGIME_LABELS[code],
-            rasterized=len(part) > 500,
-            **look,
-        )
-        image = image or points
-    axes.figure.legend(loc="outside lower left", ncols=3, handletextpad=0.2)
-    return image

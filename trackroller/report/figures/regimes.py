@@ -12,13 +12,10 @@ from matplotlib.patches import Patch, Rectangle
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.claims import classes
 from trackroller.report.figures import style
-from trackroller.report.figures.maps import MAX_TICKS, Pair, tick_text
-from trackroller.report.figures.panels import sampled
+from trackroller.report.figures.maps import BINS, Pair, cell_name, set_ticks
 from trackroller.report.findings import occurrence
 from trackroller.report.numbers import capital, factor_label, long_name
-from trackroller.report.view import MOST_LEVELS, StudyView
-
-BINS = 8
+from trackroller.report.view import StudyView
 
 
 def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
@@ -27,14 +24,12 @@ def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
         return None
     ranked = sorted(view.factors, key=lambda f: -_spread(view, f))
     pair: Pair = (ranked[0], ranked[1])
-    points = not view.grid and all(view.numeric(f) and len(view.levels(f)) > MOST_LEVELS for f in pair)
-    if not points:
-        pair = pair if len(view.levels(pair[0])) >= len(view.levels(pair[1])) else (pair[1], pair[0])
-        if not view.numeric(pair[0]):  # long names stand beside the rows, not under the columns
-            pair = (pair[1], pair[0])
+    pair = pair if len(view.levels(pair[0])) >= len(view.levels(pair[1])) else (pair[1], pair[0])
+    if not view.numeric(pair[0]):  # long names stand beside the rows, not under the columns
+        pair = (pair[1], pair[0])
     figure = style.new_figure(76, style.WIDE_MM)
     axes = figure.subplots()
-    note = _points(axes, view, pair) if points else _shares(axes, view, pair)
+    note = _shares(axes, view, pair)
     axes.set_xlabel(factor_label(pair[0]))
     axes.set_ylabel(factor_label(pair[1]))
     axes.grid(False)
@@ -59,7 +54,7 @@ def _shares(axes: Axes, view: StudyView, pair: Pair) -> str:
     """Draw cells over both factors, each divided from left to right by the share of the regimes."""
     every = np.ones(len(view.table), dtype=bool)
     keys, ends = zip(*(classes(view, f, every, BINS) for f in pair), strict=True)
-    texts = [[_cell_name(f, end) for end in part] for f, part in zip(pair, ends, strict=True)]
+    texts = [[cell_name(f, end) for end in part] for f, part in zip(pair, ends, strict=True)]
     both = zip(style.REGIME_COLOURS, style.REGIME_HATCHES, strict=True)
     looks: list[dict[str, Any]] = [{"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both]
     gaps = [0.04 if len(t) <= 12 else 0.0 for t in texts]
@@ -74,8 +69,7 @@ def _shares(axes: Axes, view: StudyView, pair: Pair) -> str:
     axes.set_xlim(0, len(texts[0]))
     axes.set_ylim(0, len(texts[1]))
     for axis, labels in ((axes.xaxis, texts[0]), (axes.yaxis, texts[1])):
-        step = -(-len(labels) // MAX_TICKS)
-        axis.set_ticks([i + 0.5 for i in range(0, len(labels), step)], labels[::step])
+        set_ticks(axis, labels)
     axes.tick_params(length=0)
     if sum(map(len, texts[0])) > 100:
         axes.tick_params(axis="x", rotation=35)
@@ -83,25 +77,3 @@ def _shares(axes: Axes, view: StudyView, pair: Pair) -> str:
     axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
     others = len(view.factors) > 2
     return "Each cell is divided by the share of its cases in each regime, over all other factors." if others else ""
-
-
-def _cell_name(name: str, end: Any) -> str:
-    return f"{end[0]:.3g}…{end[1]:.3g}" if isinstance(end, tuple) else tick_text(name, end)
-
-
-def _points(axes: Axes, view: StudyView, pair: Pair) -> str:
-    """Draw one mark a case of a sample."""
-    rows, said = sampled(view.table)
-    for code, marker in enumerate("os^X"):
-        part = rows[rows["regime"] == code]
-        if len(part):
-            look: dict[str, Any] = {
-                "marker": marker,
-                "facecolor": style.REGIME_COLOURS[code],
-                "edgecolor": "0.25",
-                "linewidth": 0.5,
-            }
-            raster = len(part) > 500
-            axes.scatter(part[pair[0]], part[pair[1]], s=11, label=REGIME_LABELS[code], rasterized=raster, **look)
-    axes.figure.legend(loc="outside lower left", ncols=4, handletextpad=0.2)
-    return said
