@@ -13,6 +13,7 @@ from typing import Any, TextIO
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.file import find_user_file
 from trackroller.study.config import Study, load_study
+from trackroller.study.cost import duration
 from trackroller.study.design.build import table_path
 from trackroller.study.files import StudyFolder, WorkError
 from trackroller.study.plan import Plan, read_plan, study_folder, working_plan
@@ -145,8 +146,7 @@ def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str])
 def finished(folder: StudyFolder, seconds: float) -> str:
     """Return the last line of a run: where the report is and how long the run took."""
     report = folder.root / "report.html"
-    minutes, rest = divmod(round(seconds), 60)
-    took = f"{minutes} min {rest} s" if minutes else f"{rest} s"
+    took = duration(seconds)
     return f"Report: {report}, made in {took}" if report.is_file() else f"Done in {took}; there is no report yet."
 
 

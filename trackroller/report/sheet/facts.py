@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import json
 import math
-import platform
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +27,7 @@ from trackroller.report.sheet.rows import (
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.limits import Limits, limits
 from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of
+from trackroller.study.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -131,7 +130,7 @@ def collect(ds: xr.Dataset, database: MaterialDatabase | None = None) -> Facts:
         whole=quantity_rows(ds, WHOLE_ROWS),
         lives=lives,
         limits=limit_rows(found, inputs),
-        flags=flags_of(ds, materials),
+        flags=flags_of(ds),
         options=_options(ds),
         command=command_of(ds),
         versions=", ".join(f"{name} {version}" for name, version in versions().items()),
@@ -264,9 +263,3 @@ def _weakest(ds: xr.Dataset) -> int:
 def _options(ds: xr.Dataset) -> str:
     names = ("contact_model", "spin_model", "accuracy", "normal", "hertz", "stress_bodies", "life_rule", "slip_terms")
     return ", ".join(f"{name.replace('_', ' ')} {ds.attrs[name]}" for name in names if ds.attrs.get(name))
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of this package and of the libraries that the numbers come from."""
-    found = {name: metadata.version(name) for name in ("numpy", "scipy", "numba", "xarray")}
-    return {"trackroller": metadata.version("trackroller"), "Python": platform.python_version(), **found}

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from trackroller.roller.dataset import VALIDITY_BITS, validity_bit
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     import xarray as xr
 
 # what a flag says of a roller, and what its user can do
@@ -64,52 +60,20 @@ class Flag:
     remedy: str
 
 
-def flags_of(ds: xr.Dataset, materials: Mapping[str, Mapping[str, Any]]) -> list[Flag]:
+def flags_of(ds: xr.Dataset) -> list[Flag]:
     """Return the flags of a solved case in words.
 
     Parameters
     ----------
     ds : xarray.Dataset
         Result of one case.
-    materials : mapping
-        Values of `roller_material` and `guide_material`, see `trackroller.roller.record.materials_of`.
     """
-    bits = int(ds["validity"])
-    found = []
+    bits, found = int(ds["validity"]), []
+    by_body = dict(zip(ds["body"].values, ds["validity_body"].values, strict=True)) if "validity_body" in ds else {}
     for name in VALIDITY_BITS:
-        if bits & validity_bit(name):
+        bit = validity_bit(name)
+        if bits & bit:
             sentence, remedy = WORDS[name]
-            bodies = " and ".join(f"the {body}" for body in _bodies(name, ds, materials)) or "a body"
+            bodies = " and ".join(f"the {body}" for body, own in by_body.items() if own & bit) or "a body"
             found.append(Flag(name, sentence.format(body=bodies), remedy))
     return found
-
-
-def _bodies(name: str, ds: xr.Dataset, materials: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """Return the bodies for which a flag of strength holds."""
-    found = []
-    for body in ("roller", "guide"):
-        values = materials[f"{body}_material"]
-        strength = values["tensile_strength"]
-        stress = _largest(ds, "peak_stress", body)
-        holds = {
-            "static": stress > strength,
-            "yield": _largest(ds, "max_pressure", None) > 1.6 * strength,
-            "deep_life": _smallest(ds, body) < values["fatigue_strength_ratio"] * strength,
-        }
-        if holds.get(name, False):
-            found.append(body)
-    return found
-
-
-def _largest(ds: xr.Dataset, name: str, body: str | None) -> float:
-    if name not in ds:
-        return np.nan
-    values = ds[name].values if body is None else ds[name].sel(body=body).values
-    return float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
-
-
-def _smallest(ds: xr.Dataset, body: str) -> float:
-    if "peak_stress" not in ds:
-        return np.nan
-    values = ds["peak_stress"].sel(body=body).values
-    return float(np.nanmin(values)) if np.isfinite(values).any() else np.nan

@@ -10,9 +10,10 @@ from rich.console import Console
 from rich.table import Table
 
 from trackroller.parameters import REGIMES
-from trackroller.report.sheet.facts import Facts, collect, versions
+from trackroller.report.sheet.facts import Facts, collect
 from trackroller.report.sheet.flags import flags_of
 from trackroller.roller.record import inputs_of, is_default, materials_of
+from trackroller.study.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -92,7 +93,7 @@ def as_json(ds: xr.Dataset) -> str:
         inputs = inputs_of(ds)
         told["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
         told["materials"] = materials_of(ds)
-        told["flags"] = [vars(flag) for flag in flags_of(ds, materials_of(ds))]
+        told["flags"] = [vars(flag) for flag in flags_of(ds)]
         told["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in ("case", "materials")}
         told["versions"] = versions()
     return json.dumps(told)
