@@ -9,7 +9,7 @@ CORES ?= all
 SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile validation/rules
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
-.PHONY: env env-ci lock study validate test test-quick lint docs test-slurm test-long clean-results
+.PHONY: env env-ci lock study validate test test-quick lint docs explorer explorer-check test-slurm test-long clean-results
 
 env: $(STAMP)
 
@@ -68,6 +68,13 @@ docs: $(CI_STAMP)
 	$(BIN)/python -m validation.adopt.extremes --check
 	$(BIN)/python -m validation.adopt.paper --check
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+# the script of the explorer from web/src, which needs Node and npm; the check compares it byte for byte
+explorer:
+	cd web && npm ci --ignore-scripts --no-audit --no-fund && node build.mjs
+
+explorer-check:
+	cd web && node build.mjs --check
 
 # needs Debian's slurmctld slurmd slurm-client munge on this machine; starts and stops its own
 test-slurm: $(STAMP)

@@ -102,6 +102,20 @@ def report(study: AnyStudy, results: Results = Path("results")) -> None:
 
 
 @app.command()
+def explore(
+    study: Annotated[str, typer.Argument(help="results/NAME, NAME, or a study.nc", show_default=False)],
+    results: Results = Path("results"),
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="file; explorer.html beside study.nc if not given")
+    ] = None,
+) -> None:
+    """Write the explorer of a study that was run as one page (HTML) that works without a network."""
+    from trackroller.cli.study import write_page
+
+    write_page(study, results, out)
+
+
+@app.command()
 def status(study: AnyStudy, results: Results = Path("results")) -> None:
     """Done, missing, failed by reason and by factor level, and the time left."""
     from trackroller.cli.study import print_status

@@ -57,6 +57,12 @@ def any_with(ds: xr.Dataset, dim: str) -> str:
     return next(str(n) for n, v in ds.variables.items() if dim in v.dims)
 
 
+def study_dims(ds: xr.Dataset) -> list[str]:
+    """Name the dimensions that count cases, in the order of the data set: `case`, or the factors of a grid."""
+    dims = [str(d) for d in ds.dims if d not in INNER and ds[any_with(ds, str(d))].ndim]
+    return [d for d in dims if d == "case" or d in ds.coords or d in PARAMETERS]
+
+
 def case_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
     """Flatten every wanted quantity over `dims` in one common order."""
     columns: dict[str, np.ndarray] = {}

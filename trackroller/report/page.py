@@ -17,6 +17,7 @@ from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.comparison import report_section
 from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
+from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
 from trackroller.report.known_errors import friction_error
@@ -75,9 +76,11 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
         with xr.open_dataset(sensitivity_nc) as opened:
             sens = opened.load()
     with xr.open_dataset(study_nc) as opened:
-        content = contents(opened.load(), sens)
+        ds = opened.load()
+    content = contents(ds, sens)
     content["figures"] = _placed(figures(Path(figures_dir)))
-    write_text(Path(out_html), render("report.html.j2", content, cell=cell))
+    content["explorer"] = _guarded(lambda: None, explorer, ds)
+    write_text(Path(out_html), secured(render("report.html.j2", content, cell=cell)))
     export([t for key in ("decide", "why", "ends", "models") for t in content[key]], Path(out_html).parent / "tables")
     return Path(out_html)
 

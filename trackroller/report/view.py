@@ -13,7 +13,7 @@ import xarray as xr
 
 from trackroller.analysis.limits import allowed_cases
 from trackroller.parameters import EXACTNESS, PARAMETERS
-from trackroller.report.columns import INNER, any_with, base_values, case_columns, factor_names, flag_meanings
+from trackroller.report.columns import base_values, case_columns, factor_names, flag_meanings, study_dims
 from trackroller.report.numbers import SPOKEN, setting
 from trackroller.study.outputs import read_study
 
@@ -59,8 +59,7 @@ class StudyView:
     @classmethod
     def of(cls, ds: xr.Dataset) -> StudyView:
         """Make the table of a gathered study (grid dimensions or one dimension `case`)."""
-        dims = [str(d) for d in ds.dims if d not in INNER and ds[any_with(ds, str(d))].ndim]
-        dims = [d for d in dims if d == "case" or d in ds.coords or d in PARAMETERS]
+        dims = study_dims(ds)
         table = pd.DataFrame(case_columns(ds, dims))
         names = factor_names(ds, dims, table)
         base = base_values(ds)

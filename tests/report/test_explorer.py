@@ -1,0 +1,209 @@
+"""The explorer's columns: the numbers of the study, small, in words, and safe inside a page."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import shlex
+import zlib
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from synthetic_results import grid_study, sampled_study
+from typer.testing import CliRunner
+
+from trackroller.analysis.pareto import pareto
+from trackroller.cli.main import app
+from trackroller.errors import InputError
+from trackroller.report.explorer.inputs import solve_inputs
+from trackroller.report.explorer.pack import pack
+from trackroller.report.explorer.page import compared, explorer, pareto_rows, secured, write_explorer
+from trackroller.report.explorer.rows import STATES, Column, collect, flag_text
+from trackroller.report.explorer.sample import sample_rows
+from trackroller.report.view import StudyView
+
+FACTORS = {
+    "friction_coefficient": [0.05, 0.3],
+    "material_pair": ["POM / POM", "</script><img src=x onerror=alert(1)>"],
+    "guide_curve_radius": [220.0, float("inf")],
+    "axial_force": [0.0, 30.0, 130.0],
+}
+NAMES = {**FACTORS, "material_pair": ["POM / POM", "PA6 / 1.7225-normalised"]}
+
+
+@pytest.fixture(scope="module")
+def study():
+    return grid_study(NAMES)
+
+
+def as_table(ds, **keys):
+    """The same results as those of a table of cases, from which `pareto` can restore the design."""
+    told = yaml.safe_load(ds.attrs["study"]) | {"design": "table", "factors": {}} | keys
+    return ds.assign_attrs(study=yaml.safe_dump(told))
+
+
+def unpacked(header, block):
+    """Columns of a page by name: what the script reads, written a second time."""
+    data = np.frombuffer(zlib.decompress(base64.b64decode(block)), np.uint8)
+    found = {}
+    for entry in header:
+        part = data[entry["start"] : entry["start"] + entry["bytes"]]
+        kind = np.dtype("<" + entry["type"])
+        found[entry["name"]] = part.reshape(kind.itemsize, -1).T.copy().view(kind).ravel()
+    return found
+
+
+def test_columns_hold_every_bit_of_the_study(study):
+    view = StudyView.of(study)
+    columns = collect(study, view)
+    header, block = pack(columns)
+    found = unpacked(header, block)
+    life = study["roller_life_hours"].values.ravel()
+    assert found["roller_life_hours"].tobytes() == life.astype("<f8").tobytes()
+    levels = next(h for h in header if h["name"] == "guide_curve_radius")["levels"]
+    assert levels == [220.0, "inf"]
+    codes = found["guide_curve_radius"].astype(int) - 1
+    wanted = view.table["guide_curve_radius"].to_numpy()
+    assert np.array_equal(np.array([float(level) for level in levels])[codes], wanted)
+    peak = study["peak_stress"].isel(contact=1, body=0).values.ravel()
+    assert np.array_equal(found["peak_stress[2,roller]"], peak.astype("f4"), equal_nan=True)
+
+
+def test_states_tell_every_case_that_is_left_out(study):
+    ds = study.copy(deep=True)
+    first = tuple(int(i[0]) for i in np.nonzero(ds["regime"].values == 0))
+    ds["converged"][first] = 0
+    ds["regime"][0, 0, 0, 1] = 3
+    ds["reason"] = xr.full_like(ds["regime"], "", dtype=object)
+    ds["reason"][0, 0, 0, 1] = "no convergence"
+    view = StudyView.of(ds)
+    columns = {c.name: c for c in collect(ds, view)}
+    state = np.array(STATES)[columns["state"].values]
+    assert (state == "valid").sum() == view.valid.sum() and state[1] == "failed"
+    assert (state == "not converged").sum() == 1 == (state == "failed").sum()
+    assert (state == "lift-off").sum() == (ds["regime"] == 2).sum()
+    assert (state == "outside the model").sum() == (view.rolling & ~view.valid).sum()
+    assert columns["reason"].texts[columns["reason"].values[1]] == "no convergence"
+    assert flag_text(5, ["half_space", "yield", "static"]).startswith(
+        "the patch is too large for a half-space; the peak"
+    )
+    assert flag_text(0, ["yield"]) == "none"
+
+
+def test_missing_values_stay_missing():
+    column = Column("x", "x", "", "factor", np.array([-1, 0, 1]), ("a", "b"), ("a", "b"))
+    header, block = pack([column, Column("y", "y", "mm", "output", np.array([np.nan, np.inf, 1.0]))])
+    found = unpacked(header, block)
+    assert found["x"].tolist() == [0, 1, 2] and header[0]["type"] == "u1"
+    assert np.array_equal(found["y"], [np.nan, np.inf, 1.0], equal_nan=True)
+
+
+def test_a_large_study_is_sampled_with_all_rare_states_and_kept_cases():
+    state = np.zeros(50_000, int)
+    state[:20_000] = 1
+    state[100:130] = 3
+    keep = np.zeros(50_000, bool)
+    keep[[5, 49_999]] = True
+    rows = sample_rows(state, keep, most=10_000)
+    assert len(rows) == pytest.approx(10_000, abs=5) and (np.diff(rows) > 0).all()
+    assert {5, 49_999, *range(100, 130)} <= set(rows.tolist())
+    assert (state[rows] == 1).sum() == pytest.approx(4_000, abs=60)
+    assert np.array_equal(rows, sample_rows(state, keep, most=10_000))
+    assert np.array_equal(sample_rows(state, keep, most=50_000), np.arange(50_000))
+
+
+def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
+    monkeypatch.setattr("trackroller.report.explorer.page.sample_rows", lambda s, k: sample_rows(s, k, most=300))
+    monkeypatch.setattr("trackroller.report.explorer.sample.RARE", 10)
+    ds = as_table(sampled_study(2_000), pareto={"roller_life_hours": "max", "friction_coefficient": "max"})
+    content = explorer(ds)
+    header = json.loads(content["header"])
+    rows = unpacked(header["columns"], content["rows"])["row"]
+    assert header["rows"] == len(rows) < header["cases"] == 2_000
+    assert "of 2,000 cases are shown" in content["sampled"]
+    front = np.flatnonzero(pareto_rows(ds, 2_000))
+    assert len(front) and set(front) <= set(rows)
+    assert explorer(sampled_study(40))["sampled"] == ""
+
+
+def test_the_pareto_set_is_found_in_the_order_of_the_data_set():
+    """The study file names its factors in another order than the data set has dimensions."""
+    ds = grid_study({"velocity": [1.0, 2.0], "friction_coefficient": [0.1, 0.2, 0.3], "axial_force": [0.0, 30.0]})
+    goals = {"roller_life_hours": "max", "friction_coefficient": "max"}
+    ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"pareto": goals})
+    rows = np.flatnonzero(pareto_rows(ds, 12))
+    front = pareto(ds, goals)
+    lives = front["roller_life_hours"].values[front["optimal"].values == 1]
+    assert sorted(ds["roller_life_hours"].values.ravel()[rows]) == sorted(lives) and len(rows)
+
+
+def test_only_rows_of_the_most_exact_model_are_compared():
+    ds = grid_study({"velocity": [1.0, 2.0], "axial_force": [0.0, 30.0]})
+    models = ds.rename(velocity="contact_model").assign_coords(contact_model=["sliding", "kalker"])
+    assert compared(StudyView.of(models)) == "kalker" and compared(StudyView.of(ds)) == ""
+
+
+def test_names_of_users_cannot_end_the_data_and_the_policy_allows_nothing_else(tmp_path):
+    ds = grid_study({**FACTORS, "material_pair": ["POM / POM", "PA6 / 1.7225-normalised"]})
+    ds = ds.assign_coords(material_pair=FACTORS["material_pair"])
+    ds.attrs["study"] = ds.attrs["study"].replace("friction-and-fit", "'<b>x</b>'")
+    ds.to_netcdf(tmp_path / "study.nc")
+    text = write_explorer(tmp_path).read_text(encoding="utf-8")
+    assert "<img" not in text and "<b>x" not in text and text.count("</script>") == 3
+    (policy,) = re.findall(r'Content-Security-Policy" content="([^"]+)"', text)
+    assert policy.startswith("default-src 'none'") and "unsafe" not in policy and "http" not in policy
+    assert policy.count("sha256-") == 3 and "eval(" not in text and "new Function" not in text
+    assert secured("<script>a</script>@content-security-policy@").endswith("style-src 'none'")
+
+
+def test_a_page_of_5400_cases_stays_below_its_size():
+    content = explorer(grid_study())
+    assert json.loads(content["header"])["rows"] == 5400
+    assert sum(len(str(part).encode()) for part in content.values()) < 1_200_000
+
+
+STUDY = """name: two rollers
+base: {motor_force: 0}
+factors:
+  material_pair: {values: [[PA6, 1.7225-normalised], [POM, POM]]}
+  guide_curve_radius: {values: [inf, -100.0]}
+outputs: [forces, peak_stress, life]
+contact_model: sliding
+"""
+
+
+def test_the_commands_of_a_case_are_those_of_repeat(tmp_path, monkeypatch):
+    """`explore` writes the page, and its settings are the ones that `repeat` prints for the same case."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.yaml").write_text(STUDY.replace("two rollers", "two-rollers"))
+    runner = CliRunner()
+    assert runner.invoke(app, ["run", "study.yaml", "-q"]).exit_code == 0
+    done = runner.invoke(app, ["explore", "results/two-rollers"])
+    assert done.exit_code == 0 and done.output.strip() == "results/two-rollers/explorer.html"
+    with xr.open_dataset("results/two-rollers/study.nc") as opened:
+        ds = opened.load()
+    view = StudyView.of(ds)
+    columns = {c.name: c for c in collect(ds, view)}
+    settings, more = solve_inputs(ds, view, columns)
+    columns |= {c.name: c for c in more}
+    for row in range(4):
+        told = {}
+        for key, value in settings:
+            if isinstance(value, list):
+                column = columns[value[0]]
+                value = column.values[row] if column.levels is None else column.levels[column.values[row]]
+            told[key] = str(value)
+        printed = runner.invoke(app, ["repeat", "two-rollers", str(row)])
+        assert printed.exit_code == 0
+        words = shlex.split(printed.output.splitlines()[0])
+        assert told == dict(word.split("=", 1) for word in words if "=" in word)
+
+
+def test_a_folder_without_results_is_refused(tmp_path):
+    with pytest.raises(InputError, match=r"study.nc"):
+        write_explorer(tmp_path)
+    done = CliRunner().invoke(app, ["explore", str(tmp_path / "missing")])
+    assert done.exit_code != 0

@@ -1,0 +1,413 @@
+"""The explorer in a real browser without a network: what it selects, shows, finds, exports and survives."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from browser import CHROMIUM, Browser
+from synthetic_results import PAIRS, grid_study, sampled_study
+
+from trackroller.analysis.pareto import pareto
+from trackroller.report.explorer.page import write_explorer
+from trackroller.report.view import StudyView
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+
+AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
+FACTORS = {
+    "friction_coefficient": [0.05, 0.2, 0.3, 0.4],
+    "roller_profile_radius": [-8.0, -7.0, -6.4],
+    "material_pair": list(PAIRS),
+    "motor_force": [-30.0, 0.0],
+    "axial_force": [0.0, 30.0, 130.0],
+    "guide_curve_radius": [220.0, float("inf")],
+}
+TWELVE = {
+    **{name: [0.1, 0.2] for name in ("friction_coefficient",)},
+    **{"roller_profile_radius": [-8.0, -7.0], "guide_curve_radius": [220.0, float("inf")], "motor_force": [-30.0, 0.0]},
+    **{"axial_force": [0.0, 30.0], "radial_force": [-200.0, -150.0], "contact_angle": [30.0, 35.0]},
+    **{"axis_distance": [21.0, 21.75], "velocity": [30.0, 60.0], "guide_profile_radius": [6.0, 5.9]},
+    **{"guide_overrollings_per_hour": [100.0, 600.0], "material_pair": list(PAIRS[:2])},
+}
+
+
+def as_table(ds):
+    """The same results as those of a table of cases, from which `pareto` can restore the design."""
+    told = yaml.safe_load(ds.attrs["study"]) | {"design": "table", "factors": {}}
+    return ds.assign_attrs(study=yaml.safe_dump(told))
+
+
+def in_order(ds):
+    """The same results with the factors of the study file in the order of the dimensions, as `gather` writes them."""
+    told = yaml.safe_load(ds.attrs["study"])
+    told["factors"] = {name: told["factors"][name] for name in ds.dims if name in told["factors"]}
+    return ds.assign_attrs(study=yaml.safe_dump(told, sort_keys=False))
+
+
+def failed(ds):
+    """The same study with no solution in any case."""
+    ds = ds.copy(deep=True)
+    ds["regime"][:] = 3
+    ds["validity"][:] = 0
+    for name, variable in ds.data_vars.items():
+        if variable.dtype.kind == "f":
+            ds[name] = variable * np.nan
+    return ds
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with closing(Browser()) as running:
+        yield running
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    return tmp_path_factory.mktemp("explorer")
+
+
+def written(ds, folder, name):
+    (folder / name).mkdir()
+    ds.to_netcdf(folder / name / "study.nc")
+    return write_explorer(folder / name)
+
+
+@pytest.fixture(scope="module")
+def grid():
+    return in_order(grid_study(FACTORS))
+
+
+@pytest.fixture(scope="module")
+def sample():
+    return as_table(sampled_study(400))
+
+
+@pytest.fixture(scope="module")
+def pages(place, grid, sample):
+    return {"grid": written(grid, place, "grid"), "sample": written(sample, place, "sample")}
+
+
+@pytest.fixture
+def page(browser, pages):
+    opened = browser.open(pages["grid"])
+    yield opened
+    assert opened.complaints == []
+    assert set(opened.requests) <= {pages["grid"].as_uri()}
+    opened.close()
+
+
+def shown(page):
+    return [
+        int(page.run(f"document.querySelector('[data-count={n}]').value")) for n in ("selected", "valid", "left-out")
+    ]
+
+
+SELECTIONS = {
+    "grid": (
+        {},
+        {"friction_coefficient": [0.1, 0.35]},
+        {"material_pair": list(PAIRS[1:3])},
+        {"regime": ["full_slip", "lift_off"]},
+        {"roller_life_hours": [100, None], "motor_force": [0, 0]},
+        {"guide_curve_radius": [300, None]},
+        {"axial_force": [0, 30], "roller_peak_stress": [None, 400], "regime": ["rolling"]},
+    ),
+    "sample": (
+        {"friction_coefficient": [0.1, 0.2], "axial_force": [0, 60]},
+        {"material_pair": [PAIRS[0]], "roller_life_hours": [50, 5000]},
+        {"motor_force": [-30, -30], "roller_profile_radius": [-8, None]},
+    ),
+}
+
+
+def expected(view, wanted):
+    """Mark the cases that a selection holds, by pandas."""
+    from trackroller.parameters import REGIMES
+
+    mask = np.ones(len(view.table), bool)
+    for name, told in wanted.items():
+        if name == "regime":
+            mask &= np.isin(np.array(REGIMES)[view.regime.astype(int)], told)
+        elif isinstance(told[0], str):
+            mask &= view.table[name].isin(told).to_numpy()
+        else:
+            column = {"roller_peak_stress": "peak_stress_roller"}.get(name, name)
+            low, high = (-np.inf if told[0] is None else told[0]), (np.inf if told[1] is None else told[1])
+            mask &= ((view.table[column] >= low) & (view.table[column] <= high)).to_numpy()
+    return mask
+
+
+def test_counts_and_rows_of_ten_selections_are_those_of_the_data_set(browser, pages, grid, sample):
+    for name, ds in (("grid", grid), ("sample", sample)):
+        view, page = StudyView.of(ds), browser.open(pages[name])
+        for wanted in SELECTIONS[name]:
+            mask = expected(view, wanted)
+            page.run(f"trackroller.select({json.dumps(wanted)})")
+            assert page.run("trackroller.selected()") == np.flatnonzero(mask).tolist()
+            valid = int((mask & view.valid).sum())
+            assert shown(page) == [mask.sum(), valid, mask.sum() - valid]
+        page.close()
+
+
+QUESTIONS = (
+    ({"roller_life_hours": "max", "guide_peak_stress": "min"}, {}, ()),
+    (
+        {"roller_life_hours": "max", "roller_peak_stress": "min"},
+        {"normal_force_1": [30, None]},
+        ("normal_force_1 >= 30",),
+    ),
+    ({"roller_life_hours": "max", "friction_coefficient": "max"}, {}, ()),
+    (
+        {"roller_life_hours": "max", "axial_force": "max", "friction_coefficient": "max"},
+        {"roller_peak_stress": [None, 400.5]},
+        ("roller_peak_stress <= 400.5",),
+    ),
+    (
+        {"roller_life_hours": "max", "axial_force": "max"},
+        {"regime": ["rolling", "lift_off"]},
+        ("regime != full_slip", "regime != failed"),
+    ),
+)
+
+
+def test_ten_pareto_sets_are_those_of_the_package(browser, pages, grid, sample):
+    for name, ds in (("grid", grid), ("sample", sample)):
+        page, sizes = browser.open(pages[name]), []
+        for goals, limits, constraints in QUESTIONS:
+            out = pareto(ds, goals, constraints)
+            wanted = out["row"].values[out["optimal"].values == 1].tolist()
+            assert page.run(f"trackroller.pareto({json.dumps(goals)}, {json.dumps(limits)})") == wanted
+            told = [text for text in constraints if text != "regime != failed"]
+            if told:
+                assert page.run(f"trackroller.pareto({json.dumps(goals)}, {json.dumps(told)})") == wanted
+            sizes.append(len(wanted))
+        assert max(sizes) > 3 and min(sizes) > 0
+        page.close()
+
+
+def test_a_brush_drawn_with_the_pointer_selects_and_a_click_takes_it_back(page, grid):
+    left, top, width, _ = page.box("#explorer .stack canvas + canvas")
+    axes = page.run("document.querySelectorAll('[data-axis]:checked').length")
+    life = len(FACTORS)  # the axis of the first output stands behind those of the factors
+    x = left + 46 + life * (width - 92) / (axes - 1)
+    page.drag((x, top + 70), (x, top + 190))
+    selected, valid, rest = shown(page)
+    rows = page.run("trackroller.selected()")
+    lives = grid["roller_life_hours"].values.ravel()
+    assert 0 < selected < lives.size and selected == len(rows) == valid + rest
+    assert np.nanmin(lives[rows]) > np.nanmax(np.delete(lives, rows))  # the upper part of the axis
+    assert "brush.roller_life_hours" in page.run("trackroller.fragment()")
+    page.drag((x, top + 300), (x, top + 300))
+    assert shown(page)[0] == lives.size
+    material = left + 46 + 2 * (width - 92) / (axes - 1)
+    page.drag((material, top + 58 + 0.9 * 268), (material, top + 58 + 0.9 * 268))  # the lowest of five levels
+    assert shown(page)[0] == lives.size // 5
+
+
+def test_fields_brush_with_the_keyboard_alone(page, grid):
+    page.run("[...document.querySelectorAll('summary')][0].focus()")
+    page.key("Enter")
+    page.run("document.querySelector('#explorer .brushes input[type=number]').focus()")
+    page.call("Input.insertText", text="500")
+    page.key("Tab")
+    lives = grid["roller_life_hours"].values.ravel()
+    assert shown(page)[0] == (lives >= 500).sum() > 0
+    page.run("document.querySelector('#explorer .brushes input[type=checkbox]').focus()")
+    page.key(" ")
+    first = np.broadcast_to(np.arange(4)[:, None], (4, lives.size // 4)).ravel()
+    assert shown(page)[0] == ((lives >= 500) & (first != 0)).sum()
+
+
+def test_a_click_pins_a_case_and_two_stand_side_by_side(page, grid):
+    page.run("trackroller.select({axial_force: [0, 30], regime: ['rolling']})")
+    page.box("#explorer .cases")
+    page.run("document.querySelector('#explorer .cases').focus()")
+    page.key("Enter", "ArrowDown", "Enter")
+    one, two = page.run("trackroller.selected()")[:2]
+    heads = page.run("[...document.querySelectorAll('.pinned thead th')].map(e => e.textContent)")
+    assert heads == [f"A: case {one} Unpin", f"B: case {two} Unpin"]
+    rows = page.run(
+        "[...document.querySelectorAll('.pinned tbody tr:not(.part)')]"
+        ".map(e => [e.className, ...[...e.children].map(c => c.textContent)])"
+    )
+    assert all((kind == "differs") == (a != b) == head.startswith("≠ ") for kind, head, a, b in rows)
+    assert any(kind for kind, *_ in rows) and {"Flags", "Life of the roller"} <= {r[1].removeprefix("≠ ") for r in rows}
+    commands = page.run("[...document.querySelectorAll('.pinned .command code')].map(e => e.textContent)")
+    assert commands[1] == f"trackroller repeat friction-and-fit {one}"
+    assert commands[0].startswith("trackroller solve --set axis_distance=21.75")
+    level = grid["roller_profile_radius"].values[np.unravel_index(one, grid["regime"].shape)[1]]
+    assert f"--set roller_profile_radius={level}" in commands[0]
+
+
+def test_a_touched_case_is_told_in_words(page):
+    page.run("document.querySelector('#explorer canvas[tabindex]').focus()")
+    page.key("ArrowRight")
+    told = page.run("document.querySelector('.hovered').textContent")
+    assert re.match(r"Case \d+ · Friction coefficient 0\.05 · ", told)
+    assert "Life of the roller" in told and "Regime: " in told and "lags" in told
+
+
+def test_slices_of_a_grid_follow_the_slider(page, grid):
+    before = page.run("trackroller.slice()")
+    slider = "document.querySelector('label[data-factor=axial_force] input')"
+    page.run(f"{slider}.value = '0'; {slider}.dispatchEvent(new Event('input'))")
+    after = page.run("trackroller.slice()")
+    numbers = np.arange(grid["regime"].size).reshape(grid["regime"].shape)
+    # held: the middle level of every other factor
+    assert before == numbers[:, 1, 2, 0, 1, 0].tolist() and after == numbers[:, 1, 2, 0, 0, 0].tolist()
+
+
+def test_medians_of_a_sample_lie_within_their_band(browser, pages, sample):
+    page = browser.open(pages["sample"])
+    (life, *_), _ = page.run("trackroller.slice()")
+    valid = sample["roller_life_hours"].values[StudyView.of(sample).valid]
+    assert len(life) > 5 and all(s["low"] <= s["median"] <= s["high"] for s in life)
+    assert {s["median"] for s in life} <= set(valid.tolist())
+    page.close()
+
+
+def test_the_selection_is_exported_with_every_digit(page, grid, tmp_path):
+    page.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    page.run("trackroller.select({roller_life_hours: [1000, null]})")
+    page.run("[...document.querySelectorAll('#explorer button')].find(b => b.textContent === 'Export CSV').click()")
+    target = tmp_path / "friction-and-fit-selection.csv"
+    page.until("1") if target.exists() else page.run("new Promise(r => setTimeout(r, 800))")
+    with target.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    lives = grid["roller_life_hours"].values.ravel()
+    assert [int(row["case"]) for row in rows] == np.flatnonzero(lives >= 1000).tolist()
+    assert [float(row["roller_life_hours"]) for row in rows] == lives[lives >= 1000].tolist()
+    assert {row["regime"] for row in rows} <= {"rolling", "full_slip", "lift_off"}
+
+
+def test_the_address_holds_the_view_and_wrong_addresses_do_no_harm(browser, pages):
+    page = browser.open(pages["grid"])
+    page.run(
+        "trackroller.select({friction_coefficient: [0.1, 0.3], roller_life_hours: [100, null]}); trackroller.pin(7)"
+    )
+    rows, fragment = page.run("trackroller.selected()"), page.run("trackroller.fragment()")
+    page.close()
+    again = browser.open(pages["grid"], fragment)
+    assert again.run("trackroller.selected()") == rows
+    assert "case 7" in again.run("document.querySelector('.pinned').textContent")
+    again.close()
+    wrong = "#explore&brush.__proto__=[1]&brush.nothing=[1,2]&x=constructor&pins=a,-1,99999999&axes=7&slice=[1,[2]]"
+    payload = "&colour=%3Cimg%20src%3Dx%20onerror%3Dalert(1)%3E&brush.regime={%22a%22:1}&sort=%3Cb%3E"
+    page = browser.open(pages["grid"], wrong + payload)
+    assert (
+        shown(page)[0] == grid_size()
+        and page.complaints == []
+        and page.run("document.querySelectorAll('#explorer img').length") == 0
+    )
+    page.close()
+
+
+def grid_size():
+    return int(np.prod([len(levels) for levels in FACTORS.values()]))
+
+
+def test_limits_and_goals_answer_in_the_page(page):
+    page.run(
+        """(() => { const field = [...document.querySelectorAll('input[aria-label="Life of the roller, at least"]')][0];
+        field.value = '100'; field.dispatchEvent(new Event('change'));
+        [...document.querySelectorAll('button')].find(b => b.textContent === 'Find the Pareto set').click(); })()"""
+    )
+    said = page.run("[...document.querySelectorAll('#explorer [role=status]')].map(e => e.textContent).join('|')")
+    assert "beaten by no other within the limits" in said
+    asked = page.run("[...document.querySelectorAll('#explorer .command code')].map(e => e.textContent).join('')")
+    assert yaml.safe_load(asked)["constraints"] == ["roller_life_hours >= 100"]
+    goals = yaml.safe_load(asked)["pareto"]
+    front = page.run(f"trackroller.pareto({json.dumps(goals)}, {{roller_life_hours: [100, null]}})")
+    page.run("[...document.querySelectorAll('button')].find(b => b.textContent === 'Show the set only').click()")
+    assert page.run("trackroller.selected()") == front
+    page.run("[...document.querySelectorAll('button')].find(b => b.textContent === 'Clear the selection').click()")
+    assert shown(page)[0] == grid_size()
+
+
+def test_names_of_users_stay_text(browser, place):
+    evil = ["<img src=x onerror=document.title=1>", "'\"></script><script>document.title=2</script>"]
+    ds = grid_study({"material_pair": list(PAIRS[:2]), "axial_force": [0.0, 30.0]}).assign_coords(material_pair=evil)
+    page = browser.open(written(ds, place, "evil"))
+    page.run("trackroller.pin(0)")
+    text = page.run("document.querySelector('#explorer').textContent")
+    assert evil[0] in text and page.run("document.images.length") == 0
+    assert page.run("document.title").startswith("friction-and-fit") and page.complaints == []
+    page.close()
+
+
+def test_the_policy_forbids_requests_and_eval(page):
+    tried = "['https://example.org/', 'data:,x'].map(u => fetch(u).then(() => 'open', () => 'closed'))"
+    assert page.run(f"Promise.all({tried})") == ["closed", "closed"]
+    assert page.run(
+        "new Promise(r => { const s = document.createElement('script'); s.textContent = 'window.bad = 1';"
+        " document.body.append(s); setTimeout(() => r(window.bad === undefined), 50); })"
+    )
+    page.browser.events.clear()  # the complaints of this test are wanted
+
+
+def test_rows_are_read_without_the_browsers_own_inflate(browser, pages):
+    page = browser.open(pages["grid"], before="delete window.DecompressionStream; delete Uint8Array.fromBase64")
+    assert page.run("document.querySelector('#explorer').dataset.ready") == "yes" and shown(page)[0] == grid_size()
+    page.close()
+
+
+STUDIES = {
+    "one": lambda: grid_study({"axial_force": [0.0, 30.0]}).isel(axial_force=[1]),
+    "two": lambda: grid_study({"axial_force": [0.0, 30.0]}),
+    "single": lambda: grid_study({"friction_coefficient": np.linspace(0.02, 0.4, 20).tolist()}),
+    "twelve": lambda: grid_study(TWELVE),
+    "failed": lambda: failed(grid_study({"axial_force": [0.0, 30.0], "radial_force": [-200.0, -100.0]})),
+}
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_studies_of_every_form_open_without_a_complaint(browser, place, name):
+    ds = STUDIES[name]()
+    page = browser.open(written(ds, place, name))
+    view = StudyView.of(ds)
+    assert shown(page) == [len(view.table), view.valid.sum(), len(view.table) - view.valid.sum()]
+    page.run("trackroller.pin(0); trackroller.select({regime: ['rolling', 'failed']})")
+    assert shown(page)[0] == np.isin(view.regime, [0, 3]).sum()
+    if name == "failed":
+        assert "failed" in page.run("document.querySelector('.counts').textContent")
+    assert page.complaints == []
+    page.close()
+
+
+def test_a_hundred_thousand_rows_are_all_there(browser, place):
+    ds = sampled_study(100_000)
+    page = browser.open(written(ds, place, "large"))
+    mask = (ds["friction_coefficient"] <= 0.2).values
+    page.run("trackroller.select({friction_coefficient: [0.02, 0.2]})")
+    assert shown(page)[0] == mask.sum()
+    assert page.run("document.querySelectorAll('.cases .row').length") < 60 and page.complaints == []
+    page.close()
+
+
+@pytest.mark.skipif(not AXE.is_file(), reason="needs axe-core: run `npm ci` in web/")
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_serious(browser, pages, scheme):
+    page = browser.open(pages["grid"])
+    page.media(prefers_color_scheme=scheme)
+    page.run("trackroller.pin(0); trackroller.pin(5); document.querySelectorAll('details').forEach(d => d.open = true)")
+    page.run(AXE.read_text(encoding="utf-8") + "; 0")
+    found = page.run(
+        "axe.run(document, {resultTypes: ['violations']})"
+        ".then(r => r.violations.map(v => [v.impact, v.id, v.nodes.slice(0, 3).map(n => n.html)]))"
+    )
+    assert [v for v in found if v[0] in ("serious", "critical")] == []
+    page.close()
+
+
+def test_paper_shows_the_static_report_only(browser, pages):
+    page = browser.open(pages["grid"])
+    page.media("print")
+    assert page.run("getComputedStyle(document.querySelector('#explore')).display") == "none"
+    page.close()

@@ -1,0 +1,59 @@
+"""Columns as one compressed block of bytes with a header that a page can read."""
+
+from __future__ import annotations
+
+import base64
+import math
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from trackroller.report.explorer.rows import Column
+
+
+def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
+    """Compress the columns.
+
+    Parameters
+    ----------
+    columns : columns of equal length n
+
+    Returns
+    -------
+    header : for each column its name, label, unit, role, scale, levels, number type and place in the block
+    block : the numbers, as base64 of a zlib stream (RFC 1950)
+
+    Notes
+    -----
+    Numbers are little-endian. In each column the first bytes of all numbers come first, then all second bytes, and so
+    on: equal bytes then stand side by side, which compresses better. Positions in a list of levels are stored plus
+    one; 0 stands for no value.
+    """
+    header, parts, start = [], [], 0
+    for column in columns:
+        array = _numbers(column)
+        part = array.view(np.uint8).reshape(len(array), -1).T.tobytes()
+        entry: dict[str, Any] = {key: getattr(column, key) for key in ("name", "label", "unit", "role", "log")}
+        if column.levels is not None:
+            entry["levels"] = [_plain(level) for level in column.levels]
+            entry["texts"] = list(column.texts)
+            entry["number"] = all(isinstance(level, float) for level in column.levels)
+        header.append(entry | {"type": array.dtype.str[1:], "start": start, "bytes": len(part)})
+        parts.append(part)
+        start += len(part)
+    return header, base64.b64encode(zlib.compress(b"".join(parts), 9)).decode("ascii")
+
+
+def _numbers(column: Column) -> np.ndarray:
+    if column.levels is None:
+        kind = "<f4" if column.values.dtype == np.float32 else "<f8"
+        return np.ascontiguousarray(column.values, dtype=kind)
+    kind = next(k for k in ("<u1", "<u2", "<u4") if len(column.levels) < np.iinfo(k).max)
+    return np.ascontiguousarray(column.values + 1, dtype=kind)
+
+
+def _plain(level: Any) -> Any:
+    """Return a level as JSON can hold it: infinity becomes a text."""
+    return str(level) if isinstance(level, float) and not math.isfinite(level) else level

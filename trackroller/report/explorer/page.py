@@ -1,0 +1,175 @@
+"""The explorer as a section of the report, and as a page of its own; both forbid every request."""
+
+from __future__ import annotations
+
+import base64
+import dataclasses
+import hashlib
+import json
+import re
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import markupsafe
+import numpy as np
+import xarray as xr
+
+from trackroller.analysis.pareto import default_objectives, study_pareto
+from trackroller.errors import InputError
+from trackroller.parameters import EXACTNESS
+from trackroller.report.columns import study_dims
+from trackroller.report.explorer.inputs import solve_inputs, strengths
+from trackroller.report.explorer.pack import pack
+from trackroller.report.explorer.rows import STATES, Column, collect
+from trackroller.report.explorer.sample import sample_rows
+from trackroller.report.html import render
+from trackroller.report.numbers import count
+from trackroller.report.view import StudyView
+from trackroller.study.files import StudyFolder, write_text
+from trackroller.study.outputs import case_dims, read_study
+
+POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
+
+
+def explorer(ds: xr.Dataset, view: StudyView | None = None) -> dict[str, Any]:
+    """Return what the template of the explorer needs.
+
+    Parameters
+    ----------
+    ds : gathered study
+    view : the same study as a table, if it is there already
+
+    Returns
+    -------
+    `header` (JSON), `rows` (base64), `script` and `style` (text), `sampled` (a sentence, '' if all cases are shown)
+    """
+    view = StudyView.of(ds) if view is None else view
+    columns = collect(ds, view)
+    settings, more = solve_inputs(ds, view, {c.name: c for c in columns})
+    columns += more
+    state = next(c for c in columns if c.name == "state").values
+    rows, cases = sample_rows(state, pareto_rows(ds, len(state))), len(state)
+    if len(rows) < cases:
+        columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
+        columns.append(Column("row", "Row", "", "row", rows.astype(float)))
+    if (numbers := _numbers(ds, view)) is not None:
+        columns.append(Column("case", "Case", "", "row", numbers[rows].astype(float)))
+    packed, block = pack(columns)
+    header = {
+        "name": str(view.study.get("name") or ds.attrs.get("study_name") or "study"),
+        "rows": len(rows),
+        "cases": cases,
+        "grid": view.grid and len(rows) == cases,
+        "settings": settings,
+        "strengths": strengths(ds),
+        "states": list(STATES),
+        "goals": view.study.get("pareto") or default_objectives(ds),
+        "compared": compared(view),
+        "columns": packed,
+    }
+    said = f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, all cases of rare"
+    return {
+        "header": _json(header),
+        "rows": markupsafe.Markup(block),
+        "script": markupsafe.Markup(asset("explorer.js")),
+        "style": markupsafe.Markup(asset("explorer.css")),
+        "sampled": f"{said} states, and the Pareto set of the study's goals." if len(rows) < cases else "",
+    }
+
+
+def _numbers(ds: xr.Dataset, view: StudyView) -> np.ndarray | None:
+    """Return the case numbers of `trackroller repeat` if they are not the row numbers."""
+    if "case" not in ds.variables or ds["case"].size != len(view.table) or ds["case"].dtype.kind not in "fiu":
+        return None
+    numbers = ds["case"].values.ravel()
+    return None if (numbers == np.arange(len(numbers))).all() else numbers
+
+
+def pareto_rows(ds: xr.Dataset, cases: int) -> np.ndarray:
+    """Mark the Pareto set of the study's own goals, shape (n,) bool; no row without goals."""
+    marked = np.zeros(cases, dtype=bool)
+    try:
+        front = study_pareto(ds)
+    except InputError:  # a result without the study file that its goals need
+        return marked
+    if front is not None:
+        marked[front["row"].values[front["optimal"].values == 1]] = True
+        marked = marked[_design_rows(ds)]
+    return marked
+
+
+def _design_rows(ds: xr.Dataset) -> np.ndarray:
+    """Return the row of the design of each case: its factors may stand in another order than the dimensions."""
+    dims = study_dims(ds)
+    order = [d for d in case_dims(ds, read_study(ds).get("factors") or {}) if d in dims]
+    order += [d for d in dims if d not in order]
+    rows = np.arange(np.prod([ds.sizes[d] for d in order], dtype=int)).reshape([ds.sizes[d] for d in order])
+    return rows.transpose([order.index(d) for d in dims]).ravel()
+
+
+def compared(view: StudyView) -> str:
+    """Name the contact model whose rows a Pareto set compares, '' if the study has one model."""
+    if "contact_model" not in view.factors:
+        return ""
+    found = set(view.table["contact_model"].astype(str))
+    return next((model for model in EXACTNESS if model in found), "")
+
+
+def asset(name: str) -> str:
+    """Return the text of a built file of the page."""
+    return (resources.files("trackroller.report") / "explorer" / "assets" / name).read_text(encoding="utf-8")
+
+
+def _json(value: Any) -> markupsafe.Markup:
+    """Write JSON that no name of a user can end: every `<` is escaped, and there is no NaN."""
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return markupsafe.Markup(text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029"))
+
+
+def secured(page: str) -> str:
+    """Fill in the Content-Security-Policy of a page: its own scripts and styles by their digests, nothing else."""
+    policy = ["default-src 'none'", "img-src data:", "base-uri 'none'", "form-action 'none'"]
+    for kind in ("script", "style"):
+        found = re.findall(rf"<{kind}>(.*?)</{kind}>", page, re.S)
+        told = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(t.encode()).digest()).decode()}'" for t in found)
+        policy.append(f"{kind}-src {told or chr(39) + 'none' + chr(39)}")
+    return page.replace(POLICY, "; ".join(policy), 1)
+
+
+def write_explorer(study_nc: Path, out: Path | None = None) -> Path:
+    """Write the explorer of a gathered study as one HTML file.
+
+    Parameters
+    ----------
+    study_nc : pathlib.Path
+        Gathered study, or the folder that holds it.
+    out : pathlib.Path, optional
+        File to write; `explorer.html` beside the study if not given.
+
+    Returns
+    -------
+    pathlib.Path
+        The path of the page.
+
+    Raises
+    ------
+    InputError
+        If there is no gathered study.
+    """
+    path = StudyFolder(study_nc).gathered if study_nc.is_dir() else study_nc
+    if not path.is_file():
+        raise InputError(
+            "study", str(study_nc), "a folder results/NAME with study.nc, or such a file", "Run the study."
+        )
+    with xr.open_dataset(path) as opened:
+        ds = opened.load()
+    view = StudyView.of(ds)
+    content = {
+        "name": str(view.study.get("name") or path.parent.name),
+        "description": str(view.study.get("description") or ""),
+        "explorer": explorer(ds, view),
+    }
+    out = path.with_name("explorer.html") if out is None else Path(out)
+    write_text(out, secured(render("explorer.html.j2", content)))
+    return out

@@ -1,0 +1,194 @@
+"""The cases of a study as typed columns: factors, outputs, regimes and flags in words, and figures of each contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.report.columns import study_dims
+from trackroller.report.findings import FLAG_WORDS
+from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, plain, unit_text
+from trackroller.report.view import BODIES, StudyView
+from trackroller.study import goals
+from trackroller.study.outputs import Output, default_names, outputs, read_study
+
+MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
+STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged")
+DETAILS = (
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+    "max_pressure",
+    "friction_power",
+    "stick_area_fraction",
+    "peak_stress",
+    "peak_z",
+    "life_cycles",
+    "drilling_torque",
+    "slip",
+)
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of the explorer, a value for each case.
+
+    Attributes
+    ----------
+    name : name as in study files
+    label, unit : for people
+    role : `factor`, `input` (follows from factors), `output`, `detail` (shown for a chosen case), or `state`
+    values : numbers (n,), or positions (n,) in `levels`, -1 for none
+    levels : values of a column of few values, in order; numbers or texts
+    texts : the levels in words
+    log : whether the axis is logarithmic
+    """
+
+    name: str
+    label: str
+    unit: str
+    role: str
+    values: np.ndarray
+    levels: tuple[Any, ...] | None = None
+    texts: tuple[str, ...] = ()
+    log: bool = False
+
+
+def collect(ds: xr.Dataset, view: StudyView) -> list[Column]:
+    """Return the columns of a gathered study.
+
+    Parameters
+    ----------
+    ds : gathered study
+    view : the same study as a table, with its rows in the same order
+
+    Returns
+    -------
+    Columns of equal length. Outputs hold the numbers that `pareto` and the analyses use, in double precision; figures
+    of single contacts hold single precision.
+    """
+    dims = study_dims(ds)
+    columns = [_setting(view, name, "factor") for name in view.factors]
+    columns += [_setting(view, name, "input") for name in view.derived]
+    columns += _results(ds, dims, view)
+    columns += _states(ds, dims, view)
+    if len(view.table) <= MOST_DETAILED:
+        columns += _details(ds, dims, {column.name for column in columns})
+    return columns
+
+
+def _setting(view: StudyView, name: str, role: str) -> Column:
+    """Return the column of a factor or of an input that follows from factors."""
+    values = view.table[name].to_numpy()
+    parameter = PARAMETERS.get(name)
+    unit = unit_text(parameter.unit) if parameter and name not in SPOKEN else ""
+    label = capital(long_name(name))
+    few = not view.numeric(name) or view.grid or len(view.levels(name)) <= 12
+    if not few or (role == "input" and view.numeric(name)):
+        return Column(name, label, unit, role, values.astype(float), log=_spread(values))
+    return coded(name, label, role, values, [level_text(name, v, unit=name in SPOKEN) for v in view.levels(name)], unit)
+
+
+def coded(
+    name: str, label: str, role: str, values: Sequence[Any] | np.ndarray, texts: Sequence[str] = (), unit: str = ""
+) -> Column:
+    """Return a column of few values as positions in the list of its values.
+
+    Numbers are sorted, texts stay in order of appearance. Without `texts` the values stand for themselves.
+    """
+    array = np.asarray(values)
+    number = array.dtype.kind in "fiu"
+    found, first, codes = np.unique(array, return_index=True, return_inverse=True)
+    if number:
+        keep = ~np.isnan(found.astype(float))
+        codes = np.where(keep[codes], codes, -1)
+        levels = found[keep].astype(float).tolist()
+    else:
+        order = np.argsort(first)
+        codes = np.argsort(order)[codes]
+        levels = found[order].astype(str).tolist()
+    return Column(name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels)))
+
+
+def _spread(values: np.ndarray) -> bool:
+    """Say whether all numbers are positive and span more than a factor of 100."""
+    good = values[np.isfinite(values)]
+    return bool(good.size and good.min() > 0 and good.max() > 100 * good.min())
+
+
+def _results(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
+    """Return the usual outputs and those that the study file names as goals."""
+    names = default_names(ds, dims, tuple(dims))
+    study = read_study(ds)
+    asked = [
+        *(study.get("pareto") or {}),
+        *(n for text in study.get("constraints") or () for n in goals.names_in(text)),
+    ]
+    names += [n for n in dict.fromkeys(asked) if n not in names and n not in view.table and n not in PARAMETERS]
+    return [_output(found, "output") for found in _found(ds, dims, names)]
+
+
+def _found(ds: xr.Dataset, dims: list[str], names: Iterable[str]) -> list[Output]:
+    """Return the outputs of these names that the study has."""
+    found = []
+    for name in names:
+        try:
+            found += outputs(ds, dims, [name], REGIMES[:3], natural=[name], unlimited=True)
+        except InputError:
+            continue  # the study has no such result
+    return found
+
+
+def _output(found: Output, role: str) -> Column:
+    values = found.values.astype(np.float32) if role == "detail" else found.values
+    return Column(found.name, capital(found.long_name), unit_text(found.units), role, values, log="life" in found.name)
+
+
+def _details(ds: xr.Dataset, dims: list[str], known: set[str]) -> list[Column]:
+    """Return figures of each contact and body, under names such as `peak_stress[1,roller]`."""
+    names = []
+    for variable in (n for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)):
+        contacts = ["1", "2"] if "contact" in ds[variable].dims else [""]
+        bodies = BODIES if "body" in ds[variable].dims else [""]
+        for keys in ([k for k in (c, b) if k] for c in contacts for b in bodies):
+            name = f"{variable}[{','.join(keys)}]" if keys else variable
+            if name not in known and f"{variable}_{keys[0] if keys else ''}" not in known:
+                names.append(name)
+    return [_output(found, "detail") for found in _found(ds, dims, names)]
+
+
+def _states(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
+    """Return regime, state, validity flags (of each body where they are known), and reason of failure."""
+    regime = np.clip(np.nan_to_num(view.regime, nan=3), 0, 3).astype(int)
+    state = np.where(view.valid, 0, np.where(regime > 0, regime + 1, np.where(view.rolling, 1, 5)))
+    found = [
+        Column("regime", "Regime", "", "state", regime, REGIMES, REGIME_LABELS),
+        Column("state", "State", "", "state", state, STATES, STATES),
+    ]
+    for name in ("validity", *(f"validity_{body}" for body in BODIES)):
+        if name in view.table and view.flags:
+            masks = np.nan_to_num(view.column(name, 0.0)).astype(int)
+            said = [flag_text(int(mask), list(view.flags)) for mask in np.unique(masks)]
+            body = name.partition("_")[2]
+            found.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, said))
+    if "reason" in ds:
+        reason = ds["reason"].broadcast_like(ds["regime"]).transpose(*dims) if "regime" in ds else ds["reason"]
+        texts = reason.values.astype(str).ravel()
+        if (texts != "").any():
+            found.append(coded("reason", "Reason", "state", texts))
+    return found
+
+
+def flag_text(mask: int, flags: Sequence[str]) -> str:
+    """Write the validity flags of a bit mask in words, 'none' without a flag."""
+    said = [FLAG_WORDS.get(flag, plain(flag)) for i, flag in enumerate(flags) if mask & (1 << i)]
+    return "; ".join(said) or "none"

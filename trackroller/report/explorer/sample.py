@@ -1,0 +1,40 @@
+"""A sample of a very large study that keeps every regime and the Pareto set of the study's own goals."""
+
+from __future__ import annotations
+
+import numpy as np
+
+MOST_ROWS = 200_000  # cases that a page shows
+RARE = 1_000  # cases of a state that are all kept
+
+
+def sample_rows(state: np.ndarray, keep: np.ndarray, most: int = MOST_ROWS, seed: int = 1) -> np.ndarray:
+    """Choose the cases to show.
+
+    Parameters
+    ----------
+    state : stratum of each case, such as its regime and validity, shape (n,) int
+    keep : cases to keep in any way, shape (n,) bool
+    most : number of cases to choose
+    seed : seed of the random choice
+
+    Returns
+    -------
+    Rising row numbers: all rows if there are not more than `most`. Otherwise the rows to keep, all cases of rare
+    states, and as many of each other state as its share of the study.
+    """
+    if len(state) <= most:
+        return np.arange(len(state))
+    rng = np.random.default_rng(seed)
+    chosen = keep.copy()
+    found, counts = np.unique(state[~keep], return_counts=True)
+    rare = found[counts <= RARE]
+    chosen |= np.isin(state, rare)
+    left = max(0, most - int(chosen.sum()))
+    rest = int(counts[counts > RARE].sum())
+    for stratum, cases in zip(found, counts, strict=True):
+        if cases > RARE:
+            rows = np.flatnonzero((state == stratum) & ~keep)
+            share = min(cases, max(RARE, left * cases // rest))
+            chosen[rng.choice(rows, int(share), replace=False)] = True
+    return np.flatnonzero(chosen)

@@ -1,0 +1,137 @@
+// A case in words: on touch its main figures, pinned all that its sheet says and the commands that repeat it.
+import { copy, el, replace } from "./dom.js";
+import { count, number, withUnit } from "./words.js";
+
+const IN_SHORT = ["roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_life_cycles", "roller_peak_stress", "guide_peak_stress", "max_pressure"];
+
+// A word as the shell reads it, in quotes where it needs them.
+export const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
+
+function plainNumber(value) {
+  if (!Number.isFinite(value)) return value > 0 ? "inf" : "-inf";
+  return Number.isInteger(value) && Math.abs(value) < 1e15 ? value.toFixed(1) : String(value);
+}
+
+export function solveCommand(study, row) {
+  const words = ["trackroller", "solve"];
+  for (const [key, told] of study.settings) {
+    const column = Array.isArray(told) ? study.columns.get(told[0]) : null;
+    let text = told;
+    if (column?.codes && !column.number) text = column.codes[row] < 0 ? "" : column.levels[column.codes[row]];
+    else if (column) text = Number.isNaN(column.values[row]) ? "" : plainNumber(column.values[row]);
+    if (text !== "") words.push("--set", `${key}=${text}`);
+  }
+  return words.map(quoted).join(" ");
+}
+
+export const repeatCommand = (study, row) => `trackroller repeat ${quoted(study.name)} ${study.caseOfRow(row)}`;
+
+function flags(study, row) {
+  const told = [];
+  const whole = study.columns.get("validity");
+  if (!whole) return "";
+  for (const body of ["roller", "guide"]) {
+    const column = study.columns.get(`validity_${body}`);
+    const text = column ? column.texts[column.codes[row]] : "none";
+    if (text !== "none") told.push(...text.split("; ").map((t) => [t, body]));
+  }
+  const of = (text) => told.filter(([t]) => t === text).map(([, body]) => body);
+  const text = whole.texts[whole.codes[row]];
+  if (text === "none") return "none";
+  return text.split("; ").map((t) => (of(t).length ? `${t} (${of(t).join(" and ")})` : t)).join("; ");
+}
+
+const material = (study, row, body) => {
+  const told = study.settings.find(([key]) => key === `${body}_material`)?.[1];
+  if (!Array.isArray(told)) return told;
+  const column = study.columns.get(told[0]);
+  return column.levels[column.codes[row]];
+};
+
+function utilisation(study, row) {
+  const found = [];
+  for (const body of ["roller", "guide"]) {
+    const peak = study.columns.get(`${body}_peak_stress`)?.values[row];
+    const known = study.strengths[material(study, row, body)];
+    if (peak >= 0 && known) found.push([`Peak of the ${body} over its fatigue limit`, `${number((100 * peak) / known[1], 3)} %`], [`Peak of the ${body} over its tensile strength`, `${number((100 * peak) / known[0], 3)} %`]);
+  }
+  return found;
+}
+
+// All that is known of a case: heads of sections, and pairs of words and value.
+function facts(study, row) {
+  const rows = (list) => list.map((c) => [c.label, withUnit(c, row)]);
+  const states = ["regime", "state", "reason"].map((name) => study.columns.get(name)).filter(Boolean);
+  const parts = [
+    ["Inputs", rows(study.of("factor"))],
+    ["Results", [...rows(study.of("output")), ...utilisation(study, row)]],
+    ["Regime and validity", [...rows(states), ["Flags", flags(study, row)]]],
+  ];
+  const details = study.of("detail");
+  for (const contact of ["1", "2"]) {
+    const own = details.filter((c) => new RegExp(`\\[${contact}\\b`).test(c.name));
+    if (own.length) parts.push([`Contact ${contact}`, rows(own).map(([words, value]) => [words.replace(/ \(\d,?(\w*)\)$/, (_, body) => (body ? `, ${body}` : "")), value])]);
+  }
+  const whole = details.filter((c) => !c.name.includes("["));
+  if (whole.length) parts.push(["Whole roller", rows(whole)]);
+  return parts;
+}
+
+export function hoverText(study, row) {
+  const parts = [`Case ${study.caseOfRow(row)}`, ...study.of("factor").map((c) => `${c.label} ${withUnit(c, row)}`)];
+  for (const name of IN_SHORT) if (study.columns.has(name)) parts.push(`${study.columns.get(name).label} ${withUnit(study.columns.get(name), row)}`);
+  const told = flags(study, row);
+  parts.push(`Regime: ${withUnit(study.columns.get("regime"), row)}`, ...(told && told !== "none" ? [`Flags: ${told}`] : ["No flags"]));
+  return parts;
+}
+
+export function cards(model) {
+  const { table: study } = model;
+  const hint = "Point at a case to read it, click to pin it. Two pinned cases stand side by side.";
+  const hovered = el("p", { class: "hovered", role: "status", "aria-live": "polite" }, hint);
+  const pinned = el("div", { class: "pinned" });
+
+  function hover() {
+    hovered.textContent = model.hovered < 0 ? hint : hoverText(study, model.hovered).join(" · ");
+  }
+
+  function command(words, text) {
+    const button = el("button", { type: "button", "aria-label": `Copy: ${words}`, onclick: () => copy(text, button) }, "Copy");
+    return el("div", { class: "command" }, el("span", {}, words), el("code", {}, text), button);
+  }
+
+  function draw() {
+    if (!model.pins.length) return replace(pinned);
+    const found = model.pins.map((row) => facts(study, row));
+    const heads = model.pins.map((row, i) => {
+      const away = el("button", { type: "button", "aria-label": `Unpin case ${study.caseOfRow(row)}`, onclick: () => model.pin(row) }, "Unpin");
+      return el("th", { scope: "col" }, `${"AB"[i]}: case ${study.caseOfRow(row)} `, away);
+    });
+    const body = el("tbody");
+    let differences = 0;
+    found[0].forEach(([head, rows], s) => {
+      body.append(el("tr", { class: "part" }, el("th", { colspan: String(found.length + 1), scope: "colgroup" }, head)));
+      rows.forEach(([words], r) => {
+        const values = found.map((f) => f[s][1].find(([other]) => other === words)?.[1] ?? "–");
+        const apart = values.length > 1 && values[0] !== values[1];
+        differences += apart;
+        const cells = values.map((value) => el("td", {}, apart ? el("strong", {}, value) : value));
+        body.append(el("tr", { class: apart ? "differs" : "" }, el("th", { scope: "row" }, apart ? `≠ ${words}` : words), cells));
+      });
+    });
+    const said = found.length > 1 ? `The two cases differ in ${count(differences)} rows, marked ≠ and bold.` : "Pin a second case to compare.";
+    const commands = model.pins.flatMap((row, i) => [
+      command(`Solve ${"AB"[i]} again`, solveCommand(study, row)),
+      command(`Compare ${"AB"[i]} with the stored result`, repeatCommand(study, row)),
+    ]);
+    replace(
+      pinned,
+      el("h3", {}, "Pinned cases"),
+      el("p", { class: "facts" }, said),
+      el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Pinned cases" }, el("table", {}, el("thead", {}, el("tr", {}, el("td", {}), heads)), body)),
+      commands,
+    );
+  }
+
+  return { hovered, pinned, hover, draw };
+}

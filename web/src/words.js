@@ -1,0 +1,42 @@
+// Numbers and values as the report writes them.
+const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+
+export const count = (n) => n.toLocaleString("en-US");
+
+export function number(value, figures = 4) {
+  if (Number.isNaN(value)) return "–";
+  if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
+  const size = Math.abs(value);
+  if (size >= 1e7 || (size > 0 && size < 1e-3)) {
+    const [mantissa, exponent] = value.toExponential(Math.min(2, figures - 1)).split("e");
+    const raised = [...String(Number(exponent))].map((c) => RAISED[c]).join("");
+    return `${Number(mantissa)}·10${raised}`.replace("-", "−");
+  }
+  if (size >= 1e4) return Number(value.toPrecision(3)).toLocaleString("en-US").replace("-", "−");
+  return String(Number(value.toPrecision(figures))).replace("-", "−");
+}
+
+const isLife = (column) => column.name.includes("life");
+
+export function valueText(column, row) {
+  if (column.codes) return column.codes[row] < 0 ? "–" : column.texts[column.codes[row]];
+  const value = column.values[row];
+  return value === Infinity && isLife(column) ? "unlimited" : number(value);
+}
+
+export const unitOf = (column) => (column.unit && column.unit !== "–" ? column.unit : "");
+
+export const heading = (column) => (unitOf(column) ? `${column.label} [${column.unit}]` : column.label);
+
+export function withUnit(column, row) {
+  const text = valueText(column, row);
+  return unitOf(column) && text !== "–" && text !== "unlimited" ? `${text} ${column.unit}` : text;
+}
+
+// The full value, for files: numbers with every digit, levels by their own name.
+export function rawText(column, row) {
+  if (column.codes && !column.number) return column.codes[row] < 0 ? "" : String(column.levels[column.codes[row]]);
+  const value = column.values[row];
+  if (Number.isNaN(value)) return "";
+  return Number.isFinite(value) ? String(value) : value > 0 ? "inf" : "-inf";
+}
