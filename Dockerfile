@@ -3,7 +3,7 @@
 #   docker run --rm -v "$PWD":/work trackroller --cores all --config study=study.yaml
 FROM python:3.11-slim
 COPY requirements.lock /opt/trackroller/requirements.lock
-RUN pip install --no-cache-dir -r /opt/trackroller/requirements.lock
+RUN pip install --no-cache-dir --require-hashes -r /opt/trackroller/requirements.lock
 COPY pyproject.toml README.md LICENSE Snakefile /opt/trackroller/
 COPY trackroller /opt/trackroller/trackroller
 COPY workflow /opt/trackroller/workflow

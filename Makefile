@@ -80,7 +80,9 @@ explorer-check:
 test-slurm: $(STAMP)
 	$(BIN)/python -m pytest -q -m slurm tests/workflow/test_workflow_slurm.py
 
+# 10,000 generated inputs, and real runs killed at random moments
 test-long: $(STAMP)
+	TRACKROLLER_EXAMPLES=10000 $(BIN)/python -m pytest -q -n 2 tests/cli/test_refusals.py tests/cli/test_fuzz.py
 	$(BIN)/python -m validation.benchmarks.survive
 
 clean-results:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from examples import EXAMPLES
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -19,7 +20,8 @@ from trackroller.study.config import load_study
 ROOT = Path(__file__).parents[2]
 STUDIES = [yaml.safe_load(p.read_text()) for p in sorted((ROOT / "config" / "studies").glob("*.yaml"))]
 MATERIALS = yaml.safe_load((ROOT / "config" / "materials.yaml").read_text()) or {}
-MOST = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+FILES = EXAMPLES // 5  # of each of five kinds
+MOST = settings(max_examples=FILES, derandomize=EXAMPLES <= 1000, suppress_health_check=list(HealthCheck))
 
 odd = st.one_of(
     st.none(),

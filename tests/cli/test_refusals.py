@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import os
 import re
 from pathlib import Path
 
 import pytest
+from examples import EXAMPLES
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +17,6 @@ from trackroller.materials.yaml_file import parse_mapping
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
 
-EXAMPLES = int(os.environ.get("TRACKROLLER_EXAMPLES", "1000"))
 GRID = "name: t\nfactors: {axial_force: {values: [0, 10]}}\n"
 SAMPLE = "name: t\nfactors: {axial_force: {uniform: [0, 10]}}\ndesign: lhs\n"
 TABLE = "name: t\ndesign: table\ntable: cases.csv\n"

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import functools
 import os
+import re
 import shutil
 import signal
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import fake_solver
 import pytest
 import xarray as xr
 
+from trackroller.report.build import build_report
 from trackroller.study.config import parse_study
+from trackroller.study.crate import damaged_files, read_crate, write_crate
+from trackroller.study.plan import study_folder
 from trackroller.study.run import run_study
 
 SMALL = {
@@ -31,8 +37,17 @@ def run(data, results, **more):
     run_study(parse_study(data), results, solver=fake_solver.solve, **more)
 
 
-def run_and_kill(data, results: Path, point: int, **more) -> bool:
-    """Run in a forked process, which kills itself before the rename or removal number `point`; was it killed?"""
+def run_and_report(data, results: Path) -> None:
+    """Do what `trackroller run STUDY --report` does."""
+    run(data, results)
+    study = parse_study(data)
+    folder = study_folder(study.name, results)
+    build_report(folder)
+    write_crate(study, folder.root)
+
+
+def kill_at(point: int, action: Callable[[], None]) -> bool:
+    """Act in a forked process, which kills itself before the rename or removal number `point`; was it killed?"""
     child = os.fork()
     if child == 0:
         calls = iter(range(10_000))
@@ -46,8 +61,9 @@ def run_and_kill(data, results: Path, point: int, **more) -> bool:
             return act
 
         try:
-            os.replace, os.unlink = counted(os.replace), counted(os.unlink)
-            run(data, results, **more)
+            for name in ("replace", "rename", "unlink", "rmdir"):
+                setattr(os, name, counted(getattr(os, name)))
+            action()
         finally:
             os._exit(0)
     return os.WIFSIGNALED(os.waitpid(child, 0)[1])
@@ -75,7 +91,7 @@ def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, count_
     run(data, tmp_path / "calm")
     before = count_solved()
     point = 0
-    while run_and_kill(data, tmp_path / f"{point}", point):
+    while kill_at(point, functools.partial(run, data, tmp_path / f"{point}")):
         killed = tmp_path / f"{point}"
         run(data, killed)
         for name in ("design.nc", "study.nc"):
@@ -102,7 +118,7 @@ def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tm
         place = tmp_path / f"{point}"
         shutil.copytree(tmp_path / "start", place)
         before = count_solved()
-        killed = run_and_kill(GROWN, place, point, rerun_failed=True)
+        killed = kill_at(point, functools.partial(run, GROWN, place, rerun_failed=True))
         run(GROWN, place, rerun_failed=True)
         same(place / "s" / "study.nc", tmp_path / "calm" / "s" / "study.nc")
         again = count_solved() - before
@@ -112,3 +128,32 @@ def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tm
             break
         point += 1
     assert point >= 20
+
+
+def _draw(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) -> None:
+    """Write two files in place of figures, which would take seconds."""
+    for name in ("one.svg", "two.svg"):
+        (out_dir / name).write_text(f"<svg>{study_nc.stat().st_size}</svg>")
+
+
+def test_report_killed_before_each_rename_or_removal(tmp_path, monkeypatch):
+    """The study has grown, so that every file of its report and its crate is replaced; each run is killed later."""
+    monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
+    run_and_report(SMALL, tmp_path / "start")
+    run(GROWN, tmp_path / "start")
+    for place in ("calm", "rough"):
+        shutil.copytree(tmp_path / "start", tmp_path / place)
+    run_and_report(GROWN, tmp_path / "calm")
+    calm, rough = tmp_path / "calm" / "s", tmp_path / "rough" / "s"
+    point = 0
+    while kill_at(point, functools.partial(run_and_report, GROWN, tmp_path / "rough")):
+        same(rough / "study.nc", calm / "study.nc")
+        point += 1
+    assert point >= 16, "analysis, figures, report, tables, inputs and metadata"
+    assert damaged_files(rough) == {} and set(read_crate(rough)) == set(read_crate(calm))
+    same(rough / "sensitivity.nc", calm / "sensitivity.nc")
+    for name in ("figures/one.svg", "inputs/study.yaml", "tables/tables.xlsx"):
+        assert (rough / name).read_bytes() == (calm / name).read_bytes(), name
+    pages = [re.sub(r"\dT\d\d:\d\d:\d\d", "", (place / "report.html").read_text()) for place in (rough, calm)]
+    assert pages[0] == pages[1]
+    assert not list(rough.rglob(".*.tmp"))

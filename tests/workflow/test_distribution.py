@@ -20,6 +20,10 @@ def test_the_container_copies_files_that_exist_and_starts_the_workflow():
     assert needed <= set(copied)
     readme = re.search(r'^readme = "(.+)"', (ROOT / "pyproject.toml").read_text(), re.M)
     assert readme is None or readme[1] in copied
+    made = (ROOT / "Makefile").read_text()
+    for words in ("--require-hashes -r", "--no-deps --no-build-isolation -e", "python -c"):  # as `make env` installs
+        (line,) = (" ".join(told_line) for told_line in told if words in " ".join(told_line))
+        assert words in made and (words != "python -c" or line.partition("-c ")[2] in made)
 
 
 def test_the_catalog_entry_has_the_standard_form():
@@ -42,8 +46,10 @@ def test_ci_runs_its_parts():
     text = (ROOT / ".ci" / "run").read_text()
     assert subprocess.run(["sh", "-n", str(ROOT / ".ci" / "run")], check=False).returncode == 0
     (parts,) = re.findall(r"set -- ([a-z ]+)$", text, re.M)
-    assert parts.split() == ["lint", "test", "wheel", "browser", "cluster", "docs"]
+    assert parts.split() == ["lint", "test", "python", "wheel", "browser", "cluster", "docs"]
     assert all(f"part_{part}()" in text for part in parts.split())
     made = re.findall(r"\bmake ([a-z-]+)", text)
     targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M)
     assert set(made) <= set(targets) and shutil.which("sh")
+    supported = re.findall(r"Python :: (3\.\d+)", (ROOT / "pyproject.toml").read_text())
+    assert re.findall(r"for version in ([\d. ]+);", text) == [" ".join(supported)]

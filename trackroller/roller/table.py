@@ -24,13 +24,16 @@ class MaterialArrays:
 
     @classmethod
     def of(cls, materials: list[Material]) -> MaterialArrays:
-        """Return the arrays of a list of n materials."""
+        """Return the arrays of a list of n materials; the same few objects fill a list of millions."""
+        distinct = {id(m): m for m in materials}
+        places = {key: place for place, key in enumerate(distinct)}
+        index = np.array([places[id(m)] for m in materials], dtype=int)
 
         def values(attribute: str) -> np.ndarray:
-            return np.array([getattr(m, attribute) for m in materials], dtype=float)
+            return np.array([getattr(m, attribute) for m in distinct.values()], dtype=float)[index]
 
         return cls(
-            name=np.array([m.name for m in materials], dtype=object),
+            name=np.array([m.name for m in distinct.values()], dtype=object)[index],
             youngs_modulus=values("youngs_modulus"),
             poisson_ratio=values("poisson_ratio"),
             tensile_strength=values("tensile_strength"),
