@@ -7,10 +7,15 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
+from scipy.stats import spearmanr
 
 from trackroller.analysis.pareto import pareto_mask
-from trackroller.report import choices
+from trackroller.analysis.sensitivity import analyse_dataset
+from trackroller.report import choices, parts
 from trackroller.report import sentences as words
+from trackroller.report.effects import effect_of
+from trackroller.report.view import StudyView
+from trackroller.study.config import parse_study
 
 NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")
 INDICES = {"saltelli": "ST", "grid": "main_share", "lhs": "first", "morris": "mu_star"}
@@ -147,6 +152,74 @@ def check_leads(sens, index):
             assert str(sens["output_name"].sel(output=output).item()) in clause
 
 
+@pytest.mark.parametrize("method", ["saltelli", "grid", "lhs"])
+def test_every_sentence_on_groups_and_levels_is_true(method):
+    """The groups stand in the order of their indices, each level has its largest factor, each ± is half an interval."""
+    rng = np.random.default_rng(len(method))
+    found = 0
+    for _ in range(60):
+        sens = with_parts(rng, analysis(rng, method))
+        for output in map(str, sens["output"].values):
+            said = {s.kind: s for s in parts.sentences(sens, output)}
+            found += len(said)
+            check_groups(sens.sel(output=output), said.get("groups"))
+            check_levels(sens.sel(output=output), said.get("levels"))
+    assert found > 60
+
+
+def with_parts(rng, sens):
+    """Add indices of two to four groups and of the factors within two or three levels."""
+    groups, levels, exact = int(rng.integers(2, 5)), int(rng.integers(2, 4)), sens.attrs["method"] == "grid"
+    for name, dims in (("group_ST", ("output", "group")), ("conditional_S1", ("output", "level", "factor"))):
+        shape = (2, groups) if len(dims) == 2 else (2, levels, sens.sizes["factor"])
+        value, half = rng.uniform(-0.02, 1, shape), np.abs(rng.normal(0, 0.04, shape))
+        value[rng.random(shape) < 0.1] = np.nan
+        sens[name] = (dims, value)
+        if not exact:
+            sens[f"{name}_low"], sens[f"{name}_high"] = (dims, value - half), (dims, value + 0.7 * half)
+    sens["conditional_rows"] = (("output", "level"), rng.integers(1, 900, (2, levels)))
+    names = np.array(["load", "geometry", "drive", "surface"][:groups], dtype=object)
+    kinds = np.array(["PA6 / steel", "POM / POM", "steel / steel"][:levels], dtype=object)
+    return sens.assign_coords(
+        group=names, group_name=("group", names), level=("level", kinds, {"factor": "material_pair"})
+    )
+
+
+def bounds_of(part, name):
+    return [float(part[f"{name}{e}"]) if f"{name}{e}" in part else np.nan for e in ("_low", "_high")]
+
+
+def check_groups(part, said):
+    value = part["group_ST"].values
+    assert (said is None) == bool(np.isnan(value).any())
+    if said is None:
+        return
+    told = said.text.removeprefix("By groups, ").replace("accounts for ", "")
+    order = np.argsort(-value)
+    places = [told.index(str(part["group"].values[i])) for i in order]
+    assert places == sorted(places) and said.text.count("index") == 1
+    for i in order:
+        one = part.isel(group=int(i))
+        agrees(told.split(f"{one['group'].item()} ")[1], value[i], *bounds_of(one, "group_ST"), 100.0)
+
+
+def check_levels(part, said):
+    value = part["conditional_S1"].values
+    assert (said is None) == bool(np.isnan(value).all())
+    if said is None:
+        return
+    assert said.text.startswith("By material pair, the largest first-order index")
+    clauses = said.text[:-1].split("is: ")[1].split("; ")
+    known = [i for i in range(len(value)) if np.isfinite(value[i]).any()]
+    assert len(clauses) == len(known)
+    for clause, i in zip(clauses, known, strict=True):
+        best = int(np.nanargmax(value[i]))
+        name = str(part["factor_name"].values[best])
+        assert clause.startswith(f"{name} ") and clause.endswith(f"with {part['level'].values[i]}")
+        one = part.isel(level=i, factor=best)
+        agrees(clause.removeprefix(f"{name} "), value[i, best], *bounds_of(one, "conditional_S1"), 100.0)
+
+
 def test_which_factors_act_alike_everywhere_is_told_by_sigma():
     rng = np.random.default_rng(9)
     for _ in range(100):
@@ -223,3 +296,36 @@ def test_every_sentence_on_design_points_is_true():
         slip = float(re.search(r"full slip there in ([\d.]+) %", said.text)[1])
         assert slip == pytest.approx(100 * shares[1, best], abs=0.51)
         assert ("no B10 is left" in said.text) == (shares[0, best] < 1 and safe[best] == 0)
+
+
+def test_sentences_name_the_factors_that_are_correlated_in_the_rows():
+    """A study with a rank correlation: the sentences on its classes and on its indices name the right factors."""
+    study = parse_study(
+        {
+            "name": "tied",
+            "design": "lhs",
+            "samples": 300,
+            "factors": {
+                "axial_force": {"uniform": [0, 20]},
+                "radial_force": {"uniform": [-300, -100]},
+                "velocity": {"uniform": [10, 90]},
+            },
+            "rank_correlations": [["axial_force", "radial_force", -0.7]],
+            "analysis": {"outputs": ["roller_life_hours"], "measures": ["first"]},
+            "outputs": ["life"],
+        }
+    )
+    ds = study.design()
+    ds["roller_life_hours"] = ("case", 1e5 / -ds["radial_force"].values, {"units": "h"})
+    ds.attrs["study"] = study.merged()
+    view = StudyView.of(ds)
+    for factor in ("axial_force", "radial_force", "velocity"):
+        said = effect_of(view, "roller_life_hours", "life of the roller", factor, np.ones(300, bool))
+        named = [n for n in view.factors if n in said.values.get("correlated", ())]
+        tied = [n for n in view.factors if n != factor and abs(spearmanr(ds[factor], ds[n]).statistic) > 0.3]
+        assert named == tied and ("correlated" in said.text) == bool(tied)
+    sens = analyse_dataset(ds)
+    assert sens["correlated"].values.tolist() == [1, 1, 0]
+    assert "Radial force" in words.decides(sens, "roller_life_hours").text
+    assert "axial force and radial force are correlated, and" in words.decides(sens, "roller_life_hours").text
+    assert "rank correlation -0.70" in sens.attrs["treatment"] and "interaction_share" not in sens

@@ -348,7 +348,7 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
     ds.attrs = {"study": study.merged()}
     assert design_of(ds).method == "table"
-    assert "are correlated (rank correlation 1.00)" in analyse_dataset(ds, ["roller_life_hours"]).attrs["treatment"]
+    assert "are correlated (rank correlation -1.00)" in analyse_dataset(ds, ["roller_life_hours"]).attrs["treatment"]
 
 
 def test_every_source_of_an_analysis_is_an_input_of_its_rule():

@@ -122,6 +122,23 @@ def complete_part(y: np.ndarray) -> list[np.ndarray]:
         keep[axis] = np.delete(keep[axis], int(shares[axis].argmax()))
 
 
+def variance_share(part: np.ndarray, axes: tuple[int, ...]) -> float:
+    """Return the share of variance of the means over all other axes, the closed index of some factors.
+
+    Parameters
+    ----------
+    part : output over a full grid, shape (levels of factor 1, ..., levels of factor k), finite
+    axes : the factors
+
+    Returns
+    -------
+    Var(E[y | factors]) / V; NaN for a constant output.
+    """
+    if constant(part):
+        return float("nan")
+    return float(part.mean(axis=tuple(a for a in range(part.ndim) if a not in axes)).var() / part.var())
+
+
 def grid_shares(y: np.ndarray) -> Estimates:
     """Divide the variance over a full grid into main effects and two-factor interactions (functional ANOVA).
 
@@ -145,19 +162,12 @@ def grid_shares(y: np.ndarray) -> Estimates:
     main, pair = np.full(count, np.nan), np.full((count, count), np.nan)
     if constant(part):
         return out | {"main_share": main, "interaction_share": pair, "higher_share": np.array(np.nan)}
-    part = part - part.mean()
-    variance = (part**2).mean()
-
-    def share(axes: tuple[int, ...]) -> float:
-        others = tuple(a for a in range(count) if a not in axes)
-        return float((part.mean(axis=others) ** 2).mean() / variance)
-
     for i in range(count):
-        main[i] = share((i,)) if part.shape[i] > 1 else np.nan
+        main[i] = variance_share(part, (i,)) if part.shape[i] > 1 else np.nan
     for i in range(count):
         for j in range(i + 1, count):
             if part.shape[i] > 1 and part.shape[j] > 1:
-                pair[i, j] = max(0.0, share((i, j)) - main[i] - main[j])
+                pair[i, j] = max(0.0, variance_share(part, (i, j)) - main[i] - main[j])
     higher = max(0.0, 1.0 - np.nansum(main) - np.nansum(pair))
     return out | {"main_share": main, "interaction_share": pair, "higher_share": np.array(higher)}
 

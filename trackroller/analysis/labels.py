@@ -66,8 +66,8 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
     return text + (f"; {missed} rows miss a constraint and are left out of every index" if missed else "")
 
 
-def correlated(design: SampledDesign) -> str:
-    """Return a warning of correlated columns of a table.
+def correlated_pairs(design: SampledDesign) -> list[tuple[str, str, float]]:
+    """Return the pairs of factors that are correlated.
 
     Parameters
     ----------
@@ -75,18 +75,25 @@ def correlated(design: SampledDesign) -> str:
 
     Returns
     -------
-    A warning, or an empty text; the factors of every other design are independent.
+    (factor, factor, rank correlation [1]): the pairs of the study file, or the pair of columns of a table with the
+    largest correlation above 0.5. The factors of every other design are independent.
     """
     if design.method != "table" or len(design.factors) < 2:
-        return ""
+        return [(one, other, rho) for one, other, rho in design.meta.get("rank_correlations", ()) if rho]
     names = list(design.factors)
-    table = np.abs(np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False)))
-    pairs = [(float(table[i, j]), names[i], names[j]) for i in range(len(names)) for j in range(i)]
-    size, one, other = max(pairs)
-    if size < CORRELATED:
-        return ""
-    both = f"{factor_name(other)} and {factor_name(one)}"
-    return f"; {both} are correlated (rank correlation {size:.2f}): the index of each includes the influence of both"
+    table = np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False))
+    pairs = [(names[j], names[i], float(table[i, j])) for i in range(len(names)) for j in range(i)]
+    strongest = max(pairs, key=lambda pair: abs(pair[2]))
+    return [strongest] if abs(strongest[2]) >= CORRELATED else []
+
+
+def correlated(design: SampledDesign) -> str:
+    """Return a warning of correlated factors, or an empty text; see `correlated_pairs`."""
+    told = [
+        f"{factor_name(one)} and {factor_name(other)} are correlated (rank correlation {rho:.2f})"
+        for one, other, rho in correlated_pairs(design)
+    ]
+    return f"; {', '.join(told)}: the index of each includes the influence of both" if told else ""
 
 
 _DIMS = {1: ("output", "factor"), 2: ("output", "factor", "factor_2"), 0: ("output",)}

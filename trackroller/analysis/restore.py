@@ -13,7 +13,7 @@ from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import Factor
 from trackroller.study.design.sampling import OPTIONS, SampledDesign, current_name, sample
-from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study
+from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study, settings
 
 
 def design_of(ds: xr.Dataset, study: Mapping[str, Any] | None = None) -> SampledDesign:
@@ -43,6 +43,8 @@ def design_of(ds: xr.Dataset, study: Mapping[str, Any] | None = None) -> Sampled
     if method == "table":
         return _table_design(ds, specs)
     options = {k: study[k] for k in OPTIONS.get(method, {}) if study.get(k) is not None}
+    if study.get("exchange") == "groups":
+        options["groups"] = settings(study)["groups"]
     base = {k: v for k, v in study.get("base", {}).items() if isinstance(v, (int, float))}
     design = sample(specs, method, int(study.get("samples", 1024)), int(study.get("seed", 1)), base=base, **options)
     _check_rows(ds, design)

@@ -17,9 +17,10 @@ import xarray as xr
 
 from trackroller.analysis import convergence, indices
 from trackroller.analysis.givendata import MEASURES, firsts, given_data
-from trackroller.analysis.labels import RELIABLE, correlated, labelled, note, treatment
+from trackroller.analysis.labels import RELIABLE, correlated, correlated_pairs, labelled, note, treatment
 from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.pairs import pairs
+from trackroller.analysis.parts import parts_of
 from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import material_deviations, robustness
 from trackroller.analysis.sobol import sobol
@@ -27,7 +28,7 @@ from trackroller.errors import InputError
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.files import write_whole
-from trackroller.study.outputs import case_dims, outputs, read_study, regimes, settings
+from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes, settings
 
 NEEDS = {
     "grid": "a full grid, every level weighing the same",
@@ -36,8 +37,8 @@ NEEDS = {
     "central_composite": "enough rows for the fitted polynomial",
     "box_behnken": "enough rows for the fitted polynomial",
     "plackett_burman": "enough rows for the fitted main effects",
-    "lhs": "independent factors; any usable rows",
-    "sobol": "independent factors; any usable rows",
+    "lhs": "independent factors (correlated factors share their influence); any usable rows",
+    "sobol": "independent factors (correlated factors share their influence); any usable rows",
     "table": "independent factors (correlated columns share their influence); any usable rows",
 }
 
@@ -61,8 +62,17 @@ class Found(NamedTuple):
 
 
 def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
-    count, second = len(design.factors), bool(design.meta["second_order"])
+    groups, second = design.meta.get("groups"), bool(design.meta["second_order"])
+    count = len(groups or design.factors)
     step = 2 * count + 2 if second else count + 2
+    # rows of A and B only: their mixtures repeat coordinates, so they are not independent rows
+    row = np.arange(len(y)) % step
+    own = np.where((row == 0) | (row == step - 1), y, np.nan)
+    measures = ("first", *how.measures) if groups else how.measures  # single factors have no other index
+    given = given_data(own, design.places, design.ordered, how.seed, tuple(dict.fromkeys(measures)), how.resamples)
+    if groups:
+        whole = int(np.isfinite(y.reshape(-1, step)).all(axis=1).sum())
+        return Found(given, whole, len(y) // step)
     out = sobol(y, count, second, how.seed, how.resamples)
     at = convergence.sizes(int(design.meta["base_samples"]))
     lean = y.reshape(-1, step)[:, np.r_[0 : count + 1, step - 1]]  # the course needs no second order
@@ -70,11 +80,7 @@ def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     def part(blocks: int) -> indices.Estimates:
         return sobol(lean[:blocks].ravel(), count, False, how.seed, how.resamples)
 
-    out |= convergence.course(part, at, ("S1", "ST"))
-    # rows of A and B only: their mixtures repeat coordinates, so they are not independent rows
-    row = np.arange(len(y)) % step
-    own = np.where((row == 0) | (row == step - 1), y, np.nan)
-    out |= given_data(own, design.places, design.ordered, how.seed, how.measures, how.resamples)
+    out |= convergence.course(part, at, ("S1", "ST")) | given
     return Found(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
 
 
@@ -106,7 +112,7 @@ def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     ordered, places = design.ordered, design.places
     measures = tuple(dict.fromkeys(("first", *how.measures)))  # `first` ranks the factors
     out = given_data(y, places, ordered, how.seed, measures, how.resamples)
-    if len(design.factors) > 1 and not correlated(design):
+    if len(design.factors) > 1 and not correlated_pairs(design):
         out |= pairs(y, places, ordered, how.seed)
     at = convergence.sizes(len(y), smallest=64)
 
@@ -159,7 +165,8 @@ def analyse_dataset(
         Dimensions output, factor, factor_2 and sample_size. By method: S1, ST, S2 (saltelli); mu, mu_star, sigma
         (morris); main_share, interaction_share, higher_share (grid); effect, curvature, interaction (response
         surfaces); first, delta, pawn, prcc (given data). A random sample also has interaction_share by a polynomial
-        that predicts `fit_share` of the variance. Indices have _low, _high and their course with the sample size. For
+        that predicts `fit_share` of the variance. The keys `groups` and `conditional_on` add the variables of
+        `trackroller.analysis.parts.parts_of`. Indices have _low, _high and their course with the sample size. For
         each output: used_share, reliable, take_times, and `note`, which states the rows left out and why. An
         inner/outer array design gives the result of `trackroller.analysis.robustness.robustness`.
 
@@ -185,17 +192,11 @@ def analyse_dataset(
     for one in found:
         one.estimates.pop("rows_used", None)
     result = labelled(design, columns, [one.estimates for one in found], found[0].sizes)
-    share = np.array([one.used / max(1, one.total) for one in found])
-    unit = _UNIT.get(design.method, "rows")
-    notes = [note(column, one.used, one.total, unit) for column, one in zip(columns, found, strict=True)]
-    times = np.array([_times(one.estimates, design.method) for one in found])
-    for name, values, words in (
-        ("used_share", share, "share of the rows that the indices use"),
-        ("reliable", (share >= RELIABLE).astype(np.int8), f"1 where at least {RELIABLE:g} of the rows are used"),
-        ("note", np.array(notes, dtype=object), "rows left out, and why"),
-        ("take_times", times, "factor on the samples after which the intervals are narrow enough"),
-    ):
-        result[name] = ("output", values, {"long_name": words} | ({} if values.dtype == object else {"units": "1"}))
+    result = result.merge(parts_of(design, columns, given, seed, how.resamples))
+    result = result.assign(_quality(result, design, columns, found))
+    if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
+        told = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
+        result["correlated"] = ("factor", np.array([name in tied for name in design.factors], np.int8), told)
     result.attrs = {
         **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
         "method": design.method,
@@ -209,6 +210,28 @@ def analyse_dataset(
         "study": ds.attrs.get("study", ""),
     }
     return result
+
+
+def _quality(
+    result: xr.Dataset, design: SampledDesign, columns: list[Output], found: list[Found]
+) -> dict[str, tuple[str, np.ndarray, dict[str, str]]]:
+    """Return the variables that say how many rows the indices of each output use, and whether these suffice."""
+    share = np.array([one.used / max(1, one.total) for one in found])
+    unit = _UNIT.get(design.method, "rows")
+    notes = [note(column, one.used, one.total, unit) for column, one in zip(columns, found, strict=True)]
+    times = [_times(one.estimates, design.method) for one in found]
+    if design.meta.get("groups"):
+        bounds = result["group_ST_low"].values, result["group_ST_high"].values
+        times = [convergence.take_times(low, high, convergence.HALF_WIDTH) for low, high in zip(*bounds, strict=True)]
+    return {
+        name: ("output", values, {"long_name": words} | ({} if values.dtype == object else {"units": "1"}))
+        for name, values, words in (
+            ("used_share", share, "share of the rows that the indices use"),
+            ("reliable", (share >= RELIABLE).astype(np.int8), f"1 where at least {RELIABLE:g} of the rows are used"),
+            ("note", np.array(notes, dtype=object), "rows left out, and why"),
+            ("take_times", np.array(times), "factor on the samples after which the intervals are narrow enough"),
+        )
+    }
 
 
 def _times(out: indices.Estimates, method: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -54,7 +55,12 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
         return _of_pairs(
             view, effect, parts, words, values | {"rising": effect.rising, "falling": effect.falling}, rows
         )
-    return _of_classes(view, effect, parts, words, values | {"interval": effect.interval}, rows)
+    said = _of_classes(view, effect, parts, words, values | {"interval": effect.interval}, rows)
+    tied = [next(n for n in pair[:2] if n != factor) for pair in _correlations(view, factor)]
+    if not tied:
+        return said
+    text = f"{said.text} {capital(listing([long_name(n) for n in tied]))} changes with it: the factors are correlated."
+    return replace(said, text=text, values={**said.values, "correlated": tied})
 
 
 def _span(view: StudyView, effect: Effect) -> str:
@@ -158,3 +164,8 @@ def _of_classes(
         f"the outer thirds of the valid designs, {count(effect.size)} or more in each)."
     ).replace("A a", "An a")
     return Sentence("classes", text, values, rows)
+
+
+def _correlations(view: StudyView, factor: str) -> list[tuple[str, str, float]]:
+    """Return the rank correlations of the study file that a factor has."""
+    return [pair for pair in view.study.get("rank_correlations", ()) if factor in pair[:2] and pair[2]]

@@ -77,12 +77,23 @@ def _spec(spec: Any) -> str:
     """A factor of the study file in words: 'uniform 0.1, 0.3'."""
     if not isinstance(spec, Mapping):
         return ""
+    if "weights" in spec:
+        return f"drawn with weights {', '.join(f'{v:g}' for v in spec['weights'])}"
     for kind, value in spec.items():
         if kind in ("uniform", "loguniform", "normal", "truncnormal", "triangular", "linspace", "logspace"):
             return f"{kind} {', '.join(f'{v:g}' for v in value)}"
         if kind == "expression":
             return f"= {value}"
     return ""
+
+
+def correlation_row(view: StudyView) -> list[tuple[str, str]]:
+    """Return the rank correlations of the study file as one row, if there are any."""
+    said = [
+        f"{long_name(one)} with {long_name(other)} {number(rho)}"
+        for one, other, rho in view.study.get("rank_correlations", ())
+    ]
+    return [("Rank correlations", "; ".join(said))] if said else []
 
 
 def base_table(view: StudyView, ds: xr.Dataset) -> Table:

@@ -13,13 +13,13 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.analysis.pareto import study_pareto
-from trackroller.report import choices
+from trackroller.report import choices, parts
 from trackroller.report import sentences as words
 from trackroller.report.comparison import report_section
 from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.inputs import base_table, factor_table, materials_table, record_table
+from trackroller.report.inputs import base_table, correlation_row, factor_table, materials_table, record_table
 from trackroller.report.known_errors import friction_error
 from trackroller.report.numbers import capital, count, long_name, percent, plain, rounded
 from trackroller.report.papers import conventions, papers
@@ -107,7 +107,8 @@ def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
         "factors": factor_table(view),
         "base": base_table(view, ds),
         "options": [(capital(long_name(k)), told) for k in OPTIONS if (told := _told(merged.get(k, "")))]
-        + models_used(ds),
+        + models_used(ds)
+        + correlation_row(view),
         "materials": materials_table(attrs),
         "solution": solution_facts(ds, view),
         "conventions": conventions(merged, results),
@@ -134,7 +135,8 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
         decide += _guarded(list, robust_tables, sens, error)
         said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
-        why = [index_table(sens, error), *(measure_table(sens, name, error) for name in _leading_outputs(sens))]
+        why = [index_table(sens, error), *parts.tables(sens)]
+        why += [measure_table(sens, name, error) for name in _leading_outputs(sens)]
     compared = []
     if models.get("rows"):
         rows = [[name, *cells] for name, cells in models["rows"]]

@@ -54,7 +54,7 @@ def headline(sens: xr.Dataset) -> str:
     ST, mu_star, main_share, effect or first.
     """
     found = HEADLINES.get(str(sens.attrs.get("method")), "effect" if "effect" in sens else "first")
-    if found == "main_share" and not np.isfinite(sens[found]).any() and "first" in sens:
+    if "first" in sens and (found not in sens or not np.isfinite(sens[found]).any()):
         return "first"
     return found
 
@@ -117,8 +117,15 @@ def decides(sens: xr.Dataset, output: str) -> Sentence:
         text = f"No index can be given for {what}: {sens.sel(output=output)['note'].item()}."
         return Sentence("no_index", text, {"output": output})
     text = _range_words(sens, output, ranks) if index in ("mu_star", "effect") else _share_words(ranks, what, index)
+    if tied := _correlated(sens):
+        text = f"{text[:-1]}; {listing(tied)} are correlated, and the index of each holds influence of the others."
     values = {"output": output, "index": index, "ranks": [(r.factor, r.value, r.low, r.high) for r in ranks]}
     return Sentence("index", text, values)
+
+
+def _correlated(sens: xr.Dataset) -> list[str]:
+    """Name the factors that are correlated with another factor."""
+    return [str(n) for n in sens["factor_name"].values[sens["correlated"].values == 1]] if "correlated" in sens else []
 
 
 def _share_words(ranks: list[Rank], what: str, index: str) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report import choices
+from trackroller.report import choices, parts
 from trackroller.report import sentences as words
 from trackroller.report.claims import Sentence
 from trackroller.report.findings import best_design, occurrence, valid_designs
@@ -31,7 +31,7 @@ def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> lis
     """
     lines = [
         ("Valid designs", [valid_designs(view), stopped(view)]),
-        ("Best design point" if sens is not None and words.robust_design(sens) else "What decides", [decides(sens)]),
+        ("Best design point" if sens is not None and words.robust_design(sens) else "What decides", decides(sens)),
         ("Best", [best_design(view)]),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
         ("How sure", [friction_error(view), *accuracy(view), *(Sentence("models", text) for text in models)]),
@@ -50,16 +50,16 @@ def stopped(view: StudyView) -> Sentence | None:
     return Sentence("stopped", text, {"count": cases}, np.ones(len(hit), dtype=bool))
 
 
-def decides(sens: xr.Dataset | None) -> Sentence | None:
+def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
     """State what decides life (else the first output that has an index), or the best design point."""
     if sens is None:
-        return None
+        return []
     names = [str(n) for n in sens["output"].values]
     if words.robust_design(sens):
         lives = [n for n in LIVES if n in names]
-        return choices.robustness(sens, lives[0]) if lives else None
+        return [choices.robustness(sens, lives[0])] if lives else []
     ranked = [n for n in [*LIVES, *names] if n in names and words.order(sens, n)]
-    return words.decides(sens, ranked[0]) if ranked else None
+    return [words.decides(sens, ranked[0]), *parts.sentences(sens, ranked[0])] if ranked else []
 
 
 def enough(view: StudyView, sens: xr.Dataset | None) -> Sentence | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,15 +14,15 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
-from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
-from trackroller.roller.options import check_pairs
+from trackroller.parameters import OPTIONS
 from trackroller.roller.point_files import files_beside, find_beside
 from trackroller.roller.stop import parse_condition
+from trackroller.study.checks import cross_check
 from trackroller.study.design import build
-from trackroller.study.design.entries import OPTION_FACTORS, base_value, check_own_name, choice, factor
-from trackroller.study.design.factors import LISTS
+from trackroller.study.design.correlation import check_entries
+from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.design.sampling import METHODS, current_name
-from trackroller.study.goals import Analysis, check, comparisons, directions
+from trackroller.study.goals import Analysis, comparisons, directions
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,14 +58,25 @@ class _Design(BaseModel):
     seed: int = Field(1, ge=0, le=2**32 - 2, description="same seed, same design")
     table: str | None = Field(None, description="CSV of cases for design: table, beside the study file")
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
+    exchange: Literal["factors", "groups"] | None = Field(
+        None, description="saltelli: columns are exchanged by factor (default) or by group of analysis.groups"
+    )
     levels: int | None = Field(None, description="morris: number of levels")
     inner: Literal["lhs", "sobol"] | None = Field(None, description="inner_outer: how the inner array is sampled")
+    rank_correlations: tuple[tuple[str, str, float], ...] = Field(
+        (), description="lhs, sobol, inner_outer: [factor, factor, Spearman rank correlation] each"
+    )
     grown_from: tuple[int, ...] | None = Field(None, description="lhs, inner_outer: earlier numbers of samples")
 
     @field_validator("name", mode="before")
     @classmethod
     def _name(cls, value: Any) -> Any:
         return check_name(str(value) if isinstance(value, (int, float)) else value)
+
+    @field_validator("rank_correlations", mode="before")
+    @classmethod
+    def _rank_correlations(cls, value: Any) -> Any:
+        return check_entries(value)
 
     @field_validator("design")
     @classmethod
@@ -243,7 +253,7 @@ def parse_study(data: Mapping[str, Any], path: Path | None = None, database: Any
     except ValidationError as error:
         raise _translate(error) from None
     study = Study(config, path, database)
-    _cross_check(study)
+    cross_check(study)
     return study
 
 
@@ -274,44 +284,3 @@ def load_study(path: str | Path, database: Any = None) -> Study:
         if data.get("table") is not None:
             find_beside(data["table"], "table")
         return parse_study(data, path, database)
-
-
-def _check_options(study: Study) -> None:
-    """Refuse options that exclude each other, in any combination of the levels that are factors."""
-
-    def levels(name: str) -> list[str]:
-        return study.factors.get(name, {}).get("values", [getattr(study.config, name)])
-
-    for model, normal in itertools.product(levels("contact_model"), levels("normal")):
-        check_pairs(study.config.hertz, normal, study.config.slip_terms, model)
-
-
-def _cross_check(study: Study) -> None:
-    config = study.config
-    for name in OPTION_FACTORS:
-        if name in config.factors and not isinstance(getattr(config, name), str):
-            raise InputError(name, getattr(config, name), f"{name} stands among the factors too", "Keep one.")
-    both = {*study.factors, *config.base} & {"material_pair"}
-    single = {*study.factors, *config.base} & set(MATERIAL_FIELDS)
-    if both and single:
-        raise InputError("material_pair", sorted(single), "give the pair or the single materials, not both")
-    if doubled := set(config.base) & set(study.factors):
-        name = min(doubled)
-        raise InputError(f"base.{name}", config.base[name], f"{name} is a factor too", "Remove one of them.")
-    if (config.design == "table") != (config.table is not None):
-        raise InputError("table", config.table, "design: table and the path of a CSV belong together")
-    if config.design == "grid":
-        for name, spec in study.factors.items():
-            if not set(spec) & {*LISTS, "expression"}:
-                raise InputError(
-                    f"factors.{name}",
-                    spec,
-                    "a grid needs values, linspace or logspace",
-                    "Or choose a sampled design: lhs, sobol, saltelli, morris.",
-                )
-    for name in study.factors:
-        check_own_name(name, f"factors.{name}")
-    check(config, study.factors)
-    _check_options(study)
-    build.check_materials(study)
-    build.check_geometry(study)

@@ -43,6 +43,12 @@ class Analysis(BaseModel):
     )
     keep: tuple[str, ...] = Field(("rolling",), description="regimes whose cases are used; others are counted")
     measures: tuple[str, ...] = Field(MEASURES, description="given-data measures besides the indices of the design")
+    groups: dict[str, tuple[str, ...]] = Field(
+        {}, description="grid, saltelli: groups of factors whose first-order and total indices are wanted, by name"
+    )
+    conditional_on: str | None = Field(
+        None, description="factor with a list of values: indices of the others within each of its levels"
+    )
     resamples: int = Field(300, ge=50, le=10_000, description="bootstrap resamples behind the 95 % intervals")
     material_scatter: bool | float = Field(
         False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"

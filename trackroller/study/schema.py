@@ -19,9 +19,10 @@ def _factor() -> dict[str, Any]:
     kinds: dict[str, Any] = {"values": {"type": "array", "minItems": 1}, "expression": {"type": "string"}}
     numbers = {**DISTRIBUTIONS, "linspace": 3, "logspace": 3}
     kinds |= {kind: {"type": "array", "minItems": n, "maxItems": n} for kind, n in numbers.items()}
+    weights = {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 1}
     return {
         "type": "object",
-        "properties": {**kinds, "scatter": {"type": "boolean"}},
+        "properties": {**kinds, "scatter": {"type": "boolean"}, "weights": weights},
         "additionalProperties": False,
         "oneOf": [{"required": [kind]} for kind in kinds],
     }

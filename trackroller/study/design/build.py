@@ -16,6 +16,7 @@ from trackroller.numerics import expressions
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.fields import own_frictions
 from trackroller.roller.geometry import geometry_problem
+from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import label, parse
 from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
@@ -59,14 +60,18 @@ def draw(study: Study) -> SampledDesign:
     InputError : as `sample`; an option that the design does not have; too many cases
     """
     config = study.config
-    options = {name: getattr(config, name) for name in ("second_order", "levels", "inner", "grown_from")}
-    options = {k: v for k, v in options.items() if v is not None}
+    check_design(config.rank_correlations, config.design)
+    names = ("second_order", "levels", "inner", "grown_from", "rank_correlations")
+    options = {name: getattr(config, name) for name in names}
+    options = {k: v for k, v in options.items() if v is not None and v != ()}
     for name in options:
         if name not in OPTIONS.get(config.design, {}):
             having = [design for design, known in OPTIONS.items() if name in known]
             raise InputError(name, options[name], f"an option of design {' and '.join(having)}", "Remove the key.")
     if config.design == "table":
         options["table"] = table_path(study)
+    if config.exchange == "groups":
+        options["groups"] = config.analysis.groups
     base = {k: v for k, v in config.base.items() if isinstance(v, float)}
     design = sample(study.factors, config.design, config.samples, config.seed, base=base, **options)
     if config.design == "table":
@@ -74,6 +79,16 @@ def draw(study: Study) -> SampledDesign:
     if design.size > MAX_CASES:
         raise InputError("design", f"{design.size} cases", f"at most {MAX_CASES} cases")
     return design
+
+
+def check_correlations(study: Study) -> None:
+    """Refuse rank correlations that the design or the factors cannot have, before anything is drawn."""
+    config = study.config
+    check_design(config.rank_correlations, config.design)
+    factors = {name: parse(name, spec) for name, spec in study.factors.items() if "expression" not in spec}
+    if config.design == "inner_outer":
+        factors = {name: factor for name, factor in factors.items() if factor.scatter}
+    copula(config.rank_correlations, factors)
 
 
 def _check_columns(study: Study, design: SampledDesign) -> None:

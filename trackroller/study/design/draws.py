@@ -21,9 +21,10 @@ from scipy.stats import qmc
 from trackroller.errors import InputError, unknown_name
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
-from trackroller.study.design import arrays
+from trackroller.study.design import arrays, correlation
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
+from trackroller.study.design.saltelli import all_groups
 
 MAX_ROWS = 50_000_000  # a larger number is a typing error
 Drawn = tuple[dict[str, np.ndarray], np.ndarray, dict[str, Any]]
@@ -50,19 +51,20 @@ def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     return columns, index.astype(float), {"shape": shape}
 
 
-def _quantiles(count: int, n: int, seed: int, method: str, earlier: Any) -> np.ndarray:
-    """Return quantiles of a random sample of `count` factors, shape (n, count)."""
+def _quantiles(method: str, free: Factors, n: int, seed: int, settings: Settings) -> np.ndarray:
+    """Return quantiles of a random sample of factors, shape (n, number of factors)."""
+    root = correlation.copula(settings.get(correlation.KEY, ()), free)
     if method == "lhs":
-        return grown_lhs(count, [*check_sizes(earlier, n), n], seed)
-    engine = qmc.Sobol(d=count, rng=np.random.default_rng(seed))
+        return grown_lhs(len(free), [*check_sizes(settings.get("grown_from", ()), n), n], seed, root)
+    engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
-        return engine.random(n)
+        return correlation.transform(engine.random(n), root)
 
 
 def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
-    unit = _quantiles(len(free), n, seed, method, settings.get("grown_from", ()))
-    return _map(free, unit), unit, {}
+    unit = _quantiles(method, free, n, seed, settings)
+    return _map(free, unit), unit, {correlation.KEY: tuple(settings.get(correlation.KEY, ()))}
 
 
 def _problem(free: Factors) -> dict[str, Any]:
@@ -72,8 +74,14 @@ def _problem(free: Factors) -> dict[str, Any]:
 def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     blocks = 1 << max(0, n - 1).bit_length()
     second = bool(settings["second_order"])
-    unit = sobol.sample(_problem(free), blocks, calc_second_order=second, seed=seed)
-    return _map(free, unit), unit, {"base_samples": blocks, "second_order": second}
+    problem, meta = _problem(free), dict[str, Any](base_samples=blocks, second_order=second)
+    if settings["groups"]:
+        groups = all_groups(settings["groups"], free)
+        owner = {name: group for group, members in groups.items() for name in members}
+        problem["groups"] = [owner[name] for name in free]
+        meta["groups"] = list(dict.fromkeys(problem["groups"]))  # the order in which SALib exchanges them
+    unit = sobol.sample(problem, blocks, calc_second_order=second, seed=seed)
+    return _map(free, unit), unit, meta
 
 
 def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -142,7 +150,7 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         )
     if settings["inner"] not in ("lhs", "sobol"):
         raise unknown_name("design option inner", settings["inner"], ("lhs", "sobol"))
-    drawn, sample, _ = _random(settings["inner"], inner, n, seed, settings)
+    drawn, sample, more = _random(settings["inner"], inner, n, seed, settings)
     points, index, meta = _grid(outer, 0, 0, {}) if outer else ({}, np.zeros((1, 0)), {"shape": ()})
     count = len(index)
     columns = {name: np.repeat(values, n) for name, values in points.items()}
@@ -150,7 +158,7 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     places = {name: np.repeat(index[:, j], n) for j, name in enumerate(outer)}
     places |= {name: np.tile(sample[:, j], count) for j, name in enumerate(inner)}
     unit = np.stack([places[name] for name in free], axis=1)
-    meta |= {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": count}
+    meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": count}
     return columns, unit, meta
 
 

@@ -14,6 +14,8 @@ logspace         ``[first, last, how many]`` (the values themselves, not exponen
 expression       arithmetic over other factors and base values, e.g. ``"-1.2 * guide_profile_radius"``
 ================ =====================================================================
 
+`weights` may stand beside a list: one positive number a value. A random sample draws the values in their proportion.
+
 In an inner/outer array design (`inner_outer`), `scatter: true | false` may stand beside the key. Without it,
 distributions scatter (inner array) and lists are design points (outer array).
 """
@@ -49,6 +51,7 @@ class Factor:
     levels : listed values
     text : the expression
     scatter : whether the factor belongs to the inner array of an inner/outer array design
+    weights : probabilities of the listed values [1], empty if all are equally likely
     """
 
     name: str
@@ -57,6 +60,7 @@ class Factor:
     levels: tuple[Any, ...] = ()
     text: str = ""
     scatter: bool = False
+    weights: tuple[float, ...] = ()
 
     @property
     def discrete(self) -> bool:
@@ -87,7 +91,9 @@ class Factor:
         return column([self.levels[i] for i in np.asarray(index, dtype=int)], self.numeric)
 
     def bin(self, unit: np.ndarray) -> np.ndarray:
-        """Return the index of the listed value at the quantiles `unit`; bins of equal probability, shape (n,)."""
+        """Return the index of the listed value at the quantiles `unit`, shape (n,)."""
+        if self.weights:
+            return np.searchsorted(np.cumsum(self.weights)[:-1], unit, side="right")
         return np.minimum((unit * len(self.levels)).astype(int), len(self.levels) - 1)
 
     def from_unit(self, unit: np.ndarray, tail: float = 0.0) -> np.ndarray:
@@ -175,13 +181,15 @@ def parse(name: str, spec: Any) -> Factor:
     if not (scatter is None or isinstance(scatter, bool)):
         raise InputError(f"{field}.scatter", scatter, "true or false")
     for key in spec:
-        if key not in (*KINDS, "scatter"):
-            raise unknown_name(f"{field} key", key, (*KINDS, "scatter"))
+        if key not in (*KINDS, "scatter", "weights"):
+            raise unknown_name(f"{field} key", key, (*KINDS, "scatter", "weights"))
     keys = [key for key in spec if key in KINDS]
     if len(keys) != 1:
         raise InputError(field, dict(spec), f"exactly one of {', '.join(KINDS)}")
     kind = keys[0]
     value, where = spec[kind], f"{field}.{kind}"
+    if "weights" in spec and kind not in LISTS:
+        raise InputError(f"{field}.weights", spec["weights"], f"weights of the values of a list, not of {kind}")
     if kind == "expression":
         expressions.names(value, where)
         return Factor(name, kind, text=value)
@@ -189,7 +197,19 @@ def parse(name: str, spec: Any) -> Factor:
         raise InputError(where, value, "a list that is not empty")
     if kind in DISTRIBUTIONS:
         return Factor(name, kind, _distribution(kind, value, where), scatter=scatter is not False)
-    return Factor(name, kind, levels=_levels(kind, list(value), where), scatter=bool(scatter))
+    levels = _levels(kind, list(value), where)
+    weights = _weights(spec["weights"], levels, f"{field}.weights") if "weights" in spec else ()
+    return Factor(name, kind, levels=levels, scatter=bool(scatter), weights=weights)
+
+
+def _weights(value: Any, levels: tuple[Any, ...], where: str) -> tuple[float, ...]:
+    """Return the probabilities of the listed values."""
+    if not isinstance(value, (list, tuple)):
+        raise InputError(where, value, f"a list of {len(levels)} positive numbers, one a value")
+    numbers = _numbers(value, len(levels), where)
+    if not min(numbers) > 0:
+        raise InputError(where, value, "numbers above 0", "Remove the value that never occurs from the list.")
+    return tuple(number / sum(numbers) for number in numbers)
 
 
 def _is_number(value: Any) -> bool:

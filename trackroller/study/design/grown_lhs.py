@@ -15,9 +15,10 @@ import numpy as np
 from scipy.stats import qmc
 
 from trackroller.errors import InputError
+from trackroller.study.design.correlation import reorder
 
 
-def grown_lhs(count: int, sizes: Sequence[int], seed: int) -> np.ndarray:
+def grown_lhs(count: int, sizes: Sequence[int], seed: int, root: np.ndarray | None = None) -> np.ndarray:
     """Draw a Latin hypercube of sizes[0] rows and grow it to each further size.
 
     Parameters
@@ -25,14 +26,16 @@ def grown_lhs(count: int, sizes: Sequence[int], seed: int) -> np.ndarray:
     count : number of factors
     sizes : rising numbers of rows
     seed : of the draw
+    root : correlates the rows of each step, see `trackroller.study.design.correlation.copula`
 
     Returns
     -------
     Quantiles in the unit cube, shape (sizes[-1], count). The first sizes[i] rows are the sample of that size.
     """
     unit: np.ndarray = qmc.LatinHypercube(d=count, rng=np.random.default_rng(seed)).random(sizes[0])
+    unit = reorder(unit, root)
     for size in sizes[1:]:
-        unit = np.concatenate([unit, _fill(unit, size, np.random.default_rng([seed, size]))])
+        unit = np.concatenate([unit, reorder(_fill(unit, size, np.random.default_rng([seed, size])), root)])
     return unit
 
 

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from trackroller.study.config import Study
     from trackroller.study.files import StudyFolder
 
+SAME = ("factors", "rank_correlations", "design", "seed", "inner")  # keys that a grown sample must share
+
 
 def with_history(study: Study, folder: StudyFolder) -> Study:
     """Add the earlier sizes of the sample to a study.
@@ -25,8 +27,8 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
 
     Returns
     -------
-    The study with `grown_from`, if it is a Latin hypercube whose factors, seed and design are unchanged. Otherwise
-    the study as it is.
+    The study with `grown_from`, if it is a Latin hypercube whose factors, rank correlations, seed and design are
+    unchanged. Otherwise the study as it is.
     """
     config = study.config
     if not _is_lhs(config.design, config.inner) or config.grown_from or not (folder.root / "study.yaml").is_file():
@@ -35,7 +37,7 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
         old = read_mapping(folder.root / "study.yaml", "study")
         now = parse_yaml(study.merged(), "study")
         old["design"] = current_name(str(old.get("design")))
-        if any(old.get(key) != now.get(key) for key in ("factors", "design", "seed", "inner")):
+        if any((old.get(key) or None) != (now.get(key) or None) for key in SAME):
             return study
         sizes = [*old.get("grown_from", ()), int(old["samples"])]
         earlier = check_sizes([s for s in sizes if s < config.samples], config.samples)

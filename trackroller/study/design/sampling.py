@@ -2,8 +2,8 @@
 
 Every method first draws quantiles in the unit cube (SALib, scipy.stats.qmc) or a classical design in coded units.
 It then maps them through the distribution of each factor, so that every method takes every factor. The values of a
-list are equally likely in random samples (lhs, sobol, saltelli). In Morris trajectories they are random pairs of
-different values, and in response-surface designs they are crossed with all other rows.
+list are equally likely in random samples (lhs, sobol, saltelli), unless they have weights. In Morris trajectories they
+are random pairs of different values, and in response-surface designs they are crossed with all other rows.
 """
 
 from __future__ import annotations
@@ -35,12 +35,14 @@ METHODS = (
 )
 OLD_NAMES = {"nested": "inner_outer"}  # of designs; they keep working
 OPTIONS: dict[str, dict[str, Any]] = {
-    "saltelli": {"second_order": True},
+    "saltelli": {"second_order": True, "groups": None},
     "morris": {"levels": 4},
     "table": {"table": None},
-    "inner_outer": {"inner": "lhs", "grown_from": ()},
-    "lhs": {"grown_from": ()},
+    "inner_outer": {"inner": "lhs", "grown_from": (), "rank_correlations": ()},
+    "lhs": {"grown_from": (), "rank_correlations": ()},
+    "sobol": {"rank_correlations": ()},
 }
+WEIGHING = ("lhs", "sobol", "saltelli")  # designs that draw the values of a list with their weights
 ARRAYS = ("grid", "central_composite", "box_behnken", "plackett_burman")  # `samples` does not count for them
 
 
@@ -130,9 +132,11 @@ def sample(
         methods have their own number
     seed : the same seed gives the same design
     base : values that expressions may use besides the factors
-    options : second_order (saltelli, default true), levels (morris, default 4), table (path of the CSV),
-        inner (inner_outer: lhs or sobol), grown_from (lhs, inner_outer: earlier numbers of samples, whose rows
-        come first)
+    options : second_order (saltelli, default true), groups (saltelli: groups of factors whose columns are exchanged
+        together; the design has n (2 g + 2) or n (g + 2) rows for g groups, single factors included), levels (morris,
+        default 4), table (path of the CSV), inner (inner_outer: lhs or sobol), grown_from (lhs, inner_outer: earlier
+        numbers of samples, whose rows come first), rank_correlations (lhs, sobol, inner_outer: see
+        `trackroller.study.design.correlation`)
 
     Returns
     -------
@@ -152,6 +156,7 @@ def sample(
         free = {k: f for k, f in parsed.items() if f.kind != "expression" and not _single(f)}
         if not free and method != "grid":
             raise InputError("factors", list(factors), "at least one factor must vary")
+        _check_weights(free, method)
         if method not in ARRAYS and int(n) < 1:
             raise InputError("samples", n, "a whole number >= 1")
         columns, unit, meta = DRAW[method](free, int(n), int(seed), settings)
@@ -189,6 +194,22 @@ def _beside_table(factors: Mapping[str, Any]) -> dict[str, Factor]:
             allowed = "a table has its factors as columns"
             raise InputError(f"factors.{name}", factors[name], allowed, "Only expressions may stand beside a table.")
     return parsed
+
+
+def _check_weights(free: Mapping[str, Factor], method: str) -> None:
+    """Refuse weights in a design that does not draw the values of a list at random."""
+    for name, factor in free.items():
+        random = method in WEIGHING or (method == "inner_outer" and factor.scatter)
+        if factor.weights and not random:
+            where = "the outer array of inner_outer" if method == "inner_outer" else f"design {method}"
+            raise InputError(
+                f"factors.{name}.weights",
+                list(factor.weights),
+                f"a design that draws values at random ({', '.join(WEIGHING)}); {where} takes each value equally often",
+                "Remove the weights, or add scatter: true."
+                if method == "inner_outer"
+                else f"Remove the weights, or choose design {WEIGHING[0]}.",
+            )
 
 
 def _single(factor: Factor) -> bool:

@@ -1,0 +1,53 @@
+"""What the rows of a Saltelli block have in common, and which groups of factors its correlations serve.
+
+A block of k columns has the rows A, AB_1 .. AB_k, (BA_1 .. BA_k,) B. AB_j is A with column j from B. A set of columns
+is written as a number whose bit j stands for column j.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+
+def pairs_sharing(count: int, second_order: bool) -> dict[int, list[tuple[int, int]]]:
+    """Return the pairs of rows of a block by the columns that both rows share.
+
+    Parameters
+    ----------
+    count : number of columns k
+    second_order : whether the block has the rows BA_j
+
+    Returns
+    -------
+    Set of columns -> pairs (row, row) with equal values in these columns and in no other. Where A or B has such a
+    partner, only these pairs: the control variate of A with B serves them best.
+    """
+    whole = (1 << count) - 1
+    from_a = [whole, *(whole ^ (1 << j) for j in range(count))]
+    from_a += [*(1 << j for j in range(count)), 0] if second_order else [0]
+    last = len(from_a) - 1
+    found: dict[int, list[tuple[int, int]]] = {}
+    for i, one in enumerate(from_a):
+        for j in range(i):
+            found.setdefault(whole ^ one ^ from_a[j], []).append((j, i))
+    ends = {columns: [pair for pair in pairs if pair[0] == 0 or pair[1] == last] for columns, pairs in found.items()}
+    return {columns: ends[columns] or pairs for columns, pairs in found.items()}
+
+
+def as_set(columns: Iterable[int]) -> int:
+    """Return a set of columns as a number."""
+    return sum(1 << j for j in columns)
+
+
+def serves(members: Iterable[int], count: int, second_order: bool) -> bool:
+    """Return whether the blocks give the first-order and the total index of a group of columns."""
+    known, group = pairs_sharing(count, second_order), as_set(members)
+    return group in known and ((1 << count) - 1) ^ group in known
+
+
+def all_groups(groups: Mapping[str, Sequence[str]], factors: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """Return the groups of a study file and, after these, each factor in no group as a group of its own name."""
+    taken = {name for members in groups.values() for name in members}
+    return {name: tuple(members) for name, members in groups.items()} | {
+        name: (name,) for name in factors if name not in taken
+    }
