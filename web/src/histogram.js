@@ -1,4 +1,5 @@
 // Histogram of one column: all cases in pale grey, the selected ones before them.
+import { scaleLinear } from "d3-scale";
 import { theme } from "./colours.js";
 import { plot } from "./plot.js";
 import { placesOf, scaleOf } from "./scales.js";
@@ -22,23 +23,22 @@ export function histogram(model) {
       all[bin] += 1;
       if (!model.misses[i]) chosen[bin] += 1;
     }
-    const most = Math.max(1, ...all);
+    const scaleY = scaleLinear([0, Math.max(1, ...all)], [0, 1]).nice(4);
+    const share = (n) => scaleY(n);
     const { mark, line, ink } = theme();
     base.clear();
-    const step = most > 4 ? Math.ceil(most / 4) : 1;
-    const ticks = [];
-    for (let k = 0; k <= most; k += step) ticks.push([k / most, count(k)]);
+    const ticks = scaleY.ticks(4).filter(Number.isInteger).map((k) => [share(k), count(k)]);
     base.frame(scale, { ticks, levels: false }, heading(column), "Cases");
     const bars = [...Array.from({ length: bins }, (_, k) => [k / bins, (k + 1) / bins]), [1.02, 1.06], [-0.06, -0.02]];
     bars.forEach(([from, to], k) => {
       const [left, width] = [base.x(from), Math.max(1, base.x(to) - base.x(from) - 1)];
       for (const [n, colour] of [[all[k], line], [chosen[k], mark]]) {
         context.fillStyle = colour;
-        context.fillRect(left, base.y(n / most), width, base.y(0) - base.y(n / most));
+        context.fillRect(left, base.y(share(n)), width, base.y(0) - base.y(share(n)));
       }
       context.strokeStyle = ink;
       context.lineWidth = 0.5;
-      if (chosen[k]) context.strokeRect(left, base.y(chosen[k] / most), width, base.y(0) - base.y(chosen[k] / most));
+      if (chosen[k]) context.strokeRect(left, base.y(share(chosen[k])), width, base.y(0) - base.y(share(chosen[k])));
     });
     const told = said(column, chosen[bins], chosen[bins + 1]);
     node.setAttribute("aria-label", told);

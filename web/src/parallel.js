@@ -106,7 +106,7 @@ export function parallel(model, colours, say) {
       path(context, row);
       context.stroke();
     };
-    if (model.marked) for (const row of model.marked.slice(0, 400)) thick(row, 1.5, ink);
+    if (model.marked) for (const row of model.marked.slice(0, 400)) thick(row, 1, ink);
     model.pins.forEach((row, i) => {
       context.setLineDash(i ? [8, 4] : []);
       thick(row, 3, mark);

@@ -1,6 +1,6 @@
 // The axis of a column: positions from 0 to 1, ticks and what a piece of the axis selects.
 import { scaleLinear, scaleLog } from "d3-scale";
-import { number } from "./words.js";
+import { number, tick } from "./words.js";
 
 const MOST_LEVELS = 12; // more levels of a number make an axis of numbers
 
@@ -59,7 +59,7 @@ function numberScale(...columns) {
     unit,
     ofRow: (row) => unit(column.values[row]),
     value: (place) => scale.invert(place),
-    ticks: known ? ticks.map((t) => [scale(t), number(t, 3)]) : [],
+    ticks: known ? ticks.map((t) => [scale(t), tick(t)]) : [],
     piece: (from, to) => [from <= 0 ? -Infinity : scale.invert(from), to >= 1 ? Infinity : scale.invert(to)],
   };
 }

@@ -80,7 +80,10 @@ export function scatter(model, colours) {
       }
     };
     for (let i = 0; i < count; i++) if (model.misses[i]) put(i, grey, pale);
-    for (let i = 0; i < count; i++) if (!model.misses[i]) put(i, shapes[model.state[i]], colour[index[i]]);
+    // valid cases last, so that no other case covers them
+    for (const valid of [false, true])
+      for (let i = 0; i < count; i++)
+        if (!model.misses[i] && (model.state[i] === 0) === valid) put(i, shapes[model.state[i]], colour[index[i]]);
     [points.width, points.height] = [wide, tall];
     points.getContext("2d").putImageData(picture, 0, 0);
     context.drawImage(points, 0, 0, size.width, HEIGHT);

@@ -16,6 +16,13 @@ export function number(value, figures = 4) {
   return String(Number(value.toPrecision(figures))).replace("-", "−");
 }
 
+// A tick of an axis: powers of ten from 100,000 on stay short.
+export function tick(value) {
+  const power = Math.log10(Math.abs(value));
+  if (value > 0 && power > 4.5 && Math.abs(power - Math.round(power)) < 1e-9) return `10${[...String(Math.round(power))].map((c) => RAISED[c]).join("")}`;
+  return number(value, 3);
+}
+
 const isLife = (column) => column.name.includes("life");
 
 export function valueText(column, row) {
