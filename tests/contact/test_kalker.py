@@ -365,13 +365,14 @@ def test_linear_shares_of_the_traction_bound_are_kept_between_the_elements():
     where = lambda m: (np.arange(m) + 0.5) * 2.0 / m - 1.0  # noqa: E731
     share = lambda m: 0.1 + 0.3 * where(m)[:, None] - 0.2 * where(m)[None, :]  # noqa: E731
     traction = (np.stack([share(16), -share(16)]) * height)[None]
-    found = subgrid.shares(height, traction, np.zeros_like(traction), np.ones(1))[0]
+    shares = lambda t, slip: subgrid.shares(subgrid.Fields(height, t, slip, np.ones(1), np.ones((1, 1, 1))))[0]  # noqa: E731
+    found = shares(traction, np.zeros_like(traction))
     inner = np.s_[:, 12:36, 12:36]
     np.testing.assert_allclose(found[inner], np.stack([share(48), -share(48)])[inner], atol=2e-3)
     way = np.array([0.6, -0.8])[:, None, None]
-    sliding = subgrid.shares(height, (way * height)[None], (-way * np.ones_like(height))[None], np.ones(1))[0]
+    sliding = shares((way * height)[None], (-way * np.ones_like(height))[None])
     np.testing.assert_allclose(sliding, np.broadcast_to(way, sliding.shape), rtol=1e-12)
-    longest = np.hypot(*subgrid.shares(height, 3.0 * traction, 0 * traction, np.ones(1))[0]).max()
+    longest = np.hypot(*shares(3.0 * traction, 0 * traction)).max()
     assert longest == pytest.approx(1.0, rel=1e-12)
 
 
@@ -463,7 +464,7 @@ def test_forces_converge_with_an_observed_order_between_one_and_two():
         return values(s) / (limit[:, None] * np.array([1.0, 1.0, 0.25])), s.stick_fraction
 
     grids = [found(n)[0] for n in (14, 28, 56, 112)]
-    best = grids[3] + extrapolation.WEIGHT * (grids[3] - grids[2])
+    best = grids[3] + extrapolation.SLIDING * (grids[3] - grids[2])
     mean = np.array([np.sqrt(np.mean((grid - best) ** 2, axis=0)) for grid in grids[:3]])
     orders = np.log2(mean[0] / mean[2]) / 2
     assert np.all((orders > 1.0) & (orders < 2.5)), orders

@@ -22,6 +22,7 @@ from trackroller.contact.table.model import TableModel
 from trackroller.errors import unknown_name
 
 CORRECTION_TOLERANCE = 1e-4  # residual of the friction law over mu p_max where elements correct the table
+LEAST_UNDER_LAW = 20  # elements across a patch that resolve steeply falling friction
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models
 MOST_SLENDER = 0.99 * LARGEST_RATIO  # axis ratio up to which FASTSIM has flexibilities
 
@@ -84,7 +85,8 @@ class KalkerModel(ContactModel):
         profile_slip: bool = False,
         trusts_table: bool = False,
     ) -> None:
-        chosen = kalker.KalkerSettings(elements=settings.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
+        elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
+        chosen = kalker.KalkerSettings(elements=elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
         self._law = KalkerLaw(elastic, chosen, travel_speed)
         if law.is_constant:  # the table behind the corrections holds constant friction only
             rough = dataclasses.replace(chosen, tolerance=CORRECTION_TOLERANCE)
@@ -101,7 +103,7 @@ class KalkerModel(ContactModel):
         return kalker.to_tractions(ellipse, friction, self._solution(ellipse, slip, friction, rows))
 
     def shares(self, ellipse, slip, friction, rows):
-        return None if self.correction is None else self.correction.shares(ellipse, slip, friction, rows)
+        return kalker.shares(ellipse, self._solution(ellipse, slip, friction, rows))
 
     def power(self, ellipse, slip, friction, rows):
         if self.correction is not None:

@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
-from trackroller.contact.kalker.patch import resultants, solve_patch, to_tractions, tractions
+from trackroller.contact.kalker.patch import resultants, shares, solve_patch, to_tractions, tractions
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution
 from trackroller.contact.slip import Creepage
 
-__all__ = ["Creepage", "KalkerSettings", "PatchSolution", "resultants", "solve_patch", "to_tractions", "tractions"]
+__all__ = [
+    "Creepage",
+    "KalkerSettings",
+    "PatchSolution",
+    "resultants",
+    "shares",
+    "solve_patch",
+    "to_tractions",
+    "tractions",
+]

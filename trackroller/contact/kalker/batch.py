@@ -14,8 +14,7 @@ from numba import njit
 
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.influence import coupling_slip, influence
-from trackroller.contact.kalker.columns import column_ranges
-from trackroller.contact.kalker.loops import reals, row_means
+from trackroller.contact.kalker.loops import reals
 from trackroller.contact.kalker.newton import Problem, newton
 from trackroller.numerics.threads import share_rows
 
@@ -91,19 +90,21 @@ class Found:
     """Start and result of n patches.
 
     traction (n, 2, ny, nx) over mu p_max: first the start, then the result; slip (n, 2, ny, nx) per travel speed;
-    stick (n, ny, nx); report.
+    stick (n, ny, nx); factor (n, ny, nx) : friction over its value at rest, (n, 1, 1) if it is constant; report.
     """
 
     traction: np.ndarray
     slip: np.ndarray
     stick: np.ndarray
+    factor: np.ndarray
     report: Report
 
     @classmethod
-    def start(cls, traction: np.ndarray) -> Found:
+    def start(cls, traction: np.ndarray, law: FrictionLaw) -> Found:
         """Return room for the result of an iteration that starts from `traction` (n, 2, ny, nx)."""
         n, _, ny, nx = traction.shape
-        return cls(traction, np.empty_like(traction), np.zeros((n, ny, nx), bool), Report.empty(n))
+        factor = np.ones((n, 1, 1) if law.is_constant else (n, ny, nx))
+        return cls(traction, np.empty_like(traction), np.zeros((n, ny, nx), bool), factor, Report.empty(n))
 
 
 class _Fields(NamedTuple):
@@ -196,10 +197,8 @@ def _one_patch(batch: Batch, law: FrictionLaw, control, found: Found, i: int) ->
     sums = _sums(field, height, batch.share[i], 1.0 / functions.own, a, b, stick)
     _write(report, i, sums, 4.0 * a * b / (nx * ny), batch.bound[i], ratio)
     traction[0], traction[1] = solved.real, solved.imag
-    if law.speed.size > 1:  # report the mean slips that the law has used, so that tractions and slips agree with it
-        first, count = column_ranges(height)
-        row_means(reals(moved.copy()), first, count, reals(moved))
-        moved[stick] = 0.0
+    if law.speed.size > 1:
+        found.factor[i] = np.divide(bound, height, out=np.ones_like(height), where=height > 0.0)
     slip[0], slip[1] = ratio * moved.real, ratio * moved.imag
 
 

@@ -15,8 +15,6 @@ import numpy as np
 
 from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Works
-from trackroller.contact.kalker import subgrid
-from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
@@ -142,12 +140,6 @@ class Correction:
             given = patch.take(missing), slip.take(missing), friction[missing], rows[missing]
             self._elements(*given, forces=not self.trusts_table)
         return self.store.get(slot)
-
-    def shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the tractions over their bound between the elements, and those of elements of twice the size."""
-        found = self.solution(patch, slip, friction, rows)
-        height, _ = unit_cells(self.settings.elements, self.settings.elements)
-        return subgrid.both_shares(height, found.traction, found.slip, found.own_slip)
 
     def works(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
         """Return the dissipation and the work of the pressures at the given slip, arrays (m,)."""

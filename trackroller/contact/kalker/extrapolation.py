@@ -1,14 +1,21 @@
-"""Extrapolate forces from the grids h and 2h to elements of zero size: F = F_h + WEIGHT (F_h - F_2h)."""
+"""Extrapolate forces from the grids h and 2h to elements of zero size: F = F_h + weight (F_h - F_2h)."""
 
 from __future__ import annotations
 
 import numpy as np
 
-# The integrals between the centres converge with an order between 1 (full adhesion) and 2 (full slip, spin moment);
-# the weight belongs to the order 1.58. The weight is the same everywhere: a weight that follows the adhesion area would
-# carry the jumps of this area into the forces.
-WEIGHT = 0.5
+# The integrals between the centres converge with an order between 1 (full adhesion, with its singular trailing edge)
+# and 2 (full slip, spin moment). The weight of patches that slide belongs to the order 1.58, that of adhesion to 1.
+SLIDING, ADHESION = 0.5, 1.0
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
+
+
+def weight(used: np.ndarray) -> np.ndarray:
+    """Return the weight of patches, (n,), by the tractions over their bounds in the mean.
+
+    The adhesion area, which is made of whole elements, would carry its jumps into the forces.
+    """
+    return SLIDING + (ADHESION - SLIDING) * (1.0 - used) ** 2
 
 
 def energy(fine: np.ndarray, coarse: np.ndarray) -> np.ndarray:

@@ -16,6 +16,8 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Surfa
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import batch, extrapolation, subgrid
 from trackroller.contact.kalker.cells import cells, unit_cells
+from trackroller.contact.kalker.columns import column_ranges
+from trackroller.contact.kalker.loops import row_means
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.slip import Creepage
 
@@ -52,7 +54,7 @@ def _level(
         height,
         share,
     )
-    found = batch.Found.start(start)
+    found = batch.Found.start(start, settings.law_in_use)
     batch.solve_batch(patches, settings.law_in_use, settings, found)
     return found
 
@@ -66,22 +68,31 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
     found = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
         height, _ = cells(ellipse, settings.elements)
-        traction[:] = subgrid.shares(cells(ellipse, half)[0], found.traction, found.slip, found.report.own_slip, 2)
+        traction[:] = subgrid.shares(_fields(ellipse, found), 2)
         traction *= height if height.ndim == 2 else height[:, None]
     return found
 
 
-def _forces(ellipse: Ellipse, friction, settings: KalkerSettings, found: batch.Found) -> np.ndarray:
-    """Return the resultants (n, 3) of one grid: integrals between the centres, or sums over the elements."""
-    if not settings.law_in_use.is_constant or not friction.size:
+def _fields(ellipse: Ellipse | GridPatch, found: batch.Found | PatchSolution) -> subgrid.Fields:
+    own_slip = found.report.own_slip if isinstance(found, batch.Found) else found.own_slip
+    height, _ = cells(ellipse, found.traction.shape[-1])
+    return subgrid.Fields(height, found.traction, found.slip, own_slip, found.factor)
+
+
+def shares(ellipse: Ellipse | GridPatch, solution: PatchSolution) -> tuple[np.ndarray, np.ndarray]:
+    """Return the tractions over mu p between the elements, and those of elements of twice the size."""
+    return subgrid.both_shares(_fields(ellipse, solution))
+
+
+def _forces(ellipse: Ellipse | GridPatch, friction, found: batch.Found) -> np.ndarray:
+    """Return the resultants (n, 3) of one grid: see `subgrid.forces`."""
+    if not friction.size:
         return found.report.forces
-    elements = found.traction.shape[-1]
-    height, _ = cells(ellipse, elements)
-    share = subgrid.shares(height, found.traction, found.slip, found.report.own_slip)
     finer = ellipse if ellipse.is_hertzian else ellipse.refined(subgrid.PARTS, subgrid.PARTS)
-    between, _ = cells(finer, subgrid.PARTS * elements)
+    between, _ = cells(finer, subgrid.PARTS * found.traction.shape[-1])
     bound = (friction * ellipse.max_pressure)[:, None]
-    return bound * subgrid.forces(share, between, ellipse.semi_axis_lateral, ellipse.semi_axis_rolling)
+    sides = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+    return bound * subgrid.forces(_fields(ellipse, found), between, *sides)
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -92,14 +103,15 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
     found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = found.report
-    value, limit, error = _forces(ellipse, friction, settings, found), np.zeros((n, 3)), np.full((n, 3), np.nan)
+    value, limit, error = _forces(ellipse, friction, found), np.zeros((n, 3)), np.full((n, 3), np.nan)
     pressed = fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
-        error = value - _forces(ellipse, friction, settings, coarse)
-        limit, report = extrapolation.WEIGHT * error, coarse.report
-        pressed = pressed + extrapolation.WEIGHT * (pressed - report.pressure_work)
-        work = work + extrapolation.WEIGHT * (work - report.work - report.pressure_work)
+        error = value - _forces(ellipse, friction, coarse)
+        weight, report = extrapolation.weight(_fields(ellipse, found).used), coarse.report
+        limit = weight[:, None] * error
+        pressed = pressed + weight * (pressed - report.pressure_work)
+        work = work + weight * (work - report.work - report.pressure_work)
         # observed to be of second order wherever a part of the patch slides
         energy = extrapolation.energy(energy, report.energy_residual)
     value = value + limit
@@ -110,6 +122,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         found.traction,
         found.slip,
         found.stick,
+        found.factor,
         fine.stick_fraction,
         work,
         pressed,
@@ -209,6 +222,21 @@ def resultants(
     return solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings).resultants
 
 
+def _slip_of_law(solution: PatchSolution, height: np.ndarray) -> np.ndarray:
+    """Return the slips with which tractions agree: under a falling law the means that the law has used."""
+    if solution.factor.shape[1:] == (1, 1):
+        return solution.slip
+    out = np.empty_like(solution.slip)
+    heights = np.broadcast_to(height, solution.stick.shape)
+    for i in range(len(out)):
+        moved = np.ascontiguousarray(np.moveaxis(solution.slip[i], 0, -1), float)
+        means = np.empty_like(moved)
+        first, count = column_ranges(np.ascontiguousarray(heights[i]))
+        row_means(moved, first, count, means)
+        out[i] = np.where(solution.stick[i], 0.0, np.moveaxis(means, -1, 0))
+    return out
+
+
 def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTractions:
     """Return the fields of a solution at the element centres, with Hertz's pressure, which is 0 outside the ellipse."""
     n, _, ny, nx = solution.traction.shape
@@ -219,11 +247,12 @@ def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTrac
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - v[:, None] ** 2, 0.0))
     inside = root > 0
     height, _ = unit_cells(ny, nx)
+    moved = _slip_of_law(solution, height)
     # The solution holds element means. The share of the traction bound at the centre is taken as that of the mean.
     share = np.where(inside, root / np.where(height > 0, height, 1.0), 0.0)
     scale = (friction * ellipse.max_pressure)[:, None, None]
     shear = solution.traction * share * scale[:, None]
-    slip = np.where(inside, solution.slip, 0.0)
+    slip = np.where(inside, moved, 0.0)
     stick = inside & solution.stick
     return SurfaceTractions(
         ellipse.semi_axis_lateral[:, None] * u,
@@ -240,10 +269,9 @@ def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTrac
 def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> SurfaceTractions:
     """Return the fields on a patch whose pressure was solved; the grid of the pressure may be finer."""
     elements = solution.traction.shape[-1]
-    share = solution.traction / np.maximum(patch.heights(elements), 1e-300)[:, None]  # over mu p
-    share, slip, stick = (
-        np.repeat(v, patch.shape[1] // elements, axis=-1) for v in (share, solution.slip, solution.stick)
-    )
+    heights = patch.heights(elements)
+    share, moved = solution.traction / np.maximum(heights, 1e-300)[:, None], _slip_of_law(solution, heights)
+    share, slip, stick = (np.repeat(v, patch.shape[1] // elements, axis=-1) for v in (share, moved, solution.stick))
     bound, loaded = friction[:, None, None] * patch.pressure, patch.pressure > 0
     shear = np.where(loaded[:, None], share * bound[:, None], 0.0)
     slip = np.where(loaded[:, None], slip, 0.0)

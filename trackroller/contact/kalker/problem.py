@@ -59,6 +59,8 @@ class PatchSolution:
         Lateral and rolling component: traction over mu p_max [1], slip per travel speed [1].
     stick : ndarray of bool, shape (n, ny, nx)
         True where the surfaces stick.
+    factor : ndarray, shape (n, ny, nx), or (n, 1, 1) under constant friction
+        Friction over its value at rest [1].
     stick_fraction : ndarray, shape (n,)
         Share of the adhesion area in the patch [1].
     friction_energy_per_distance : ndarray, shape (n,)
@@ -86,6 +88,7 @@ class PatchSolution:
     traction: np.ndarray
     slip: np.ndarray
     stick: np.ndarray
+    factor: np.ndarray
     stick_fraction: np.ndarray
     friction_energy_per_distance: np.ndarray
     pressure_work: np.ndarray

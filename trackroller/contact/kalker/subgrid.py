@@ -9,6 +9,7 @@ slip that an element's own traction causes, a stick area smaller than an element
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -51,40 +52,73 @@ def _shorten(z):
                 z[1, i, j] *= factor
 
 
-def shares(
-    height: np.ndarray, traction: np.ndarray, slip: np.ndarray, own_slip: np.ndarray, parts: int = PARTS
-) -> np.ndarray:
-    """Return the traction over its bound on `parts` times the elements.
+class Fields(NamedTuple):
+    """Solution of n patches of m x m elements.
 
-    Parameters
+    Attributes
     ----------
     height : (m, m) or (n, m, m)
         Mean pressure of each element over the largest of the patch.
     traction, slip : (n, 2, m, m)
-        Tractions over mu p_max and slips of elements under constant friction.
+        Tractions over mu p_max, and slips.
     own_slip : (n,)
         Slip that the traction mu p_max of an element causes at itself.
-
-    Returns
-    -------
-    Array (n, 2, parts m, parts m), of length 1 where the surfaces slide.
+    factor : (n, m, m) or (n, 1, 1)
+        Friction over its value at rest.
     """
-    return _between(_before_law(height, traction, slip, own_slip), parts)
+
+    height: np.ndarray
+    traction: np.ndarray
+    slip: np.ndarray
+    own_slip: np.ndarray
+    factor: np.ndarray
+
+    @property
+    def heights(self) -> np.ndarray:
+        """Return the pressures with an axis for each of traction's, (1, m, m) or (n, 1, m, m)."""
+        return self.height[None] if self.height.ndim == 2 else self.height[:, None]
+
+    @property
+    def used(self) -> np.ndarray:
+        """Return the tractions over their bounds in the mean, 0 (small creepages) to 1 (full slip), (n,)."""
+        total = (self.heights * self.factor[:, None]).sum(axis=(1, 2, 3))
+        return np.minimum(np.hypot(self.traction[:, 0], self.traction[:, 1]).sum(axis=(1, 2)) / total, 1.0)
+
+    def before_law(self) -> np.ndarray:
+        """Return z = tau/(mu p) - k s of the elements (n, 2, m, m), outside the patches that of the nearest inside."""
+        bound = self.heights * self.factor[:, None]
+        z = self.traction / np.where(bound > 0.0, bound, 1.0)
+        z -= self.slip / (self.own_slip[:, None, None, None] * np.maximum(self.heights, RIM))
+        return _filled(z, self.height)
+
+    def finer_factor(self, parts: int) -> np.ndarray:
+        """Return the factor of the friction on `parts` times the elements, (n, 1, ., .)."""
+        if self.factor.shape[1:] == (1, 1):
+            return self.factor[:, None]
+        matrix = _spline(self.factor.shape[-1], parts)
+        finer = np.matmul(np.matmul(matrix, _filled(self.factor[:, None], self.height)), matrix.T)
+        low, high = (reduce(self.factor, axis=(1, 2))[:, None, None, None] for reduce in (np.min, np.max))
+        return np.clip(finer, low, high)
 
 
-def both_shares(height: np.ndarray, traction: np.ndarray, slip: np.ndarray, own_slip: np.ndarray):
+def shares(fields: Fields, parts: int = PARTS) -> np.ndarray:
+    """Return the traction over mu p at rest on `parts` times the elements, (n, 2, parts m, parts m)."""
+    return _between(fields.before_law(), parts) * fields.finer_factor(parts)
+
+
+def both_shares(fields: Fields) -> tuple[np.ndarray, np.ndarray]:
     """Return `shares`, and those of elements of twice the size whose z is the mean of four, (n, 2, ., .) each."""
-    z = _before_law(height, traction, slip, own_slip)
-    n, _, m, _ = z.shape
-    return _between(z, PARTS), _between(z.reshape(n, 2, m // 2, 2, m // 2, 2).mean(axis=(3, 5)), PARTS)
+    z, factor = fields.before_law(), fields.factor
+    if factor.shape[1:] != (1, 1):
+        factor = _of_four(factor)
+    twice = fields._replace(height=_of_four(fields.height), factor=factor)
+    return _between(z, PARTS) * fields.finer_factor(PARTS), _between(_of_four(z), PARTS) * twice.finer_factor(PARTS)
 
 
-def _before_law(height: np.ndarray, traction: np.ndarray, slip: np.ndarray, own_slip: np.ndarray) -> np.ndarray:
-    """Return z = tau/(mu p) - k s of the elements, outside the patches that of the nearest one inside."""
-    each = height if height.ndim == 2 else height[:, None]
-    bound = np.where(each > 0.0, each, 1.0)
-    z = traction / bound - slip / (own_slip[:, None, None, None] * np.maximum(each, RIM))
-    return _filled(z, height)
+def _of_four(field: np.ndarray) -> np.ndarray:
+    """Return the means (..., m/2, m/2) of 2 x 2 elements of a field (..., m, m)."""
+    m = field.shape[-1] // 2
+    return field.reshape(*field.shape[:-2], m, 2, m, 2).mean(axis=(-3, -1))
 
 
 def _between(z: np.ndarray, parts: int) -> np.ndarray:
@@ -97,27 +131,31 @@ def _between(z: np.ndarray, parts: int) -> np.ndarray:
 
 
 @njit(cache=True, nogil=True)
-def _sum(share, height, a, b, out):
-    """Add up F_T, F_A and M_R of one patch over mu p_max."""
-    ny, nx = height.shape
+def _sum(traction, a, b, out):
+    """Add up F_T, F_A and M_R of tractions (2, ny, nx) on one patch."""
+    ny, nx = traction.shape[1:]
     for i in range(ny):
         y = b * ((2.0 * i + 1.0) / ny - 1.0)
         for j in range(nx):
             x = a * ((2.0 * j + 1.0) / nx - 1.0)
-            tx, ty = share[0, i, j] * height[i, j], share[1, i, j] * height[i, j]
-            out[0] += tx
-            out[1] += ty
-            out[2] += x * ty - y * tx
+            out[0] += traction[0, i, j]
+            out[1] += traction[1, i, j]
+            out[2] += x * traction[1, i, j] - y * traction[0, i, j]
     for k in range(3):
         out[k] *= 4.0 * a * b / (nx * ny)
 
 
-def forces(share: np.ndarray, height: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return F_T, F_A and M_R over mu p_max, (n, 3), of `shares` in patches with half sides a, b (n,) [mm].
+def forces(fields: Fields, height: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return F_T, F_A and M_R over mu p_max, (n, 3), in patches with half sides a, b (n,) [mm].
 
-    `height` (m, m) or (n, m, m) is the mean pressure over the largest on the grid of the shares.
+    `height` (., .) or (n, ., .) is the mean pressure over the largest on PARTS times the elements. In full adhesion
+    the traction is singular at the trailing edge, where an element holds its mean and no smooth field does. So the
+    elements' own tractions count the more, the less of the bound is used.
     """
-    out = np.zeros((len(share), 3))
-    for i, field in enumerate(share):
-        _sum(field, height if height.ndim == 2 else height[i], a[i], b[i], out[i])
-    return out
+    between = shares(fields)
+    between *= height if height.ndim == 2 else height[:, None]
+    smooth, plain = np.zeros((2, len(between), 3))
+    for i in range(len(between)):
+        _sum(between[i], a[i], b[i], smooth[i])
+        _sum(fields.traction[i], a[i], b[i], plain[i])
+    return smooth + (1.0 - fields.used[:, None]) ** 2 * (plain - smooth)
