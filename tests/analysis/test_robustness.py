@@ -6,7 +6,7 @@ import xarray as xr
 from scipy import stats
 
 from trackroller.analysis.restore import design_of
-from trackroller.analysis.robustness import b10, robustness, wilson
+from trackroller.analysis.robustness import b10, robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
 from trackroller.report import choices
@@ -114,13 +114,6 @@ def test_b10_interval_covers_the_truth():
     exact = 10 ** (-stats.norm.ppf(0.9) * 0.3)
     found = [b10(10 ** (0.3 * rng.normal(size=100))) for _ in range(2000)]
     assert np.mean([low <= exact <= high for _, low, high in found]) > 0.94
-
-
-def test_wilson_interval_is_sound_at_the_ends():
-    """None of 100: upper bound 3.7 %; the interval never leaves 0..1."""
-    low, high = wilson(np.array([0.0, 1.0, 0.5]), 100)
-    assert low[0] == 0 and high[0] == pytest.approx(0.037, abs=1e-3) and high[1] == 1
-    assert low[2] == pytest.approx(0.404, abs=1e-3)
 
 
 def test_robustness_refuses_another_design():

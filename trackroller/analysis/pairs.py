@@ -84,7 +84,7 @@ class _Fit(NamedTuple):
 def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, degrees: tuple[int, int]) -> _Fit | None:
     """Fit the polynomial; None if the sample is too small or a factor has too many categories."""
     alone, joint = degrees
-    found = [_functions(unit[:, j], bool(ordered[j]), alone) for j in range(unit.shape[1])]
+    found = [orthonormal(unit[:, j], bool(ordered[j]), alone) for j in range(unit.shape[1])]
     bases = [base for base in found if base is not None]
     if len(bases) < len(found):
         return None
@@ -104,7 +104,7 @@ def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, degrees: tuple[in
     return _Fit(table, term, float(1 - (missed**2).mean()))
 
 
-def _functions(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:
+def orthonormal(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:
     """Return functions of a factor with mean 0, mean square 1 and no correlation; None for too many categories."""
     values, index = np.unique(x, return_inverse=True)
     if ordered:

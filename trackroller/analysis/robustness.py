@@ -17,6 +17,8 @@ from scipy import stats
 from scipy.optimize import brentq
 
 from trackroller.analysis.limits import allowed_cases
+from trackroller.analysis.probability import probabilities
+from trackroller.analysis.targets import body_of, inner_sample
 from trackroller.damage.fatigue import DECADES, scatter_ranges, woehler_exponent
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
@@ -55,7 +57,8 @@ def robustness(
         Dimension `point`, with the factors of the outer array as coordinates. `percentile_value` (output, point,
         percentile); `mean` and `standard_deviation` (output, point) over the rolling cases. For each life `b10` with
         `b10_low` and `b10_high`, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in
-        full slip, in lift-off or failed counts as life 0. `probability` (regime, point) with Wilson intervals.
+        full slip, in lift-off or failed counts as life 0. `probability` (regime, point) with intervals.
+        `analysis.target` adds the variables of `trackroller.analysis.targets.targets`.
 
     Raises
     ------
@@ -71,21 +74,26 @@ def robustness(
     wanted = list(names) if names is not None else default_names(ds, design.factors, dims)
     met = allowed_cases(ds, dims, design.columns)
     columns = outputs(ds, design.factors, wanted, natural=wanted, unlimited=True, allowed=met)
-    found = []
+    results = []
     for column in columns:
-        body = "guide" if "guide" in column.name else "roller"
-        own = log_life_scatter.get(body, 0.0) if isinstance(log_life_scatter, Mapping) else log_life_scatter
+        own = (
+            log_life_scatter.get(body_of(column.name), 0.0)
+            if isinstance(log_life_scatter, Mapping)
+            else log_life_scatter
+        )
         scatter = np.broadcast_to(np.asarray(own, dtype=float), (design.size,)).reshape(shape)
-        found.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
+        results.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
     out = xr.Dataset(coords=_coordinates(design, shape, columns))
-    for key in found[0] if found else ():
+    for key in results[0] if results else ():
         axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        out[key] = (axes, np.stack([one[key] for one in found]), {"comment": "in the units of the output"})
-    share: np.ndarray = np.stack([np.mean(regime == i, axis=1) for i in range(len(REGIMES))])
-    low, high = wilson(share, shape[1])
-    for key, value in (("probability", share), ("probability_low", low), ("probability_high", high)):
-        out[key] = (("regime", "point"), value, {"units": "1", "long_name": key.replace("_", " ") + " of the regime"})
+        out[key] = (axes, np.stack([one[key] for one in results]), {"comment": "in the units of the output"})
+    events = np.stack([regime == i for i in range(len(REGIMES))]).reshape(-1, shape[1]).T.astype(float)
+    found = dict(zip(("", "_low", "_high"), probabilities(events, *inner_sample(design)), strict=True))
+    for end, value in found.items():
+        attrs = {"units": "1", "long_name": f"probability{end.replace('_', ' ')} of the regime"}
+        out[f"probability{end}"] = (("regime", "point"), value.reshape(len(REGIMES), -1), attrs)
     out.attrs = _attributes(design, _largest(log_life_scatter)) | {"study": ds.attrs.get("study", "")}
+    out.attrs["constrained"] = int(met is not None)
     return out
 
 
@@ -243,20 +251,3 @@ def b10(lives: np.ndarray, log_life_scatter: float | np.ndarray = 0.0) -> tuple[
     wide = 6 * float(deviations.max())
     scattered = 10 ** brentq(miss, finite.min() - wide, finite.max() + wide)
     return float(scattered), float(low * scattered / value), float(high * scattered / value)
-
-
-def wilson(share: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Wilson's 95 % interval of probabilities.
-
-    Parameters
-    ----------
-    share : observed shares [1], any shape
-    count : number of samples behind each share
-
-    Returns
-    -------
-    Low and high, shape of `share`.
-    """
-    seen, place = np.unique(np.rint(np.asarray(share) * count).astype(int), return_inverse=True)
-    bounds = np.array([stats.binomtest(k, count).proportion_ci(method="wilson") for k in seen.tolist()])
-    return bounds[place, 0].reshape(np.shape(share)), bounds[place, 1].reshape(np.shape(share))

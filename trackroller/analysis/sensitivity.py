@@ -24,6 +24,7 @@ from trackroller.analysis.parts import parts_of
 from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import material_deviations, robustness
 from trackroller.analysis.sobol import sobol
+from trackroller.analysis.targets import targets
 from trackroller.errors import InputError
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.design.sampling import SampledDesign
@@ -181,10 +182,12 @@ def analyse_dataset(
     names = given.get("outputs") if names is None else names
     keep = tuple(given.get("keep", ("rolling",)) if keep is None else keep)
     how = Settings(seed, int(given.get("resamples", 300)), tuple(given.get("measures", MEASURES)))
-    if design.method == "inner_outer":
-        return robustness(ds, design, names, material_deviations(ds, given.get("material_scatter", False)))
     dims = case_dims(ds, design.factors)
     met = allowed_cases(ds, dims, design.columns)
+    own = material_deviations(ds, given.get("material_scatter", False))
+    aims = targets(ds, design, given["target"], own, met) if given.get("target") else xr.Dataset()
+    if design.method == "inner_outer":
+        return robustness(ds, design, names, own).merge(aims, combine_attrs="override")
     columns = outputs(ds, design.factors, names, keep, natural, scale=scale or given.get("scale", ""), allowed=met)
     if not columns or not design.factors:
         raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
@@ -209,7 +212,7 @@ def analyse_dataset(
         "treatment": treatment(regimes(ds, dims), keep, met) + correlated(design),
         "study": ds.attrs.get("study", ""),
     }
-    return result
+    return result.merge(aims, combine_attrs="override")
 
 
 def _quality(

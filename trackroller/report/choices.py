@@ -72,25 +72,28 @@ def robustness(table: xr.Dataset, output: str) -> Sentence:
     slip, lift = (table["probability"].sel(regime=r).values for r in ("full_slip", "lift_off"))
     b10, low, high = (float(part[n].values[best]) for n in ("b10", "b10_low", "b10_high"))
     unit = "overrollings" if words.endswith("overrollings") else str(part["output_units"].item())
-    still = float(table["probability"].sel(regime="rolling").values[best]) == 1.0
+    limited = bool(table.attrs.get("constrained", 0))
+    still = float(table["probability"].sel(regime="rolling").values[best]) == 1.0 and not limited
+    kind = "rolling cases that meet the constraints" if limited else "cases" if still else "rolling cases"
     text = (
-        f"Best B10 of the {words}: at {point_words(table, best)} nine of ten {'cases' if still else 'rolling cases'} "
+        f"Best B10 of the {words}: at {point_words(table, best)} nine of ten {kind} "
         f"reach {quantity(b10, unit)} (95 % interval {rounded(low)} to {rounded(high)})"
     )
     if not still and safe[best] > 0:
-        text += f"; with every case that does not roll counted as life 0 it is {quantity(float(safe[best]), unit)}"
+        text += f"; with every other case counted as life 0 it is {quantity(float(safe[best]), unit)}"
     elif not still:
-        text += "; one in ten or more do not roll, so that counting these no B10 is left"
-    text += f"; full slip there in {_chance(slip[best])} and lift-off in {_chance(lift[best])} of the cases"
+        text += "; one in ten or more are other cases, so that counting these no B10 is left"
+    text += f"; full slip there in {chance(slip[best])} and lift-off in {chance(lift[best])} of the cases"
     values = {"output": output, "point": best, "b10": b10, "safe": float(safe[best])}
     worst = int(np.argmax(slip + lift))
     if slip[worst] + lift[worst] > slip[best] + lift[best]:
-        text += f", at most in {_chance(slip[worst] + lift[worst])} ({point_words(table, worst)})"
+        text += f", at most in {chance(slip[worst] + lift[worst])} ({point_words(table, worst)})"
         values["worst"] = worst
     return Sentence("robust", f"{text}.", values)
 
 
-def _chance(value: float) -> str:
+def chance(value: float) -> str:
+    """Write a probability: '97 %', with more figures near 0 and 100 %, which stand for never and always."""
     whole = 10**6
     return share(round(value * whole), whole)
 

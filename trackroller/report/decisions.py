@@ -100,7 +100,7 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
     safe = np.nan_to_num(part["b10_safe"].values)
     points = np.lexsort((-np.nan_to_num(part["b10"].values), -safe))[:MAX_POINTS]
     seen = [r for r in OTHERS if float(table["probability"].sel(regime=r).max()) > 0]
-    heads = ["Design point", "B10", "B10, 95 % interval", "B10, other regimes as life 0"]
+    heads = ["Design point", "B10", "B10, 95 % interval", "B10, other cases as life 0"]
     heads += [f"{capital(OTHERS[r])} (95 % interval)" for r in seen]
     rows = []
     for p in map(int, points):

@@ -15,6 +15,7 @@ from trackroller import parameters
 from trackroller.analysis.pareto import study_pareto
 from trackroller.report import choices, parts
 from trackroller.report import sentences as words
+from trackroller.report.aims import target_tables
 from trackroller.report.comparison import report_section
 from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
 from trackroller.report.explorer.page import explorer, secured
@@ -130,6 +131,7 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
     if front is not None:
         said.append(choices.pareto(front, view).text)
         decide.append(pareto_table(front, view, error))
+    decide += _guarded(list, target_tables, sens) if sens is not None else []
     why: list[Table] = []
     if sens is not None and words.robust_design(sens):
         decide += _guarded(list, robust_tables, sens, error)

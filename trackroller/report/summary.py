@@ -8,6 +8,7 @@ import xarray as xr
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report import choices, parts
 from trackroller.report import sentences as words
+from trackroller.report.aims import target
 from trackroller.report.claims import Sentence
 from trackroller.report.findings import best_design, occurrence, valid_designs
 from trackroller.report.known_errors import accuracy, friction_error
@@ -29,10 +30,12 @@ def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> lis
     sens : its analysis, if there is one
     models : sentences of the comparison of contact models, if the study has one
     """
+    robust = sens is not None and words.robust_design(sens)
+    met = [target(sens, -1)] if sens is not None and "target" in sens.dims else []  # the last one joins several
     lines = [
         ("Valid designs", [valid_designs(view), stopped(view)]),
-        ("Best design point" if sens is not None and words.robust_design(sens) else "What decides", decides(sens)),
-        ("Best", [best_design(view)]),
+        ("Best design point", [*decides(sens), *met]) if robust else ("What decides", decides(sens)),
+        ("Best", [best_design(view), *([] if robust else met)]),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
         ("How sure", [friction_error(view), *accuracy(view), *(Sentence("models", text) for text in models)]),
         ("Enough samples?", [enough(view, sens)]),

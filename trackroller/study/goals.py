@@ -5,6 +5,7 @@
       scale: {friction_power: log10}
       measures: [first, delta]
       resamples: 1000
+      target: {roller_life_hours: {min: 500}}
     pareto: {roller_life_hours: max, friction_power: min, axis_distance: min}
     constraints:
       - regime != full_slip
@@ -15,6 +16,7 @@ These keys are not part of the identity of a case, so changing them solves no ca
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -30,6 +32,7 @@ from trackroller.study.outputs import DEFAULTS, FIELDS
 MEASURES = ("first", "delta", "pawn", "prcc")
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
+TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table")
 
 
 class Analysis(BaseModel):
@@ -53,6 +56,15 @@ class Analysis(BaseModel):
     material_scatter: bool | float = Field(
         False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"
     )
+
+    target: dict[str, dict[str, float]] = Field(
+        {}, description="output with min or max: the probability to meet it, by design point and by level of a factor"
+    )
+
+    @field_validator("target", mode="before")
+    @classmethod
+    def _target(cls, value: Any) -> Any:
+        return targets(value)
 
     @field_validator("scale")
     @classmethod
@@ -98,6 +110,25 @@ def directions(value: Any) -> dict[str, str]:
             "For example {roller_life_hours: max, friction_power: min}.",
         )
     return {str(name): choice(way, f"pareto.{name}", DIRECTIONS) for name, way in value.items()}
+
+
+def targets(value: Any) -> dict[str, dict[str, float]]:
+    """Check the key `analysis.target`: outputs, each with `min` or `max` or both."""
+    example = "For example {roller_life_hours: {min: 500}}."
+    if not isinstance(value, Mapping):
+        raise InputError("analysis.target", value, "outputs, each with min or max", example)
+    for name, limits in value.items():
+        where, allowed = f"analysis.target.{name}", "min, max or both, each a number"
+        if not isinstance(limits, Mapping) or not limits or not set(limits) <= {"min", "max"}:
+            raise InputError(where, limits, allowed, example)
+        for number in limits.values():
+            if isinstance(number, bool) or not isinstance(number, (int, float)) or not math.isfinite(number):
+                raise InputError(where, number, allowed, example)
+            if "life" in str(name) and number <= 0:
+                raise InputError(where, number, "a life above 0")
+        if limits.get("min", -math.inf) >= limits.get("max", math.inf):
+            raise InputError(where, dict(limits), "min below max")
+    return {str(name).replace(" ", ""): {str(k): float(v) for k, v in limits.items()} for name, limits in value.items()}
 
 
 def comparisons(value: Any) -> list[str]:
@@ -152,6 +183,12 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
     for name in (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())):
         if name.replace(" ", "") not in known:
             raise _unknown("analysis.outputs", name, known, config.outputs)
+    for name in config.analysis.target:
+        if name not in known:
+            raise _unknown("analysis.target", name, known, config.outputs)
+    if config.analysis.target and config.design not in TARGET_DESIGNS:
+        remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
+        raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
     free = [*known, *factors, *PARAMETERS]
     for name in config.pareto:
         if name not in free:

@@ -1,0 +1,84 @@
+"""Intervals of probabilities from stratified samples, and from one sample that several design points share."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import stats
+
+from trackroller.analysis.pairs import ROWS_PER_TERM, orthonormal
+
+DEGREES = (12, 8, 5, 3, 2, 1)  # of the functions of each factor; the best prediction wins
+
+
+def probabilities(
+    hits: np.ndarray, unit: np.ndarray | None = None, ordered: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Estimate the probabilities of events with their 95 % intervals.
+
+    Parameters
+    ----------
+    hits : share of each event at each sample, 0 to 1, shape (n, m)
+    unit : quantiles or list indices of a stratified sample (Latin hypercube, Sobol sequence), shape (n, k); not given
+        for a plain random sample
+    ordered : for which factors more and less mean something, shape (k,)
+
+    Returns
+    -------
+    Probability, lower and upper bound [1], each of shape (m,).
+
+    Notes
+    -----
+    The bounds are those of Clopper and Pearson for an effective number of samples p (1 - p) / var(p) [1]_. A Latin
+    hypercube has at most n / (n - 1) times the variance of a random sample, and it takes away the part that is a sum
+    of functions of the single factors [2]_. var(p) is therefore the variance that such a sum misses, over n. The sum
+    is fitted, and its error is that for held-out rows. With few events (or few non-events) the fit proves little: the
+    effective number is at most n times the smaller of both counts. Coverage: ``validation/probability_intervals.py``.
+
+    References
+    ----------
+    .. [1] Korn & Graubard (1998), Survey Methodology 24, 193-201
+    .. [2] Stein (1987), Technometrics 29, 143-151; Owen (1997), Ann. Statist. 25, 1541-1562
+    """
+    n, p = len(hits), hits.mean(axis=0)
+    missed = hits.var(axis=0)
+    if unit is not None and ordered is not None:
+        missed = np.minimum(missed, _unexplained(hits, unit, ordered))
+    gain = p * (1 - p) / np.maximum(missed, 1e-300)
+    low, high = bounds(p, n * np.clip(gain, 1.0, np.maximum(1.0, n * np.minimum(p, 1 - p))))
+    return p, low, high
+
+
+def bounds(share: np.ndarray, count: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the 95 % bounds of Clopper and Pearson.
+
+    Parameters
+    ----------
+    share : observed shares [1], any shape
+    count : number of samples behind each share, need not be whole
+
+    Returns
+    -------
+    Low and high, shape of `share`.
+    """
+    hit = np.asarray(share, dtype=float) * count
+    with np.errstate(invalid="ignore"):
+        low = np.where(hit > 0, stats.beta.ppf(0.025, hit, count - hit + 1), 0.0)
+        high = np.where(hit < count, stats.beta.ppf(0.975, hit + 1, count - hit), 1.0)
+    return low, high
+
+
+def _unexplained(hits: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> np.ndarray:
+    """Return the variance that a fitted sum of functions of each factor misses in held-out rows, shape (m,)."""
+    best = np.full(hits.shape[1], np.inf)
+    for degree in DEGREES:
+        found = [orthonormal(unit[:, j], bool(ordered[j]), degree) for j in range(unit.shape[1])]
+        table = np.concatenate([np.ones((len(hits), 1)), *(part for part in found if part is not None)], axis=1)
+        if len(hits) < ROWS_PER_TERM * table.shape[1]:
+            continue
+        basis, triangle = np.linalg.qr(table)
+        if np.abs(np.diag(triangle)).min() < 1e-8 * len(hits) ** 0.5:
+            continue
+        lever = (basis**2).sum(axis=1)[:, None]
+        missed = (hits - basis @ (basis.T @ hits)) / np.maximum(1e-9, 1 - lever)
+        best = np.minimum(best, (missed**2).mean(axis=0))
+    return best

@@ -1,0 +1,188 @@
+"""Probability that a design meets the key `analysis.target`, at each design point and at each level of a factor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+
+from trackroller.analysis.labels import correlated_pairs
+from trackroller.analysis.probability import probabilities
+from trackroller.study.design.factors import Factor
+from trackroller.study.design.levels import in_words
+from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.outputs import Output, outputs
+
+WITHOUT_CHANCE = ("grid", "table")  # shares of given designs, without an interval
+MOST_LEVELS = 12  # a number with more of them is looked at in classes
+CLASSES = 4
+ENDS = ("", "_low", "_high")
+Found = tuple[np.ndarray, np.ndarray, np.ndarray]  # probability and its bounds, shape (targets,) each
+
+
+class Level(NamedTuple):
+    """A level of a factor or a class of its values: bounds of the numbers (NaN for a text), its text, its rows."""
+
+    factor: str
+    low: float
+    high: float
+    text: str
+    rows: np.ndarray
+
+
+def targets(
+    ds: xr.Dataset,
+    design: SampledDesign,
+    wanted: Mapping[str, Mapping[str, float]],
+    deviations: Mapping[str, np.ndarray],
+    allowed: np.ndarray | None = None,
+) -> xr.Dataset:
+    """Estimate the probability of meeting each target, and of meeting all.
+
+    Parameters
+    ----------
+    ds : gathered study
+    design : its design
+    wanted : output -> `min`, `max` or both, in the unit of the output
+    deviations : body -> standard deviation of log10 life of its material [1], shape (n,), see `material_deviations`
+    allowed : cases that meet the constraints of the study, shape (n,)
+
+    Returns
+    -------
+    Dimension `target` (with `all` for several targets). `target_probability` (target, point) of an inner/outer design,
+    else (target,) of all cases; `level_probability` (target, level). Both with _low and _high (95 %), NaN in a grid or
+    a table, whose rows are no sample. A case that does not roll, misses a constraint or has no value misses each
+    target.
+
+    Notes
+    -----
+    At a level of the outer array the probability is the mean over its design points. Their common sample counts once.
+    """
+    columns = outputs(ds, design.factors, list(wanted), natural=list(wanted), unlimited=True, allowed=allowed)
+    hits = np.stack([_hits(c, wanted[c.name], deviations.get(body_of(c.name))) for c in columns], axis=1)
+    names = [c.name for c in columns]
+    if len(names) > 1:
+        hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
+    robust = design.method == "inner_outer"
+    levels, found = (_of_points if robust else _of_rows)(hits, design)
+    out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
+    for end, whole in zip(ENDS, found[0], strict=True):
+        out[f"target_probability{end}"] = (("target", "point") if robust else ("target",), whole, {"units": "1"})
+    for end, part in zip(ENDS, zip(*found[1:], strict=True), strict=False):
+        out[f"level_probability{end}"] = (("target", "level"), np.stack(part, axis=1), {"units": "1"})
+    return out
+
+
+def body_of(output: str) -> str:
+    """Return the body whose material's scatter counts for a life, '' for another output."""
+    return ("guide" if "guide" in output else "roller") if "life" in output else ""
+
+
+def _hits(column: Output, limits: Mapping[str, float], deviation: np.ndarray | None) -> np.ndarray:
+    """Return the probability that each case meets a target, shape (n,): 0 or 1 where the material has no scatter."""
+    values, low, high = column.values, limits.get("min", -np.inf), limits.get("max", np.inf)
+    with np.errstate(invalid="ignore"):
+        met = ((values >= low) & (values <= high)).astype(float)
+    if deviation is None or not (deviation > 0).any():
+        return met
+    with np.errstate(divide="ignore", invalid="ignore"):
+        beyond = [
+            stats.norm.cdf(np.log10(values / limits[end]) / np.maximum(deviation, 1e-9)) if end in limits else default
+            for end, default in (("min", 1.0), ("max", 0.0))
+        ]
+    return np.where(np.isnan(values), 0.0, np.where(deviation > 0, beyond[0] - beyond[1], met))
+
+
+def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
+    """Return the probability that a case meets all targets, shape (n,).
+
+    ASSUME: the materials of roller and guide scatter independently of each other.
+    """
+    bodies = np.array([body_of(name) for name in names])
+    return np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0)
+
+
+def _of_points(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:
+    """Return the levels of the outer factors, and the probabilities at all points and at each level."""
+    points, inner = design.meta["design_points"], design.meta["inner_samples"]
+    sample = inner_sample(design)
+    cube = hits.reshape(points, inner, -1).transpose(1, 0, 2)
+    whole = probabilities(cube.reshape(inner, -1), *sample)
+    first = np.arange(points) * inner
+    outer = [name for name in design.meta["outer"] if len(design.meta["outer"]) > 1]
+    levels = [level for name in outer for level in _levels(design.factors[name], design.columns[name][first])]
+    found = [probabilities(cube[:, level.rows].mean(axis=1), *sample) for level in levels]
+    p, low, high = (part.reshape(points, -1).T for part in whole)
+    return levels, [(p, low, high), *found]
+
+
+def _of_rows(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:
+    """Return the levels of the factors, and the probabilities over all rows and at each level."""
+    rows = np.arange(design.size)
+    if design.method == "saltelli":  # rows of A and B; their mixtures repeat coordinates
+        step = design.size // int(design.meta["base_samples"])
+        rows = rows[(rows % step == 0) | (rows % step == step - 1)]
+    levels = [level for name, f in design.factors.items() for level in _levels(f, design.columns[name][rows])]
+    hits = hits[rows]
+    strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
+    found = [probabilities(hits, *strata)]
+    found += [probabilities(hits[level.rows]) for level in levels]
+    if design.method in WITHOUT_CHANCE:
+        found = [(p, np.full_like(p, np.nan), np.full_like(p, np.nan)) for p, _, _ in found]
+    return levels, found
+
+
+def inner_sample(design: SampledDesign) -> tuple[np.ndarray, np.ndarray] | tuple[()]:
+    """Return the inner sample of an inner/outer design; nothing if its factors are correlated and so not stratified.
+
+    Returns
+    -------
+    Quantiles (of a list: index of its value), shape (samples, inner factors), and which of them are ordered.
+    """
+    if correlated_pairs(design):
+        return ()
+    names = list(design.factors)
+    chosen = [names.index(name) for name in design.meta["inner"]]
+    unit = design.unit[: design.meta["inner_samples"], chosen].copy()
+    for j, name in enumerate(design.meta["inner"]):
+        if design.factors[name].discrete:
+            unit[:, j] = design.factors[name].bin(unit[:, j])
+    return unit, design.ordered[chosen]
+
+
+def _levels(factor: Factor, values: np.ndarray) -> Iterator[Level]:
+    """Yield the levels of a factor, or classes with equally many rows of a number that has more than `MOST_LEVELS`."""
+    if not factor.numeric:
+        texts = np.array([in_words(factor.name, value) for value in values])
+        for text in dict.fromkeys(texts.tolist()):
+            yield Level(factor.name, np.nan, np.nan, text, texts == text)
+        return
+    kinds, index = np.unique(values, return_inverse=True)
+    if len(kinds) > MOST_LEVELS:
+        index = ((stats.rankdata(values, "min") - 1) * CLASSES / len(values)).astype(int)
+    for k in np.unique(index):
+        own = values[index == k]
+        yield Level(factor.name, float(own.min()), float(own.max()), "", index == k)
+
+
+def _coordinates(
+    names: list[str], columns: list[Output], wanted: Mapping[str, Mapping[str, float]], levels: list[Level]
+) -> dict[str, Any]:
+    words = [c.long_name for c in columns] + ["all targets"] * (len(names) - len(columns))
+    units = [c.units for c in columns] + ["1"] * (len(names) - len(columns))
+    limits = [wanted.get(name, {}) for name in names]
+    return {
+        "target": np.array(names, dtype=str),
+        "target_name": ("target", np.array(words, dtype=str)),
+        "target_units": ("target", np.array(units, dtype=str)),
+        "target_min": ("target", np.array([limit.get("min", np.nan) for limit in limits], dtype=float)),
+        "target_max": ("target", np.array([limit.get("max", np.nan) for limit in limits], dtype=float)),
+        "level_factor": ("level", np.array([level.factor for level in levels], dtype=str)),
+        "level_low": ("level", np.array([level.low for level in levels], dtype=float)),
+        "level_high": ("level", np.array([level.high for level in levels], dtype=float)),
+        "level_text": ("level", np.array([level.text for level in levels], dtype=str)),
+        "level_rows": ("level", np.array([level.rows.sum() for level in levels], dtype=int)),
+    }
