@@ -108,9 +108,9 @@ def render() -> str:
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += [
         "### contact_model_used, stopped\n",
-        "`contact_model_used` is the model that solved the case; it differs from the one asked for with `auto`, and",
-        "with `kalker` at accuracy `preview`: "
-        + ", ".join(f"{i} {name}" for i, name in enumerate(p.CONTACT_MODELS[:-1]))
+        "`contact_model_used` is the model that solved the case. `kalker` at accuracy `preview` is served by its",
+        "table, and `kalker_table` outside the table's range by `kalker`: "
+        + ", ".join(f"{i} {name}" for i, name in enumerate(p.CONTACT_MODELS))
         + ".",
         "`stopped` (with `stop_if`): 1 where the condition holds.\n",
     ]

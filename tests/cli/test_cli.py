@@ -35,7 +35,7 @@ def trackroller(*words, cwd, code=0):
 
 
 def test_solve_prints_json_and_writes_netcdf(tmp_path):
-    (tmp_path / "case.yaml").write_text("motor_force: 0\noutputs: [forces]\n")
+    (tmp_path / "case.yaml").write_text("motor_force: 0\noutputs: [forces]\ncontact_model: sliding\n")
     words = ("solve", "case.yaml", "--set", "friction_coefficient=0.1", "--json")
     told = json.loads(trackroller(*words, cwd=tmp_path).stdout)
     assert told["normal_force"]["units"] == "N" and len(told["normal_force"]["value"]) == 2

@@ -241,6 +241,7 @@ factors:
 design: grid
 outputs: [forces, contact, peak_stress, life]
 normal: halfspace
+contact_model: sliding
 accuracy: preview
 """,
         encoding="utf-8",

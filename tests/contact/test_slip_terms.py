@@ -130,12 +130,6 @@ def test_preview_serves_the_curve_by_table_and_the_profile_by_elements():
         assert float(rough.energy_residual) < 1e-2
 
 
-def test_auto_takes_the_exact_theory_where_nothing_was_measured():
-    ds = tr.solve([tr.Case(friction_coefficient=0.02)], outputs="forces", contact_model="auto", slip_terms="profile")
-    assert ds.contact_model_used.values.tolist() == [2]
-    assert tr.solve([], outputs="forces", contact_model="auto", slip_terms="curve").sizes["case"] == 0
-
-
 @pytest.mark.parametrize("model", ["fastsim", "kalker"])
 def test_patches_solved_on_a_grid_take_the_contour_as_it_is_drawn(model):
     """The circle gives Hertz's answer."""

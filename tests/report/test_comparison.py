@@ -256,5 +256,4 @@ def test_the_shipped_study_holds_friction_drive_and_spin_and_its_words_are_writt
     write_words(str(own[0]), tmp_path / "words.txt")
     words = (tmp_path / "words.txt").read_text().splitlines()
     assert any(w.startswith("The sliding model, free rolling: good enough") for w in words)
-    assert any("random designs, auto takes" in w for w in words)
     assert json.loads(json.dumps(words)) == words

@@ -90,6 +90,6 @@ def test_the_spin_pole_is_shown_for_the_model_that_has_one(edged):
     rolling = edged.assign_attrs(contact_model="kalker").assign(contact_model_used=((), np.int8(2)))
     assert Patch(rolling, 1).spin_pole is None
     assert "spin pole" not in shear_arrows(rolling)[1].caption
-    chosen = edged.assign_attrs(contact_model="auto").assign(contact_model_used=((), np.int8(0)))
+    chosen = edged.assign(contact_model_used=((), np.int8(0)))
     assert Patch(chosen, 1).spin_pole is not None
     assert Patch(chosen.assign(contact_model_used=((), np.int8(2))), 1).spin_pole is None

@@ -189,9 +189,9 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     ds = sampled_study(40)
     law = np.where(np.arange(40) < 20, "", json.dumps({"kind": "linear", "speed": 50, "lowest": 0.3}))
     ds = ds.assign_coords(friction_law=("case", law.astype(object)))
-    ds["contact_model_used"] = ("case", np.arange(40) % 2 * 2, {"flag_meanings": "sliding fastsim kalker"})
+    ds["contact_model_used"] = ("case", np.arange(40) % 2 + 2, {"flag_meanings": "sliding fastsim kalker kalker_table"})
     ds["stopped"] = ("case", (np.arange(40) < 7).astype("i1"))
-    assert models_used(ds) == [("Contact model chosen", "sliding in 20, kalker in 20 of 40 cases")]
+    assert models_used(ds) == [("Contact model used", "kalker in 20, kalker_table in 20 of 40 cases")]
     told = contents(ds)
     valid = dict(told["summary"])["Valid designs"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)

@@ -14,7 +14,7 @@ from trackroller.report.choices import pareto
 from trackroller.report.decisions import robust_tables
 from trackroller.report.effects import effect_of
 from trackroller.report.findings import best_design, occurrence, ranked, valid_designs
-from trackroller.report.known_errors import friction_error
+from trackroller.report.known_errors import friction_error, full_sliding
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.page import contents
 from trackroller.report.tables import validity_table
@@ -117,6 +117,15 @@ def with_error(middle):
     ds["regime"] = ("case", np.zeros(60, "i1"))
     ds.attrs = {"study": asked.merged()}
     return ds.assign_coords(contact=[1, 2])
+
+
+def test_full_sliding_is_told_where_no_friction_work_tells_its_error():
+    whole = with_error(1.27).assign(contact_model_used=("case", np.repeat([0, 2], 30)))
+    forces = whole.drop_vars(["energy_residual", "friction_power"])
+    found = full_sliding(StudyView.of(forces))
+    assert found is not None and found.values == {"count": 30} and "kalker" in found.text
+    exact = forces.assign(contact_model_used=("case", np.full(60, 2)))
+    assert full_sliding(StudyView.of(whole)) is None and full_sliding(StudyView.of(exact)) is None
 
 
 @pytest.mark.parametrize(("middle", "told"), [(1.27, True), (0.03, False)])

@@ -18,6 +18,7 @@ import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.report.sheet.facts import collect
+from trackroller.report.sheet.flags import flags_of
 from trackroller.report.sheet.page import render
 from trackroller.report.sheet.text import as_json
 
@@ -98,6 +99,12 @@ def test_flags_name_the_body_they_hold_for(facts):
     assert all(flag.remedy for fact in facts.values() for flag in fact.flags)
 
 
+def test_friction_energy_of_full_sliding_is_flagged_and_that_of_the_exact_theory_is_not():
+    for model, told in (("sliding", True), ("kalker", False)):
+        ds = tr.solve(CASES["example"], ("forces", "friction_work"), contact_model=model, accuracy="preview")
+        assert ("energy_residual" in {flag.name for flag in flags_of(ds)}) == told
+
+
 def test_the_command_repeats_the_case(solved, facts):
     for name in ("example", "plastic"):
         words = shlex.split(facts[name].command)
@@ -143,7 +150,7 @@ def test_a_report_is_written_for_one_case_only(tmp_path, solved):
 
 def test_the_command_line_writes_sheet_and_text(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "my-roller.yaml").write_text("axial_force: 12\n")
+    (tmp_path / "my-roller.yaml").write_text("axial_force: 12\ncontact_model: sliding\n")
     done = CliRunner().invoke(app, ["solve", "my-roller.yaml", "--report", "sheet.html"])
     assert done.exit_code == 0, done.output
     page = (tmp_path / "sheet.html").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
 def solved(*cases, **options):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        return tr.solve(list(cases), ("forces", "contact"), **options)
+        return tr.solve(list(cases), ("forces", "contact"), **({"contact_model": "sliding"} | options))
 
 
 def test_a_nearly_flat_wedge_needs_great_normal_forces_and_gets_them():

@@ -72,7 +72,7 @@ def test_each_hint_needs_its_own_condition():
     assert "axis of the inner curve" in only and "steep" not in only
 
 
-def test_auto_is_judged_by_the_model_that_it_chose():
+def test_a_row_is_judged_by_the_model_that_solved_it():
     ds = xr.Dataset(
         {
             name: ("case", np.array(values))
@@ -85,7 +85,7 @@ def test_auto_is_judged_by_the_model_that_it_chose():
             }.items()
         }
     )
-    told = with_reasons(ds, to_table([tr.Case(**SLENDER)] * 2), Options(contact_model="auto"))["reason"].values
+    told = with_reasons(ds, to_table([tr.Case(**SLENDER)] * 2), Options())["reason"].values
     assert "slender" in told[0] and "slender" not in told[1]
 
 
@@ -108,7 +108,7 @@ def test_a_failed_case_ends_with_exit_1_and_its_reason(tmp_path):
     with xr.open_dataset(tmp_path / "out.nc") as ds:
         assert "slender" in str(ds["reason"].item())
     assert "slender" in trackroller("plot", "case.yaml", cwd=tmp_path, code=1).stderr
-    (tmp_path / "good.yaml").write_text("guide_curve_radius: inf\n")
+    (tmp_path / "good.yaml").write_text("guide_curve_radius: inf\ncontact_model: sliding\n")
     told = trackroller("solve", "good.yaml", cwd=tmp_path).stdout
     assert "undefined here: guide_life_hours" in told and "reason" not in told
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import replace
 
@@ -11,9 +12,11 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.parameters import REGIMES
-from trackroller.roller.limits import limits
+from trackroller.roller import limits as searched
 
 CASE = tr.Case(motor_force=0, axial_force=10, friction_coefficient=0.2)
+
+limits = functools.partial(searched.limits, contact_model="sliding")
 
 
 def _regime(case: tr.Case) -> str:

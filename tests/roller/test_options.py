@@ -16,6 +16,8 @@ import pytest
 import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
 from trackroller.roller.options import Options
+from trackroller.study.config import parse_study
+from trackroller.study.plan import case_options
 
 ROOT = Path(__file__).parents[2]
 
@@ -36,7 +38,24 @@ def test_every_word_of_an_option_is_explained_and_every_option_is_in_the_help():
 
 def test_contact_models_keep_their_numbers():
     """`contact_model_used` of older files is read with these numbers: new models come at the end."""
-    assert CONTACT_MODELS[:4] == ("sliding", "fastsim", "kalker", "kalker_table") and CONTACT_MODELS[-1] == "auto"
+    assert CONTACT_MODELS[:4] == ("sliding", "fastsim", "kalker", "kalker_table")
+
+
+def test_a_former_word_stands_for_its_successor_with_a_warning():
+    with pytest.warns(FutureWarning, match="'auto' is no longer a choice of its own; 'kalker'"):
+        assert Options(contact_model="auto").contact_model == "kalker"
+
+
+def test_a_spin_model_needs_the_contact_model_that_has_one():
+    with pytest.raises(tr.InputError, match=r"spin_model = 'edge'.*contact_model: sliding"):
+        Options(contact_model="kalker", spin_model="edge")
+    grid = {"name": "g", "spin_model": ["edge", "skewed"], "factors": {"axial_force": {"values": [0.0, 10.0]}}}
+    with pytest.raises(tr.InputError, match="spin_model"):
+        parse_study(grid | {"contact_model": "kalker"})
+    study = parse_study(grid | {"contact_model": ["sliding", "kalker"]})
+    options, _ = case_options(study, study.design())
+    assert [Options(**told).spin_model for told in options if told["contact_model"] == "kalker"] == ["skewed"] * 2
+    assert {told["spin_model"] for told in options if told["contact_model"] == "sliding"} == {"edge", "skewed"}
 
 
 DUMMY = """
@@ -64,19 +83,20 @@ def refused(call):
         call()
     except tr.InputError as error:
         return str(error)
-study = {"name": "a", "factors": {"axial_force": {"values": [1.0, 2.0]}}}
+sliding = {"contact_model": "sliding"}
+study = sliding | {"name": "a", "factors": {"axial_force": {"values": [1.0, 2.0]}}}
 print(json.dumps({
     "schema": schema()["properties"]["dummy"],
     "help": parameters.options_text(),
-    "attribute": tr.solve(tr.Case(), outputs="forces").attrs["dummy"],
-    "given": Options(dummy="second").attributes()["dummy"],
+    "attribute": tr.solve(tr.Case(), outputs="forces", **sliding).attrs["dummy"],
+    "given": Options(dummy="second", **sliding).attributes()["dummy"],
     "without meaning": Options(dummy="second", contact_model="kalker").attributes()["dummy"],
     "set": case_of(None, ["dummy=second"])[1],
     "study": parse_study(study | {"dummy": "second"}).options["dummy"],
     "docs": "`dummy`" in generate.render(),
     "refused": [refused(lambda: Options(dummy="secnd")), refused(lambda: parse_study(study | {"dummy": "secnd"}))],
-    "marks": [mark(), mark(dummy="first"), mark(dummy="second"), mark(contact_model="kalker"),
-              mark(contact_model="kalker", dummy="second")],
+    "marks": [mark(**sliding), mark(dummy="first", **sliding), mark(dummy="second", **sliding),
+              mark(contact_model="kalker"), mark(contact_model="kalker", dummy="second")],
 }))
 """
 

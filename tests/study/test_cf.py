@@ -18,6 +18,7 @@ STUDIES = {
     "sample": "design: lhs\nsamples: 12\nfactors: {friction_coefficient: {uniform: [0.1, 0.3]}}\n",
 }
 SPECTRUM = """
+contact_model: sliding
 base: {motor_force: 0, guide_overrollings_per_hour: 10}
 blocks: [{distance: 100, radial_force: -50, axial_force: 0}]
 """
@@ -35,7 +36,7 @@ def files(tmp_path_factory) -> dict[str, Path]:
             assert CliRunner().invoke(app, ["run", f"{name}.yaml", "-q", "--report"]).exit_code == 0
         Path("shift.yaml").write_text(SPECTRUM)
         assert CliRunner().invoke(app, ["spectrum", "shift.yaml", "-o", "shift.nc"]).exit_code == 0
-        assert CliRunner().invoke(app, ["solve", "-o", "case.nc"]).exit_code == 0
+        assert CliRunner().invoke(app, ["solve", "--set", "contact_model=sliding", "-o", "case.nc"]).exit_code == 0
     found = {
         f"{s}-{f}": folder / "results" / s / f"{f}.nc" for s in STUDIES for f in ("design", "study", "sensitivity")
     }

@@ -414,3 +414,21 @@ def test_doubled_latin_hypercube_is_one_again_and_every_size_keeps_its_rows():
     assert (np.sort((large * 40).astype(int), axis=0) == np.arange(40)[:, None]).all()
     assert all(len(np.unique((column * 57).astype(int))) >= 45 for column in odd.T)
     assert ((odd >= 0) & (odd < 1)).all()
+
+
+def test_results_of_an_earlier_default_model_are_kept(tmp_path, solved):
+    """A file that names no model is neither solved anew nor answered with results of another model."""
+    unnamed = {name: value for name, value in DATA.items() if name != "contact_model"}
+    plan, _, _ = run(DATA, tmp_path)
+    kept, count = plan.folder.gathered.read_bytes(), sum(solved().values())
+    for ask in (lambda study: run(study, tmp_path), lambda study: status_of(parse_study(study), tmp_path)):
+        with pytest.raises(InputError, match=r"`contact_model: sliding`.*keep.*`contact_model: kalker`"):
+            ask(unnamed)
+    assert plan.folder.gathered.read_bytes() == kept
+    assert status_of(parse_study(DATA), tmp_path).missing == 0
+    run(DATA, tmp_path)
+    assert sum(solved().values()) == count
+    run(unnamed | {"contact_model": "kalker"}, tmp_path)
+    assert sum(solved().values()) == 2 * count
+    run(unnamed, tmp_path)
+    assert sum(solved().values()) == 2 * count

@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference_cases import solve_sliding
 
+import trackroller as tr
 from trackroller.damage.fatigue import life_cycles
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
@@ -160,7 +160,7 @@ def test_delivered_example_with_the_real_solver():
     """The file in config/spectra runs; its damage is that of the lives the solver itself gives."""
     spec = load_spectrum(ROOT / "config" / "spectra" / "sorter.yaml")
     ds = solve_spectrum(spec, DB)
-    lives = solve_sliding([block.case for block in spec.blocks], outputs="life", life_rule="haibach", database=DB)
+    lives = tr.solve([block.case for block in spec.blocks], outputs="life", life_rule="haibach", database=DB)
     expected = (ds.overrollings.values[:, None, :] / lives.life_cycles.values).sum(axis=0)
     assert ds.damage_sum.values == pytest.approx(expected, rel=1e-9)
     assert all("lasts" in sentence for sentence in summary(ds))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -38,6 +39,8 @@ class Option:
         Whether a result names the option among its attributes.
     files : tuple of str
         Files that may give the option beside a case: "study", "spectrum".
+    former : dict of str
+        Former words that keep working, with the word that each of them stands for now.
     """
 
     name: str
@@ -51,6 +54,7 @@ class Option:
     identity: bool = True
     recorded: bool = True
     files: tuple[str, ...] = ("study", "spectrum")
+    former: Mapping[str, str] = field(default_factory=dict)
 
     def applies(self, contact_model: str) -> bool:
         """Return whether the option has a meaning for a contact model."""
@@ -102,6 +106,10 @@ class Option:
         return value
 
     def _word(self, value: Any, where: str) -> str:
+        if isinstance(value, str) and value in self.former:
+            now = self.former[value]
+            warnings.warn(f"{where}: '{value}' is no longer a choice of its own; '{now}' is taken", FutureWarning, 2)
+            return now
         if not isinstance(value, str) or value not in self.values:
             raise unknown_name(where, value, self.values)
         return value
@@ -140,16 +148,16 @@ _OPTIONS = (
     ),
     Option(
         "contact_model",
-        "sliding",
+        "kalker",
         "how friction is distributed over the patch",
         {
-            "sliding": "Coulomb friction at every point against the local creepage; no adhesion area",
+            "sliding": "Coulomb friction at every point against the local creepage, as published; no adhesion area",
             "fastsim": "simplified theory of rolling contact (Kalker's FASTSIM)",
             "kalker": "exact theory of rolling contact; at accuracy preview by its table",
             "kalker_table": "table of solutions of the exact theory; outside its range the exact theory",
-            "auto": "the cheapest of sliding, fastsim and kalker that meets contact_tolerance",
         },
         factor=True,
+        former={"auto": "kalker"},
     ),
     Option(
         "spin_model",
@@ -160,7 +168,7 @@ _OPTIONS = (
             "edge": "v_x vanishes on a line through the leading edge at the pole",
             "skewed": "v_x vanishes on two skewed lines, eqs (24)-(25)",
         },
-        models=("sliding", "auto"),
+        models=("sliding",),
         factor=True,
     ),
     Option(
@@ -206,9 +214,10 @@ _OPTIONS = (
     Option(
         "contact_tolerance",
         0.05,
-        "error that auto allows: of normal forces and peak stress, and of friction forces over the normal force",
+        "without effect: it belonged to the former contact model auto",
         kind="tolerance",
-        models=("auto",),
+        identity=False,
+        recorded=False,
     ),
     Option(
         "stop_if",
@@ -235,7 +244,7 @@ _OPTIONS = (
             "curve": "the roller turns with the curve of the guide, which adds to its spin",
         },
         kind="words",
-        models=("fastsim", "kalker", "kalker_table", "auto"),
+        models=("fastsim", "kalker", "kalker_table"),
     ),
 )
 

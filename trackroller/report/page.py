@@ -191,19 +191,14 @@ def _told(value: Any) -> str:
 
 
 def models_used(ds: xr.Dataset) -> list[tuple[str, str]]:
-    """Say how many cases each contact model solved, where it was chosen case by case."""
-    if "contact_model_used" not in ds:
+    """Say how many cases each contact model solved, where several served the one that was asked for."""
+    if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
     names = str(ds["contact_model_used"].attrs.get("flag_meanings", "")).split()
     used = ds["contact_model_used"].values.astype(float)
-    if "contact_model" in ds.coords:
-        asked = ds["contact_model"].broadcast_like(ds["contact_model_used"]).transpose(*ds["contact_model_used"].dims)
-        used = used[asked.values.astype(str) == "auto"]
-    elif ds.attrs.get("contact_model", "auto") != "auto":
-        return []
     counts = [(name, int((used == i).sum())) for i, name in enumerate(names)]
     said = ", ".join(f"{name} in {count}" for name, count in counts if count)
-    return [("Contact model chosen", f"{said} of {used.size} cases")] if said and len(set(used.ravel())) > 1 else []
+    return [("Contact model used", f"{said} of {used.size} cases")] if said and len(set(used.ravel())) > 1 else []
 
 
 def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:

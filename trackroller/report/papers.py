@@ -93,9 +93,8 @@ def papers(attrs: Mapping[str, Any], results: set[str]) -> list[tuple[str, str]]
                 f"Phil. Trans. R. Soc. A 228, 377–420; {_JOHNSON}",
             )
         )
-    model = str(attrs.get("contact_model", "sliding"))
-    if model in _CONTACT:
-        found.append(_CONTACT[model])
+    asked = attrs.get("contact_model", ())
+    found += [_CONTACT[name] for name in ([asked] if isinstance(asked, str) else asked) if name in _CONTACT]
     if results & {"life_cycles", "roller_life_hours"}:
         rule = str(attrs.get("life_rule", "elementary"))
         found.append(("Life", _LIFE.get(rule, rule)))

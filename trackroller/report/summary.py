@@ -11,7 +11,7 @@ from trackroller.report import sentences as words
 from trackroller.report.aims import target
 from trackroller.report.claims import Sentence
 from trackroller.report.findings import best_design, occurrence, valid_designs
-from trackroller.report.known_errors import accuracy, friction_error
+from trackroller.report.known_errors import accuracy, friction_error, full_sliding
 from trackroller.report.numbers import capital, count
 from trackroller.report.view import StudyView
 
@@ -37,7 +37,15 @@ def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> lis
         ("Best design point", [*decides(sens), *met]) if robust else ("What decides", decides(sens)),
         ("Best", [best_design(view), *([] if robust else met)]),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
-        ("How sure", [friction_error(view), *accuracy(view), *(Sentence("models", text) for text in models)]),
+        (
+            "How sure",
+            [
+                friction_error(view),
+                full_sliding(view),
+                *accuracy(view),
+                *(Sentence("models", text) for text in models),
+            ],
+        ),
         ("Enough samples?", [enough(view, sens)]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]

@@ -131,7 +131,7 @@ PRESETS = {name: _preset(name) for name in ACCURACIES}
 
 
 def accuracy_settings(
-    accuracy: str | float | Accuracy, contact_model: str = "sliding", outputs: Iterable[str] = DEFAULT_OUTPUTS
+    accuracy: str | float | Accuracy, contact_model: str, outputs: Iterable[str] = DEFAULT_OUTPUTS
 ) -> Accuracy:
     """Settings of a preset, or the cheapest measured setting that meets a relative tolerance.
 
@@ -240,7 +240,7 @@ _RELATIVE_TO = {
 }
 
 
-def expected_errors(settings: Accuracy, contact_model: str = "sliding") -> dict[str, Levels]:
+def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]:
     """Measured errors by quantity for settings that are made of rungs; those of stages add up.
 
     Quantities without a measurement (settings of one's own) are missing.

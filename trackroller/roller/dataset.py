@@ -172,7 +172,7 @@ def validity_bit(name: str) -> int:
 FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
     "regime": ("regime of the case", REGIMES),
     "converged": ("equilibrium found to the residual that its contact model can reach", ("no", "yes")),
-    "contact_model_used": ("contact model that solved the case", CONTACT_MODELS[:-1]),
+    "contact_model_used": ("contact model that solved the case", CONTACT_MODELS),
     "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),
 }
 

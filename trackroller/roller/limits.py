@@ -46,7 +46,7 @@ class Limits:
     self_locking_friction: float
 
 
-def limits(case: Case, contact_model: str = "sliding", database: MaterialDatabase | None = None) -> Limits:
+def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase | None = None) -> Limits:
     """Search the axial forces, motor forces and friction at which the regime of a roller ends.
 
     Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, make_dataclass
 from typing import Any
 
@@ -34,6 +34,7 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
             if option.kind == "condition" and getattr(self, option.name) is not None:
                 parse_condition(getattr(self, option.name))
         check_pairs(self.hertz, self.normal, self.slip_terms, self.contact_model)
+        check_spin_model((self.spin_model,), (self.contact_model,))
         accuracy_settings(self.accuracy, self.contact_model, self.outputs)
 
     @property
@@ -76,7 +77,7 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
         raise InputError(
             "slip_terms",
             list(slip_terms),
-            "'curve' for fastsim, kalker and auto only",
+            "'curve' for fastsim and kalker only",
             "Take contact_model: kalker, or leave 'curve' out: where everything slides it would leave all "
             "forces as they are and only lengthen slip and friction work.",
         )
@@ -90,15 +91,36 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
         )
 
 
-def model_in_use(options: Options, contact_model: str, friction_law: str) -> str:
+def check_spin_model(spin_models: Sequence[str], contact_models: Sequence[str]) -> None:
+    """Refuse a position of the spin pole that no contact model uses.
+
+    Parameters
+    ----------
+    spin_models, contact_models : sequence of str
+        Values of these options: one each, or the levels of a study.
+
+    Raises
+    ------
+    InputError
+        If a spin model other than the default is given without the contact model that it belongs to.
+    """
+    option = OPTIONS["spin_model"]
+    if set(spin_models) != {option.default} and not any(map(option.applies, contact_models)):
+        raise InputError(
+            "spin_model",
+            ", ".join(spin_models),
+            f"only {option.default} with contact_model: {', '.join(contact_models)}, which finds the spin pole itself",
+            f"Take contact_model: {option.models[0]}, or leave spin_model out.",
+        )
+
+
+def model_in_use(options: Options, friction_law: str) -> str:
     """Return the contact model that solves a case, which may differ from the one asked for.
 
     Parameters
     ----------
     options : Options
         What the case is solved with.
-    contact_model : str
-        The model asked for, or the one that `auto` has chosen.
     friction_law : str
         The friction law of the case as canonical JSON, "" for constant friction.
 
@@ -107,7 +129,7 @@ def model_in_use(options: Options, contact_model: str, friction_law: str) -> str
     `kalker` at accuracy preview takes its table where the table serves: Hertzian patches, constant friction and the
     slip of the tangent plane.
     """
-    if contact_model != "kalker" or options.settings.name != "preview":
-        return contact_model
+    if options.contact_model != "kalker" or options.settings.name != "preview":
+        return options.contact_model
     fits = options.normal == "hertz" and "profile" not in options.slip_terms and law_of(friction_law).is_constant
     return "kalker_table" if fits else "kalker"

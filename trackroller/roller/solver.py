@@ -16,7 +16,6 @@ from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
-from trackroller.roller.choice.choose import choose, in_doubt
 from trackroller.roller.dataset import VARIABLES, build, file_attributes
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use
@@ -46,7 +45,7 @@ def solve(
     cases: Any,
     outputs: Iterable[str] | str = DEFAULT_OUTPUTS,
     *,
-    contact_model: str = "sliding",
+    contact_model: str = "kalker",
     spin_model: str = "skewed",
     accuracy: str | float | Accuracy = "standard",
     hertz: str = "exact",
@@ -69,9 +68,9 @@ def solve(
         Groups of results; a group is computed only if it is asked for: "forces", "contact", "friction_work",
         "peak_stress", "life", "tractions", "subsurface".
     contact_model : str
-        How friction is distributed over a patch: "sliding" (full slip everywhere), "fastsim" (simplified theory),
-        "kalker" (exact theory), "kalker_table" (table of exact solutions), or "auto", the cheapest of sliding, fastsim
-        and kalker that meets `contact_tolerance`. At accuracy "preview", "kalker" uses its table.
+        How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
+        "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). At accuracy "preview",
+        "kalker" uses its table. The former name "auto" stands for "kalker".
     spin_model : str
         Position of the spin pole, assumptions 0, 1, 2 of the publication: "concentric", "edge", "skewed". It matters to
         "sliding" only.
@@ -88,8 +87,7 @@ def solve(
     normal : str
         "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which drawn profiles need.
     contact_tolerance : float
-        Error that "auto" allows in (0, 1): of normal forces and peak stress, and of friction forces over the normal
-        force.
+        Without effect: it belonged to the former contact model "auto".
     stop_if : str, optional
         Condition such as "peak_stress > R_m". Where it holds, no peak stress is searched for, and the case is marked
         `stopped`. See `trackroller.roller.stop`.
@@ -98,7 +96,7 @@ def solve(
     slip_terms : str or collection of str
         What the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: "profile", the slip of
         the guide's profile by eq. (20), which sliding always counts, and "curve", the turning of the roller with the
-        curve of the guide. With any of them "auto" takes kalker.
+        curve of the guide.
     database : MaterialDatabase, optional
         The materials; by default the built-in ones with the user's own over them.
 
@@ -186,34 +184,20 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
     groups = list(_groups(table, options))
     parts = [_solve_group(table.take(rows), options.changed(contact_model=model)) for model, rows in groups]
     order = np.argsort(np.concatenate([rows for _, rows in groups]))
-    found = parts[0] if len(parts) == 1 else join(parts).take(order)  # one group has them in order
-    return _without_doubt(table, found, options) if options.contact_model == "auto" else found
-
-
-def _without_doubt(table: CaseTable, found: Block, options: Options) -> Block:
-    """Solve cases of `auto` again by the exact theory where their own error estimate exceeds the tolerance."""
-    again = in_doubt(table, found, options.contact_tolerance)
-    if not again.size:
-        return found
-    place = np.arange(len(table))
-    place[again] = len(table) + np.arange(again.size)
-    return join([found, _solve_block(table.take(again), options.changed(contact_model="kalker"))]).take(place)
+    return parts[0] if len(parts) == 1 else join(parts).take(order)  # one group has them in order
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:
     """Yield contact model and rows of cases that can be solved in one batch; frictionless cases stand apart."""
-    model = np.full(len(table), options.contact_model, dtype=object)
-    if options.contact_model == "auto":
-        model = choose(table, options)
     bare = requirements.is_frictionless(table) & options.shortcuts
-    keys = list(zip(model, bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
+    keys = list(zip(bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
     rows: dict[tuple, list[int]] = {}
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)
     for key, own in rows.items():
-        yield model_in_use(options, str(key[0]), key[2]), np.array(own)
+        yield model_in_use(options, key[1]), np.array(own)
     if not keys:
-        yield "kalker" if options.contact_model == "auto" else options.contact_model, np.arange(0)
+        yield options.contact_model, np.arange(0)
 
 
 def _solve_group(table: CaseTable, options: Options) -> Block:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS
-from trackroller.roller.options import check_pairs
+from trackroller.roller.options import check_pairs, check_spin_model
 from trackroller.study.design import build
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import LISTS
@@ -26,6 +26,7 @@ def _check_options(study: Study) -> None:
 
     for model, normal in itertools.product(levels("contact_model"), levels("normal")):
         check_pairs(study.config.hertz, normal, study.config.slip_terms, model)
+    check_spin_model(levels("spin_model"), levels("contact_model"))
 
 
 def cross_check(study: Study) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from trackroller.parameters import OPTIONS
 from trackroller.study.design.entries import OPTION_FACTORS
 
 if TYPE_CHECKING:
@@ -17,16 +18,14 @@ _LEVELS = ("preview", "standard", "reference")
 _FORCES = {
     "sliding": (7e-4, 8e-4, 3.4e-3),
     "fastsim": (0.016, 0.04, 0.125),
-    "kalker": (0.02, 0.37, 2.0),
-    "kalker_table": (0.02, 0.02, 0.02),
-    "auto": (0.025, 0.09, 0.5),
+    "kalker": (2.5e-3, 0.01, 0.08),
+    "kalker_table": (2.5e-3, 5e-3, 0.05),
 }  # kalker at preview uses the table
 _PEAKS = {
     "sliding": (1.4e-3, 1.8e-3, 8.5e-3),
     "fastsim": (2.5e-3, 7e-3, 0.013),
-    "kalker": (8e-3, 0.02, 0.05),
-    "kalker_table": (8e-3, 0.02, 0.05),
-    "auto": (5e-3, 6e-3, 0.03),
+    "kalker": (3e-3, 4e-3, 0.15),
+    "kalker_table": (3e-3, 0.01, 0.2),
 }
 _SOLVED_FORCES, _SOLVED_PEAKS = (0.9, 0.8, 6.0), (0.1, 0.25, 1.0)  # patches solved on a grid, any contact model
 _TRACTIONS, _SUBSURFACE = 1e-3, 0.1
@@ -48,7 +47,10 @@ def rate(options: Mapping[str, Any]) -> float:
         level = _LEVELS.index(accuracy) if accuracy in _LEVELS else 1
     else:
         level = 1 if accuracy >= 1e-3 else 2
-    groups, model = set(options.get("outputs", ("forces",))), options.get("contact_model", "sliding")
+    groups, model = (
+        set(options.get("outputs", ("forces",))),
+        options.get("contact_model", OPTIONS["contact_model"].default),
+    )
     solved = options.get("normal") == "halfspace"
     seconds = (_SOLVED_FORCES if solved else _FORCES[model])[level]
     if groups & {"peak_stress", "life", "subsurface"}:  # one search serves all

@@ -30,9 +30,7 @@ def _model(options: Options) -> str:
     told = f"contact model {options.contact_model}"
     if not options.slip_terms:
         return told
-    if options.contact_model == "auto":
-        told += ", which is kalker here"
-    elif options.contact_model == "sliding":
+    if options.contact_model == "sliding":
         return told + ", whose slip is the profile's anyway"
     return told + f"; the slip counts {' and '.join(options.slip_terms)}"
 

@@ -1,14 +1,21 @@
-"""List the solved cases of a study: which file and row holds each, and which files are damaged."""
+"""List the solved cases of a study: which file and row holds each, which files are damaged, and what model solved."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.errors import InputError
+from trackroller.materials.yaml_file import read_mapping
+from trackroller.parameters import OPTIONS
 from trackroller.study import store
 from trackroller.study.files import StudyFolder, Tell
+
+if TYPE_CHECKING:
+    from trackroller.study.config import Study
 
 
 @dataclass
@@ -112,3 +119,35 @@ def forget_failed(folder: StudyFolder, found: Inventory) -> int:
         if kept != path or not len(good):
             path.unlink(missing_ok=True)
     return count
+
+
+def check_default_model(study: Study, folder: StudyFolder) -> None:
+    """Refuse to replace results of an earlier default contact model because a study file names no model.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study.
+    folder : StudyFolder
+        Its results, which are left as they are.
+
+    Raises
+    ------
+    InputError
+        If the study file names no contact model and the folder holds cases that another model solved.
+    """
+    if "contact_model" in {*study.config.model_fields_set, *study.factors} or not any(folder.solved_files()):
+        return
+    option = OPTIONS["contact_model"]
+    try:
+        earlier = read_mapping(folder.study_file, "study").get("contact_model", option.default)
+    except InputError:
+        return
+    if earlier != option.default:
+        raise InputError(
+            "contact_model",
+            option.default,
+            f"it is the default now, the study file names no contact model, and {folder.root} was solved with another",
+            f"Nothing was changed. Add the line `contact_model: {earlier}` to the study file to keep the earlier "
+            f"results, or `contact_model: {option.default}` to solve all cases anew.",
+        )

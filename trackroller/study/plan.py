@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.parameters import OPTIONS
 from trackroller.roller.case import to_table
 from trackroller.study.caselists import CaseList, load_list, write_list
 from trackroller.study.config import check_name
@@ -38,7 +39,7 @@ from trackroller.study.files import (
     write_text,
 )
 from trackroller.study.identity import chunk_name, fingerprints
-from trackroller.study.inventory import Inventory, forget_failed, remove_corrupt, take_inventory
+from trackroller.study.inventory import Inventory, check_default_model, forget_failed, remove_corrupt, take_inventory
 from trackroller.study.sources import solver_digest
 
 if TYPE_CHECKING:
@@ -96,6 +97,9 @@ def case_options(study: Study, design: xr.Dataset) -> tuple[list[dict[str, Any]]
     keys = list(zip(*[design[name].values.tolist() for name in varying], strict=True))
     known = {key: i for i, key in enumerate(dict.fromkeys(keys))}
     options = [study.options | dict(zip(varying, key, strict=True)) for key in known]
+    for told in options:  # a grid also pairs a spin model with contact models that have none
+        if not OPTIONS["spin_model"].applies(told["contact_model"]):
+            told["spin_model"] = OPTIONS["spin_model"].default
     return options, np.array([known[key] for key in keys])
 
 
@@ -171,12 +175,15 @@ def working_plan(
     Raises
     ------
     InputError
-        If the design holds an invalid case or the results folder cannot be a folder.
+        If the design holds an invalid case, the results folder cannot be a folder, or it holds results of an earlier
+        default contact model.
     WorkError
         If another process works on another version of the study, or the folder cannot be written.
     """
     tell = tell or (lambda line: None)
-    folder = study_folder(study.name, results).create()
+    folder = study_folder(study.name, results)
+    check_default_model(study, folder)
+    folder.create()
     with open(folder.lock, "rb+") as lock:
         if alone := try_lock(lock):
             _repair_and_plan(study, folder, tell, rerun_failed)

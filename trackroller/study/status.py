@@ -17,7 +17,7 @@ from trackroller.study.cost import study_rate
 from trackroller.study.design.build import build
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
-from trackroller.study.inventory import take_inventory
+from trackroller.study.inventory import check_default_model, take_inventory
 from trackroller.study.plan import identify, study_folder
 
 if TYPE_CHECKING:
@@ -104,8 +104,14 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     -------
     Status
         Numbers of cases and the expected time. The time is proportional to the number of cases.
+
+    Raises
+    ------
+    InputError
+        If the folder holds results of an earlier default contact model.
     """
     folder = study_folder(study.name, results)
+    check_default_model(study, folder)
     study = with_history(study, folder)
     cases = identify(study, build(study))
     found = take_inventory(folder)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from validation.adopt.common import FIGURES, FOLDER, copy_figures
 
-NAMES = ("error", "error-factors", "energy", "patches", "map")
+NAMES = ("error", "error-factors", "energy", "patches")
 COLOURS = 64
 
 

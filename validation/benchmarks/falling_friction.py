@@ -63,7 +63,7 @@ def sample(n: int, seed: int) -> list[tr.Case]:
                 drawn.append(random_case(rng))
             except tr.InputError:
                 continue
-        plain = tr.solve(drawn, outputs=("forces", "contact"), accuracy="preview")
+        plain = tr.solve(drawn, outputs=("forces", "contact"), contact_model="sliding", accuracy="preview")
         rim = np.sqrt(plain.semi_axis_lateral * plain.semi_axis_rolling).max("contact").values
         for case, size, regime in zip(drawn, rim, plain.regime.values, strict=True):
             law, over = laws()[rng.integers(len(laws()))], 10 ** rng.uniform(-2, 2)
@@ -170,7 +170,7 @@ def _told(cases: list[tr.Case], ds: Any) -> np.ndarray:
 
 def measures(cases: list[tr.Case], shift: np.ndarray) -> np.ndarray:
     """Slips as w in (-1, 1), in which the torque is nearly linear."""
-    scene = stages.prepare(to_table(cases, None), Options(outputs=("forces",)))
+    scene = stages.prepare(to_table(cases, None), Options(outputs=("forces",), contact_model="sliding"))
     return Roller(scene.loads, scene.model.law, np.arange(len(cases))).w_of(shift)
 
 

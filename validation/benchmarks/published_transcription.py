@@ -230,7 +230,7 @@ def contacts_of_case(case=None, points: int = POINTS) -> list[Contact]:
     """Both contacts of a case (default: the paper's own), from our forces and ellipses and the paper's tractions."""
 
     case = Case() if case is None else case
-    ds = tr.solve(case, outputs=("forces", "contact")).squeeze()
+    ds = tr.solve(case, outputs=("forces", "contact"), contact_model="sliding").squeeze()
     angle = np.deg2rad(float(case.contact_angle))
     found = []
     for k, sign in enumerate((1.0, -1.0)):

@@ -13,14 +13,12 @@ import xarray as xr
 
 from trackroller.report.build import analyse_study, draw_study, report_study
 from trackroller.report.comparison.pairs import pairs
-from trackroller.report.comparison.words import percent, sentences
+from trackroller.report.comparison.words import sentences
 from trackroller.report.figures import style
 from trackroller.roller.case import Case
-from trackroller.roller.choice import choose as choice
 from trackroller.roller.solver import solve
 from trackroller.study.config import load_study
 from trackroller.study.run import run_study
-from validation.contact_models import map as ladder_map
 from validation.contact_models import patches as ladder_patches
 
 if TYPE_CHECKING:
@@ -51,35 +49,27 @@ def compare(study_file: Path, out: Path) -> None:
 
 
 def write_words(study_nc: str, path: Path) -> None:
-    """What the comparison says, a line a sentence, with what the random designs behind `auto` say."""
+    """What the comparison says, a line a sentence."""
 
     with xr.open_dataset(study_nc) as ds:
         paired = pairs(ds)
         said = sentences(paired) if paired is not None else ["The study has but one contact model."]
-    path.write_text("\n".join([*said, *map_sentences()]) + "\n", encoding="utf-8")
+    path.write_text("\n".join(said) + "\n", encoding="utf-8")
 
 
 def draw_patches(case: Any, out: Path) -> list[FigureInfo]:
-    """The patches of a case by model and the map behind `auto`, with their index, in the folder `out`."""
-
+    """The patches of a case by model, with their index, in the folder `out`."""
+    name = "models-patches"
+    caption = "Friction, stick and dissipation across contact 1 by contact model, free and driven."
     infos = []
     with style.look():
-        for draw, name, caption in (
-            (
-                lambda: ladder_patches.patches(patch_fields(case)),
-                "models-patches",
-                "Friction, stick and dissipation across contact 1 by contact model, free and driven.",
-            ),
-            (ladder_map.choice_map, "models-map", "Cheapest contact model within a tolerance."),
-        ):
-            try:
-                style.save(draw(), out, name)
-            except OSError:  # a full disk is not the figure's fault
-                raise
-            except Exception as problem:  # a picture never fails a run, whatever the base case is
-                log.warning("figure %s was not drawn: %s", name, problem, exc_info=True)
-                continue
+        try:
+            style.save(ladder_patches.patches(patch_fields(case)), out, name)
             infos.append(style.FigureInfo(name, caption, ""))
+        except OSError:  # a full disk is not the figure's fault
+            raise
+        except Exception as problem:  # a picture never fails a run, whatever the base case is
+            log.warning("figure %s was not drawn: %s", name, problem, exc_info=True)
     style.write_index(infos, out, "index-models.json")
     return infos
 
@@ -117,17 +107,3 @@ def _resampled(ds: xr.Dataset, points: dict[str, int]) -> xr.Dataset:
     """Fields at the nearest of their own points on a grid of `points` positions."""
     pick = {n: np.minimum((np.arange(m) * ds.sizes[n]) // m, ds.sizes[n] - 1) for n, m in points.items()}
     return ds.isel(pick).drop_vars([n for n in ("x", "y") if n in ds.coords])
-
-
-def map_sentences() -> list[str]:
-    """What the random designs behind `contact_model="auto"` say."""
-
-    m = choice.stored()
-    said = [f"Of {int(m['checked'])} random designs, auto takes"]
-    parts = []
-    for tolerance, shares in zip(m["tolerances"], m["shares"], strict=True):
-        parts.append(
-            f"for {percent(float(tolerance))} sliding in {percent(shares[0])}, FASTSIM in "
-            f"{percent(shares[1])} and the exact theory in {percent(shares[2])}"
-        )
-    return [f"{said[0]} {'; '.join(parts)}; within the tolerance were at least {percent(float(np.min(m['met'])))}."]

@@ -48,7 +48,7 @@ def random_record(model: str, count: int, seed: int = SEED) -> Record:
 def _small(cases: list[Record]) -> np.ndarray:
     """Cases whose patch, judged without friction, stays below 0.3 of every radius: the model's own ground."""
     plain = [c | {"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.0} for c in cases]
-    ds = solve(plain, ("forces", "contact"))
+    ds = solve(plain, ("forces", "contact"), contact_model="sliding")
     return (ds.validity.values & 1 == 0) & (ds.regime.values == 0)
 
 
@@ -63,7 +63,7 @@ def regime_map(points: int = 61) -> Record:
             for m in friction
             for a in axial
         ]
-        ds = solve(cases, "forces")
+        ds = solve(cases, "forces", contact_model="sliding")
         jam = ds.validity.values >> 4 & 1
         maps[name] = {
             "regime": ds.regime.values.reshape(points, points).tolist(),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -223,7 +223,7 @@ def _halfspace() -> Iterator[Group]:
     yield Group("halfspace_sliding_preview", [*ordinary(6, 13), *regimes()[::17]], same | {"accuracy": "preview"})
     yield Group("halfspace_profiles", profiles(), same | {"accuracy": "preview"})
     yield Group("halfspace_extreme", extreme(2, 14), same | {"accuracy": "preview"})
-    for model in ("fastsim", "kalker", "auto"):
+    for model in ("fastsim", "kalker"):
         several = [{}, *ordinary(2, 15)]
         yield Group(f"halfspace_{model}", several, same | {"contact_model": model, "accuracy": "preview"})
         rolling = {"contact_model": model, "accuracy": "preview", "outputs": FORCES}
@@ -243,7 +243,6 @@ def groups() -> list[Group]:
         _sliding,
         lambda: _rolling("fastsim", {"preview": 12, "standard": 18, "reference": 4, 0.1: 6}),
         lambda: _rolling("kalker", {"preview": 40, "standard": 36, "reference": 2, 0.1: 6}),
-        lambda: _rolling("auto", {"preview": 12, "standard": 12}),
         _halfspace,
     )
-    return [group for maker in makers for group in maker()]
+    return [replace(g, options={"contact_model": "sliding"} | g.options) for maker in makers for g in maker()]

@@ -111,7 +111,8 @@ def drawn_designs(folder: Path) -> list[Study]:
 
 
 def _study(design: str, factors: Study, name: str = "", **more: Any) -> Study:
-    common = {"name": name or design.replace("_", "-"), "design": design, "factors": factors, "accuracy": "preview"}
+    common = {"name": name or design.replace("_", "-"), "design": design, "factors": factors}
+    common |= {"contact_model": "sliding", "accuracy": "preview"}
     return {**common, "outputs": ["forces", "contact", "friction_work", "peak_stress", "life"], **more}
 
 

@@ -78,5 +78,5 @@ def sample(count: int, seed: int = SEED) -> list[Case]:
 
 
 def _usable(cases: list[Case]) -> np.ndarray:
-    ds = solve(cases, outputs=("forces", "contact"), accuracy="standard")
+    ds = solve(cases, outputs=("forces", "contact"), contact_model="sliding", accuracy="standard")
     return np.asarray((ds.regime.values <= 1) & ((ds.validity.values & SINGULAR) == 0) & (ds.converged.values == 1))

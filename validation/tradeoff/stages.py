@@ -49,7 +49,7 @@ class Patches:
 
 def patches_of(cases: Sequence[Case]) -> Patches:
     """Patches of contact 1 of those designs that roll."""
-    ds = solve(list(cases), outputs=ALL, accuracy=accuracy_of(48, 8, REFERENCE_SEARCHES[1]))
+    ds = solve(list(cases), outputs=ALL, contact_model="sliding", accuracy=accuracy_of(48, 8, REFERENCE_SEARCHES[1]))
     rolls = np.flatnonzero(ds.regime.values == 0)
     ds, table = ds.isel(case=rolls), to_table([cases[int(i)] for i in rolls])
     alpha = np.deg2rad(table.contact_angle)

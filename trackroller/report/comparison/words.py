@@ -22,7 +22,7 @@ from trackroller.report.comparison.groups import (
 from trackroller.report.comparison.pairs import pairs
 from trackroller.report.numbers import capital, rounded
 
-NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM", "auto": "The model chosen by auto"}
+NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM"}
 MOST = 0.9  # share of the designs of a level that counts as the level
 FLAT = 0.1  # a factor whose levels differ less in the share of good designs is not worth a sentence
 MOST_FACTORS = 3

@@ -23,7 +23,6 @@ LOOKS: dict[str, dict[str, Any]] = {
     "fastsim": {"color": "#d55e00", "linestyle": ":", "marker": "s"},
     "kalker": {"color": "#0072b2", "linestyle": "--", "marker": "^"},
     "kalker_table": {"color": "#56b4e9", "linestyle": "-.", "marker": "v"},
-    "auto": {"color": "#009e73", "linestyle": "-.", "marker": "D"},
 }
 SIZE = 2.8
 WIDE = 2 * style.COLUMN_MM

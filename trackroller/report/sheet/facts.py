@@ -117,7 +117,7 @@ def collect(ds: xr.Dataset, database: MaterialDatabase | None = None) -> Facts:
     inputs, materials = inputs_of(ds), materials_of(ds)
     regime = REGIMES[int(ds["regime"])]
     model = str(ds.attrs["contact_model"])
-    found = limits(case_of_result(ds), model if model != "auto" else "kalker", database)
+    found = limits(case_of_result(ds), model, database)
     contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
     lives = _lives(ds, inputs, materials)
     return Facts(

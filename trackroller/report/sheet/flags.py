@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from trackroller.report.known_errors import KNOWN_ERROR
+from trackroller.report.numbers import percent
 from trackroller.roller.dataset import VALIDITY_BITS, validity_bit
 
 if TYPE_CHECKING:
@@ -76,4 +78,8 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
             sentence, remedy = WORDS[name]
             bodies = " and ".join(f"the {body}" for body, own in by_body.items() if own & bit) or "a body"
             found.append(Flag(name, sentence.format(body=bodies), remedy))
+    residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
+    if residual > KNOWN_ERROR:
+        text = f"Friction energy and power differ from the work put in by {percent(residual)}."
+        found.append(Flag("energy_residual", text, "Solve it with contact_model: kalker."))
     return found

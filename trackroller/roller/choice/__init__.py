@@ -1,1 +1,0 @@
-"""Choose the cheapest contact model that meets a tolerance."""
