@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
-from trackroller.analysis.pareto import pareto, pareto_mask
+from trackroller.analysis.pareto import pareto, pareto_mask, study_pareto
+from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.errors import InputError
 from trackroller.report import choices
 from trackroller.report.numbers import quantity
+from trackroller.report.page import contents
+from trackroller.report.view import StudyView
 from trackroller.study.config import parse_study
 
 LHS = {
@@ -117,3 +120,63 @@ def test_figures_of_the_set_are_drawn_in_words():
         _, first = pareto_front(front)
     assert "Treated as free to choose" in first.caption
     assert first.sentence == choices.pareto(front).text
+
+
+def test_design_points_are_compared_by_their_statistics():
+    """B10, mean and probability at each point from raw rows; the set and its sentence as by brute force."""
+    data = {
+        "name": "points",
+        "design": "inner_outer",
+        "samples": 50,
+        "outputs": ["forces", "friction_work", "life"],
+        "factors": {
+            "velocity": {"values": [1.0, 2.0, 3.0, 4.0]},
+            "contact_angle": {"values": [30, 36]},
+            "axial_force": {"uniform": [0.0, 1.0]},
+        },
+        "analysis": {"outputs": ["roller_life_hours"], "target": {"roller_life_hours": {"min": 150}}},
+        "pareto": {
+            "b10(roller_life_hours)": "max",
+            "mean(friction_power)": "min",
+            "probability(roller_life_hours)": "max",
+            "velocity": "min",
+        },
+    }
+    study = parse_study(data)
+    ds = study.design()
+    v, a, angle = (ds[n].values for n in ("velocity", "axial_force", "contact_angle"))
+    ds["roller_life_hours"] = ("case", 100 * v * (1 + a) * np.where(angle > 33, 0.7, 1.0), {"units": "h"})
+    ds["friction_power"] = ("case", v**2 * (1 + a**2) * np.where(angle > 33, 0.8, 1.0), {"units": "W"})
+    ds.attrs = {"study": study.merged()}
+    sens = analyse_dataset(ds)
+    front = study_pareto(ds, sens)
+    life, power = (ds[n].values.reshape(8, 50) for n in ("roller_life_hours", "friction_power"))
+    table = [np.sort(life)[:, 4], power.mean(axis=1), (life >= 150).mean(axis=1), v.reshape(8, 50)[:, 0]]
+    for name, values in zip(data["pareto"], table, strict=True):
+        np.testing.assert_allclose(front[name], values)
+    optimal = brute(np.stack(table, axis=1) * np.array([-1.0, 1.0, -1.0, 1.0]))
+    np.testing.assert_array_equal(front["optimal"], optimal)
+    text = choices.pareto(front, StudyView.of(ds)).text
+    assert text.startswith(f"{optimal.sum()} of 8 allowed design points are Pareto-optimal: from ")
+    told = {t.name: t for t in contents(ds, sens)["decide"]}
+    assert told["pareto"].heads[:3] == ["Design point", "B10 of life of the roller [h] ↑", told["pareto"].heads[2]]
+    assert len(told["pareto"].rows) == optimal.sum() and "percentiles_friction_power" in told
+    assert study_pareto(ds) is None  # without an analysis there are no statistics
+
+
+@pytest.mark.parametrize(
+    ("design", "name", "says"),
+    [
+        ("inner_outer", "roller_life_hours", "no free choice"),
+        ("inner_outer", "axial_force", "no free choice"),
+        ("inner_outer", "b10(max_pressure)", "mean.max_pressure"),
+        ("inner_outer", "mean(max_presure)", "max_pressure"),
+        ("inner_outer", "probability(roller_life_hours)", "analysis.target"),
+        ("lhs", "b10(roller_life_hours)", "inner_outer"),
+    ],
+)
+def test_wrong_statistics_are_refused(design, name, says):
+    data = LHS | {"design": design, "pareto": {name: "max", "velocity": "min"}}
+    data["factors"] = LHS["factors"] | {"velocity": {"values": [1.0, 2.0]}}
+    with pytest.raises(InputError, match=says):
+        parse_study(data)

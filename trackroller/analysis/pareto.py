@@ -11,10 +11,10 @@ import xarray as xr
 from trackroller.analysis.limits import column, meeting
 from trackroller.analysis.restore import design_of
 from trackroller.errors import InputError
-from trackroller.parameters import EXACTNESS, REGIMES
+from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.study.design.factors import label
 from trackroller.study.design.sampling import SampledDesign, current_name
-from trackroller.study.goals import names_in
+from trackroller.study.goals import names_in, statistic
 from trackroller.study.outputs import case_dims, read_study, regimes
 
 
@@ -161,25 +161,88 @@ def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:
     return (named == found[0], found[0]) if len(found) > 1 else (np.ones(design.size, bool), "")
 
 
-def study_pareto(ds: xr.Dataset) -> xr.Dataset | None:
+def study_pareto(ds: xr.Dataset, sens: xr.Dataset | None = None) -> xr.Dataset | None:
     """Find the Pareto set for the keys `pareto` and `constraints` of a study.
 
     Parameters
     ----------
     ds : gathered study with its study file as attribute
+    sens : its analysis; only needed for the design points of an inner/outer design
 
     Returns
     -------
     As `pareto`. Without the key `pareto`, the goals are those of `default_objectives`. None if the study has no
-    such goals, or if its design is `inner_outer`: scattering factors are not free choices.
+    such goals. Of an inner/outer design as `pareto_of_points`, None without the key `pareto`.
     """
     study = read_study(ds)
     if current_name(str(study.get("design", ds.attrs.get("design", "")))) == "inner_outer":
-        return None
+        return pareto_of_points(sens, study["pareto"]) if sens is not None and study.get("pareto") else None
     goals = study.get("pareto") or default_objectives(ds)
     if not goals:
         return None
     return pareto(ds, goals, study.get("constraints") or ())
+
+
+def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dataset:
+    """Find the Pareto set of the design points of an inner/outer design.
+
+    Parameters
+    ----------
+    table : result of `trackroller.analysis.sensitivity.analyse_dataset` for an inner/outer design
+    objectives : statistic such as `b10(roller_life_hours)` or outer factor -> `max` or `min`
+
+    Returns
+    -------
+    As `pareto`; `row` is the number of the design point.
+
+    Raises
+    ------
+    InputError : a statistic is not in the analysis
+    """
+    columns = {name: _of_points(table, name) for name in objectives}
+    values = np.stack([column.values.astype(float) for column in columns.values()], axis=1)
+    known = ~np.isnan(values).any(axis=1)
+    optimal = pareto_mask(values, objectives.values())
+    outer = [name for name in str(table.attrs["outer_factors"]).split(", ") if name]
+    data: dict[str, Any] = {name: ("row", table[name].values[known]) for name in outer}
+    data |= {name: ("row", column.values[known], column.attrs) for name, column in columns.items()}
+    data["optimal"] = ("row", optimal[known].astype(np.int8), {"long_name": "in the Pareto set"})
+    out = xr.Dataset(data, coords={"row": np.flatnonzero(known)})
+    left = int((~known).sum())
+    out.attrs = {
+        "objectives": ", ".join(f"{n} {d}" for n, d in objectives.items()),
+        "constraints": "",
+        "factors": ", ".join(outer),
+        "rows": len(known),
+        "model": "",
+        "excluded": f"{left} by an undefined goal" if left else "nothing",
+        "kind": "design point",
+        "study": table.attrs.get("study", ""),
+    }
+    return out
+
+
+def _of_points(table: xr.Dataset, name: str) -> xr.DataArray:
+    """Return a statistic or an outer factor at each design point, with units and long name."""
+    kind, output = statistic(name)
+    if kind == "probability" and output in REGIMES:
+        found, told, units = table["probability"].sel(regime=output), REGIME_LABELS[REGIMES.index(output)], "1"
+    elif kind == "probability":
+        own = table["target"].values == output
+        if not own.any():
+            raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
+        found, told, units = table["target_probability"][int(np.argmax(own))], f"the target of {output}", "1"
+    elif kind:
+        if output not in table["output"].values or kind not in table:
+            raise InputError("pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}")
+        part = table.sel(output=output)
+        found, told, units = part[kind], str(part["output_name"].item()), str(part["output_units"].item())
+    else:
+        known = PARAMETERS.get(name)
+        attrs = {"units": known.units if known else "", "long_name": known.long_name if known else name}
+        return table[name].copy().assign_attrs(attrs)
+    word = {"b10": "B10", "b10_safe": "B10 with other cases as life 0"}.get(kind, kind.replace("_", " "))
+    return found.copy().assign_attrs(units=units, long_name=f"{word} of {told}")
 
 
 def default_objectives(ds: xr.Dataset) -> dict[str, str]:

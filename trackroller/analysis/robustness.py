@@ -25,6 +25,7 @@ from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import label
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.goals import statistic
 from trackroller.study.outputs import Output, case_dims, default_names, flat, outputs, read_study, regimes
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
@@ -72,6 +73,8 @@ def robustness(
     dims = case_dims(ds, design.factors)
     regime = regimes(ds, dims).reshape(shape)
     wanted = list(names) if names is not None else default_names(ds, design.factors, dims)
+    goals = [statistic(goal) for goal in read_study(ds).get("pareto") or ()]
+    wanted += [output for kind, output in goals if kind not in ("", "probability") and output not in wanted]
     met = allowed_cases(ds, dims, design.columns)
     columns = outputs(ds, design.factors, wanted, natural=wanted, unlimited=True, allowed=met)
     results = []

@@ -26,10 +26,10 @@ def pareto(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
     best = np.flatnonzero(front["optimal"].values == 1)
     goals, left = goals_of(front), f"Left out: {front.attrs['excluded']}."
     model = f" The designs are those solved with {front.attrs['model']}." if front.attrs.get("model") else ""
-    allowed = count(front.sizes["row"])
+    allowed, kind = count(front.sizes["row"]), str(front.attrs.get("kind", "design"))
     values = {"count": len(best), "of": front.sizes["row"], "ends": []}
     if not len(best):
-        return Sentence("pareto", f"No design is left. {left}{model}", values)
+        return Sentence("pareto", f"No {kind} is left. {left}{model}", values)
     ends = []
     for name, way in goals:
         table = front[name].values[best].astype(float)
@@ -37,15 +37,15 @@ def pareto(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
         ends.append((name, int(front["row"][at]), {g: float(front[g].values[at]) for g, _ in goals}))
     if len(best) == 1:
         told = [f"{_goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
-        text = f"One of {allowed} allowed designs is best in everything: {listing(told)}."
+        text = f"One of {allowed} allowed {kind}s is best in everything: {listing(told)}."
     else:
         one, two = ends[0], ends[1]
         said = [
             listing([f"{_goal_value(front, g, end[2][g])} {_goal_words(front, g)}" for g, _ in goals])
             for end in (one, two)
         ]
-        text = f"{count(len(best))} of {allowed} allowed designs are Pareto-optimal: from {said[0]} to {said[1]}."
-    if view is not None:
+        text = f"{count(len(best))} of {allowed} allowed {kind}s are Pareto-optimal: from {said[0]} to {said[1]}."
+    if view is not None and kind == "design":
         outside = int((~view.valid[front["row"].values[best]]).sum())
         values["outside"] = outside
         text += f" {count(outside)} of the set lie outside the model." if outside else ""

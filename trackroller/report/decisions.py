@@ -16,6 +16,7 @@ from trackroller.report.known_errors import FRICTION_OUTPUTS
 from trackroller.report.numbers import capital, listing, long_name, plus_minus, rounded, unit_text, with_unit
 from trackroller.report.tables import Table, factor_cell
 from trackroller.report.view import StudyView
+from trackroller.study.goals import statistic
 from trackroller.study.outputs import read_study, settings
 
 MAX_DESIGNS = 12  # rows of the table of the Pareto set
@@ -164,19 +165,21 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     shown = best[np.unique(np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int))]
     names = [n for n, _ in goals] + [str(n) for n in front.data_vars if n not in (*dict(goals), "optimal")]
     arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
-    rows = []
-    for i in shown:
-        case = int(front["row"][i])
-        inside = "inside" if view.valid[case] else "outside"
-        rows.append([case, *(_front_cell(n, front[n].values[i]) for n in names), inside])
-    heads = ["Case", *(_heading(front, n) + arrows.get(n, "") for n in names), "Model"]
+    rows: list[list[Any]] = [
+        [int(front["row"][i]), *(_front_cell(n, front[n].values[i]) for n in names)] for i in shown
+    ]
+    kind = str(front.attrs.get("kind", "design"))
+    heads = [capital(kind), *(_heading(front, n) + arrows.get(n, "") for n in names)]
+    if kind == "design":
+        heads = ["Case", *heads[1:], "Model"]
+        rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
     told = [f"{_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
     note = f"{capital('; '.join(told))}."
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
     if len(best) > len(rows):
-        note += f" {len(rows)} of the {len(best)} designs, evenly along the first goal."
-    note += f" {error.text}" if error and any(n in FRICTION_OUTPUTS for n, _ in goals) else ""
-    return Table("pareto", "Pareto-optimal designs", heads, rows, note)
+        note += f" {len(rows)} of the {len(best)} {kind}s, evenly along the first goal."
+    note += f" {error.text}" if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
+    return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
 
 
 def _words(front: xr.Dataset, name: str) -> str:

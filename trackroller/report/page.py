@@ -126,7 +126,7 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
     """
     error = friction_error(view)
     decide: list[Table | None] = [best_table(view)]
-    front = _guarded(lambda: None, study_pareto, ds)
+    front = _guarded(lambda: None, study_pareto, ds, sens)
     said = []
     if front is not None:
         said.append(choices.pareto(front, view).text)

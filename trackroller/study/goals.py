@@ -27,11 +27,13 @@ from trackroller.numerics import expressions
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.roller.dataset import VARIABLES
 from trackroller.study.design.entries import choice
+from trackroller.study.design.factors import LISTS
 from trackroller.study.outputs import DEFAULTS, FIELDS
 
 MEASURES = ("first", "delta", "pawn", "prcc")
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
+STATISTICS = ("b10", "b10_safe", "mean", "standard_deviation", "probability")  # of the design points of inner_outer
 TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table")
 
 
@@ -109,7 +111,7 @@ def directions(value: Any) -> dict[str, str]:
             "two or more outputs or factors, each with max or min",
             "For example {roller_life_hours: max, friction_power: min}.",
         )
-    return {str(name): choice(way, f"pareto.{name}", DIRECTIONS) for name, way in value.items()}
+    return {str(name).replace(" ", ""): choice(way, f"pareto.{name}", DIRECTIONS) for name, way in value.items()}
 
 
 def targets(value: Any) -> dict[str, dict[str, float]]:
@@ -190,19 +192,41 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
         raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
     free = [*known, *factors, *PARAMETERS]
-    for name in config.pareto:
+    _check_statistics(config, factors, known)
+    for name in config.pareto if config.design != "inner_outer" else ():
         if name not in free:
             raise _unknown("pareto", name, free, config.outputs)
         if "expression" not in factors.get(name, {}) and not _numeric(factors.get(name, {})):
             raise InputError("pareto", name, "a result or factor with one number a case", "Names have no order.")
-    if config.design == "inner_outer" and config.pareto:
-        raise InputError(
-            "pareto",
-            dict(config.pareto),
-            "a design whose factors are free choices; the scattering factors of inner_outer are not",
-            "Compare the design points by B10, or use design 'grid'.",
-        )
     _check_constraints(config, factors, free)
+
+
+def _check_statistics(config: Any, factors: Mapping[str, Any], known: list[str]) -> None:
+    """Check that `pareto` names statistics of design points in an inner/outer design, and in no other design."""
+    chosen = [n for n, spec in factors.items() if set(spec) & set(LISTS) and not spec.get("scatter") and _numeric(spec)]
+    for name in config.pareto:
+        kind, output = statistic(name)
+        if config.design != "inner_outer" and kind:
+            remedy = "Name the result itself, or use design: inner_outer."
+            raise InputError("pareto", name, "a result or factor; statistics need design points", remedy)
+        if config.design != "inner_outer" or name in chosen:
+            continue
+        if not kind:
+            allowed = f"{', '.join(STATISTICS)} of a result, or a numeric factor with a list: a case is no free choice"
+            raise InputError("pareto", name, allowed, "For example b10(roller_life_hours) or mean(friction_power).")
+        if kind == "probability" and output not in (*config.analysis.target, *REGIMES):
+            remedy = "Add it to analysis.target, such as {roller_life_hours: {min: 500}}."
+            raise InputError("pareto", name, "the probability of a target or of a regime", remedy)
+        if kind != "probability" and output not in known:
+            raise _unknown("pareto", output, known, config.outputs)
+        if kind.startswith("b10") and "life" not in output:
+            raise InputError("pareto", name, "b10 of a life", f"Use mean({output}).")
+
+
+def statistic(name: str) -> tuple[str, str]:
+    """Split 'b10(roller_life_hours)' into the statistic and its output; ('', name) for a plain name."""
+    kind, bracket, output = name.replace(" ", "").partition("(")
+    return (kind, output[:-1]) if bracket and kind in STATISTICS and output.endswith(")") else ("", name)
 
 
 def _check_constraints(config: Any, factors: Mapping[str, Any], free: list[str]) -> None:

@@ -55,12 +55,13 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
         _trade(axes, front, goal, goals[0], joined=len(goals) == 2)
     handles, texts = panels[0].get_legend_handles_labels()
     figure.legend(handles, texts, loc="outside lower center", ncols=2)
-    style.head(figure, "Pareto-optimal designs", "Arrows on the axes: the wanted direction.")
+    kind = str(front.attrs.get("kind", "design"))
+    style.head(figure, f"Pareto-optimal {kind}s", "Arrows on the axes: the wanted direction.")
     style.finish(figure)
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
     limits = f" where {front.attrs['constraints']}" if front.attrs.get("constraints") else ""
     caption = (
-        f"Pareto set for {wanted}; {front.sizes['row']:,} allowed designs of {front.attrs['rows']:,}{limits}. Left "
+        f"Pareto set for {wanted}; {front.sizes['row']:,} allowed {kind}s of {front.attrs['rows']:,}{limits}. Left "
         f"out: {front.attrs['excluded']}.{_given(front)}"
     )
     return figure, style.FigureInfo("pareto-front", caption, choices.pareto(front, view).text)

@@ -61,10 +61,13 @@ def draw_all(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) 
     """
     with xr.open_dataset(study_nc) as opened:
         ds = opened.load()
-    jobs = list(_jobs(ds, StudyView.of(ds)))
+    sens = None
     if sensitivity_nc is not None:
         with xr.open_dataset(sensitivity_nc) as opened:
-            before, after = _of_analysis(opened.load())
+            sens = opened.load()
+    jobs = list(_jobs(ds, StudyView.of(ds), sens))
+    if sens is not None:
+        before, after = _of_analysis(sens)
         jobs = [*before, *jobs, *after]
     error, infos = friction_error(StudyView.of(ds)), []
     with style.look(), warnings.catch_warnings():
@@ -93,17 +96,17 @@ def _saved(draw: Draw, out_dir: Path) -> style.FigureInfo | None:
     return drawn[1]
 
 
-def _jobs(ds: xr.Dataset, view: StudyView) -> Iterator[Draw]:
+def _jobs(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None) -> Iterator[Draw]:
     """Drawings from the cases: contact models side by side, the study's own, the Pareto front."""
-    for make in (drawers, lambda study: [partial(draw, view) for draw in OF_CASES], partial(_front, view)):
+    for make in (drawers, lambda study: [partial(draw, view) for draw in OF_CASES], partial(_front, view, sens)):
         try:
             yield from make(ds)
         except Exception as problem:  # a picture never fails a run
             log.warning("figures were left out: %s", problem, exc_info=True)
 
 
-def _front(view: StudyView, ds: xr.Dataset) -> list[Draw]:
-    front = study_pareto(ds)
+def _front(view: StudyView, sens: xr.Dataset | None, ds: xr.Dataset) -> list[Draw]:
+    front = study_pareto(ds, sens)
     return [] if front is None else [partial(pareto_front, front, view)]
 
 
