@@ -1,4 +1,4 @@
-"""Where each cheaper contact model is good enough, over friction, drive, spin and the rest: words from the results."""
+"""State where each cheaper contact model is good enough, over friction and drive, in sentences from the results."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from trackroller.report.comparison.groups import (
     groups,
     name_of,
     span,
-    spin_is_its_own,
 )
 from trackroller.report.comparison.pairs import pairs
 from trackroller.report.numbers import capital, rounded
@@ -25,7 +24,6 @@ from trackroller.report.numbers import capital, rounded
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM"}
 MOST = 0.9  # share of the designs of a level that counts as the level
 FLAT = 0.1  # a factor whose levels differ less in the share of good designs is not worth a sentence
-MOST_FACTORS = 3
 FEWEST = 3  # designs that roll in both models; of fewer nothing is said
 
 
@@ -83,7 +81,7 @@ def short(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
 
 
 def details(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """Return the sentences by friction and drive, by spin, and by every other factor."""
+    """Return the sentences by friction and drive: up to which friction each quantity is good enough."""
     if not paired.sizes["design"]:
         return []
     found, said = errors(paired), []
@@ -91,8 +89,7 @@ def details(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
         one = found.sel(contact_model=model)
         if _compared(one) < FEWEST:
             continue
-        for tell in (_by_drive, _by_spin, _by_factors):
-            said += tell(one, model, tolerance)
+        said += _by_drive(one, model, tolerance)
     return said
 
 
@@ -231,38 +228,8 @@ def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _main(one: xr.Dataset) -> list[Any]:
-    """What is told by spin and other factors: forces and stress."""
+    """Return the quantities whose error is drawn over other factors: forces and stress."""
     return [q for q in measured(one) if q.name in ("normal_force", "friction_force", "peak_stress")]
-
-
-def _by_spin(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
-    """Share within the tolerance, and the friction up to which it holds, in parts of small and of large spin."""
-    if not spin_is_its_own(one):
-        return []
-    keep = np.isfinite(one["spin"].values)
-    one = one.isel(design=np.flatnonzero(keep))
-    along, said = groups(one, "spin", most=4, bins=3), []
-    if all(_share(one[q.name].values, tolerance) == 1.0 for q in _main(one)):
-        return []
-    for k, text in enumerate(along.texts):
-        part, clauses = one.isel(design=np.flatnonzero(along.index == k)), []
-        for q in _main(part):
-            e = part[q.name].values
-            up_to = levels_kept(groups(part, FRICTION), e, tolerance) if FRICTION in factors(one) else ""
-            share, worst = percent(_share(e, tolerance)), percent(_spread(_rolling(part[q.name]))[2])
-            clauses.append(
-                f"{q.words.split(' (')[0]} in {share}{f', {up_to}' if up_to else ''} (off by {worst} at most)"
-            )
-        if clauses:
-            said.append(f"{text}: {'; '.join(clauses)}")
-    return (
-        [
-            f"{NAMES[model]} by spin φρ (spin creepage by radius of curvature), within {percent(tolerance)}: "
-            f"at {'. At '.join(said)}."
-        ]
-        if said
-        else []
-    )
 
 
 def telling_factors(one: xr.Dataset, tolerance: float = GOOD) -> list[str]:
@@ -277,21 +244,6 @@ def telling_factors(one: xr.Dataset, tolerance: float = GOOD) -> list[str]:
         if changes and max(changes) > FLAT:
             found.append((max(changes), name))
     return [name for _, name in sorted(found, key=lambda pair: -pair[0])]
-
-
-def _by_factors(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
-    """The levels at which the model is good enough, along the factors that matter most, all else as it varies."""
-    said = []
-    for name in telling_factors(one, tolerance)[:MOST_FACTORS]:
-        along, clauses = groups(one, name), []
-        for q in _main(one):
-            e = one[q.name].values
-            shares = _shares_along(e, along, tolerance)
-            ends = np.flatnonzero(np.isfinite(shares))[[0, -1]]
-            told = ", ".join(f"{percent(shares[k])} at {along.texts[k]}" for k in ends)
-            clauses.append(f"{q.words.split(' (')[0]} {levels_kept(along, e, tolerance) or 'at no level'} ({told})")
-        said.append(f"{NAMES[model]} by {name_of(name)}, in 9 of 10 designs: {'; '.join(clauses)}.")
-    return said
 
 
 def _shares_along(e: np.ndarray, along: Groups, tolerance: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The contact models side by side, for any study with them as a factor: errors, forces, work, stick, stress, life."""
+"""Draw the contact models side by side for a study with them as a factor: errors, friction energy, stress, life."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from trackroller.report.comparison.errors import GOOD, errors, measured
 from trackroller.report.comparison.groups import spin_is_its_own
@@ -38,11 +37,11 @@ def drawers(ds: xr.Dataset) -> list[partial[Drawn]]:
     paired = pairs(ds)
     if paired is None or not paired.sizes["design"] or not measured(found := errors(paired)):
         return []
-    draws = (error, error_by_factor, forces, energy, stick, peak_and_life)
+    draws = (error, error_by_factor, energy, peak_and_life)
     return [partial(draw, paired, found) for draw in draws]
 
 
-def _lines(shown: Frame, axes: Any, values: Values, hollow: bool = False) -> dict[str, Any]:
+def _lines(shown: Frame, axes: Any, values: Values) -> dict[str, Any]:
     """One line a model in every column of a row of panels; of many designs the medians, with the reference's band."""
     handles, rolls = {}, rolling(shown.ds)
     for model in map(str, shown.ds["contact_model"].values):
@@ -50,7 +49,7 @@ def _lines(shown: Frame, axes: Any, values: Values, hollow: bool = False) -> dic
         for column, panel in enumerate(axes):
             band = shown.bands(own, column)
             shade = shown.many and model == shown.ds.attrs["reference"]
-            handles[model] = line(panel, shown.x, band, model, hollow, shade)
+            handles[model] = line(panel, shown.x, band, model, shade=shade)
     return handles
 
 
@@ -120,39 +119,6 @@ def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     return figure, style.FigureInfo("models-error-factors", caption, "")
 
 
-def forces(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Draw normal and lateral force and spin moment of both contacts by model."""
-    wanted = [
-        (n, label)
-        for n, label in (
-            ("normal_force", "Normal force\n" + r"$F_\mathrm{N}$ [N]"),
-            ("lateral_force", "Lateral force\n" + r"$F_\mathrm{T}$ [N]"),
-            ("spin_moment", "Spin moment\n" + r"$M_\mathrm{R}$ [N·mm]"),
-        )
-        if n in paired
-    ]
-    shown = frame(paired, hold=True)
-    if shown is None or not wanted:
-        return None
-    figure, axes = panels(shown, [label for _, label in wanted], 31.0)
-    handles: dict[str, Any] = {}
-    for row, (name, _) in zip(axes, wanted, strict=True):
-        for contact in (1, 2):
-            own = _lines(shown, row, partial(_of_contact, name=name, contact=contact), contact == 2)
-            handles = own | handles  # the legend shows the filled marks
-    for contact, face in ((1, "0.3"), (2, "white")):
-        mark = Line2D([], [], color="0.3", marker="o", linestyle="", markersize=3.5, markerfacecolor=face)
-        handles[f"contact {contact}"] = mark
-    close(figure, handles, "Forces by contact model", _told(shown, "Rolling only."))
-    return figure, style.FigureInfo(
-        "models-forces", "Normal and lateral force and spin moment by contact model.", gap(found, "normal_force")
-    )
-
-
-def _of_contact(one: xr.Dataset, name: str, contact: int) -> xr.DataArray:
-    return one[name].sel(contact=contact)
-
-
 def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     """Draw the friction energy of both contacts per distance.
 
@@ -183,20 +149,6 @@ def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
         "resultants is the work that drive and tilting forces put in."
     )
     return figure, style.FigureInfo("models-energy", caption, gap(found, "friction_energy"))
-
-
-def stick(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
-    """Draw the share of the patch that sticks."""
-    shown = frame(paired, hold=True)
-    if shown is None or "stick_area_fraction" not in paired:
-        return None
-    figure, axes = panels(shown, ["Share of the patch\nthat sticks [%]"], 36.0)
-    handles = _lines(shown, axes[0], lambda one: 100.0 * one["stick_area_fraction"].max("contact"))
-    words = _told(shown, "The larger share of the two contacts; the rest of the patch slips.")
-    close(figure, handles, "Stick and slip by contact model", words)
-    return figure, style.FigureInfo(
-        "models-stick", "Share of the patch that sticks, by contact model.", gap(found, "stick")
-    )
 
 
 def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
