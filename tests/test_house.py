@@ -6,7 +6,7 @@ import pytest
 
 from validation.house import LONGEST_FUNCTION, MOST_ARGUMENTS, MOST_LINES, survey
 
-LINES_OF_CODE = 22_113  # today; the goal is 16,500
+LINES_OF_CODE = 22_080  # today; the goal is 16,500
 # formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
 LONG_FUNCTIONS = {
     "trackroller/halfspace/kernels.py:point_kernel": "six stresses below a point load",
@@ -15,11 +15,6 @@ LONG_FUNCTIONS = {
 }
 MANY_ARGUMENTS = {"trackroller/roller/solver.py:solve": "the public options of a solution, by name"}
 # still to be shortened
-LONG_FUNCTIONS |= {
-    "trackroller/halfspace/ellipse_kernels.py:sum_rays": "to do",
-    "trackroller/study/crate.py:_graph": "to do",
-    "trackroller/study/explain.py:explain": "to do",
-}
 MANY_ARGUMENTS |= {
     f"trackroller/contact/fastsim/{name}": "to do"
     for name in (

@@ -29,9 +29,10 @@ def print_rerun(crate: Path, results: Path) -> int:
         raise InputError("--results", str(results), "another folder than that of the crate", "Choose a new folder.")
     plan = run_study(study, results)
     compared = compare_results(stored, plan.folder.gathered)
-    for name, apart in compared.differences.items():
+    for name, apart in compared.items():
         if apart:
             print(f"{name}: differs by {apart:.1e} (relative)")
-    if compared.same:
-        print(f"{len(compared.differences)} variables have the same values as {stored}")
-    return int(not compared.same)
+    same = not any(compared.values())
+    if same:
+        print(f"{len(compared)} variables have the same values as {stored}")
+    return int(not same)

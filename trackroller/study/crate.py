@@ -11,11 +11,9 @@ RO-Crate 1.1, https://w3id.org/ro/crate/1.1; Workflow Run Crate 0.5, https://w3i
 from __future__ import annotations
 
 import functools
-import hashlib
 import json
 import shutil
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,8 +24,9 @@ from trackroller.materials import builtin_database, load_database
 from trackroller.materials.file import find_user_file
 from trackroller.study.config import load_study
 from trackroller.study.design.build import table_path
-from trackroller.study.files import write_text, write_whole
+from trackroller.study.files import sha256, write_text, write_whole
 from trackroller.study.provenance import versions
+from trackroller.study.repeat import largest_difference
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,7 +47,7 @@ _TYPES = {
     ".json": "application/json",
     ".csv": "text/csv",
 }
-_PROFILES = ("process/0.5", "workflow/0.5")
+PROFILES = tuple(f"https://w3id.org/ro/wfrun/{name}" for name in ("process/0.5", "workflow/0.5"))
 
 
 def write_crate(study: Study, root: Path) -> Path:
@@ -102,14 +101,9 @@ def _files(root: Path, *names: str) -> Iterator[str]:
         yield from (p.relative_to(root).as_posix() for p in found if p.is_file() and not p.name.startswith("."))
 
 
-def _digest(path: Path) -> str:
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
 def _file(root: Path, name: str) -> dict[str, Any]:
     path = root / name
-    entry: dict[str, Any] = {"@id": name, "@type": "File", "sha256": _digest(path), "contentSize": path.stat().st_size}
+    entry: dict[str, Any] = {"@id": name, "@type": "File", "sha256": sha256(path), "contentSize": path.stat().st_size}
     if path.suffix in _TYPES:
         entry["encodingFormat"] = _TYPES[path.suffix]
     if name == STUDY_FILE:
@@ -118,16 +112,8 @@ def _file(root: Path, name: str) -> dict[str, Any]:
     return entry
 
 
-def _graph(study: Study, root: Path) -> list[dict[str, Any]]:
-    inputs, results = list(_files(root, INPUTS)), list(_files(root, *RESULTS))
-    profiles = [f"https://w3id.org/ro/wfrun/{name}" for name in _PROFILES]
-    found = versions()
-    programs = [
-        {"@id": f"#{name}", "@type": "SoftwareApplication", "name": name, "softwareVersion": version}
-        for name, version in found.items()
-    ]
-    newest = max((root / name).stat().st_mtime for name in results)
-    ended = str(np.datetime64(int(newest), "s")) + "Z"
+def _study_entries(study: Study, inputs: list[str], results: list[str], ended: str) -> list[dict[str, Any]]:
+    """Return the entries of the metadata file and of the study with the list of its files."""
     return [
         {
             "@id": METADATA,
@@ -142,11 +128,25 @@ def _graph(study: Study, root: Path) -> list[dict[str, Any]]:
             "description": study.config.description or f"Results of the study {study.name}",
             "datePublished": ended,
             "license": {"@id": LICENCE},
-            "conformsTo": [{"@id": name} for name in profiles],
+            "conformsTo": [{"@id": name} for name in PROFILES],
             "mainEntity": {"@id": STUDY_FILE},
             "mentions": {"@id": "#run"},
             "hasPart": [{"@id": name} for name in (*inputs, *results)],
         },
+    ]
+
+
+def _graph(study: Study, root: Path) -> list[dict[str, Any]]:
+    inputs, results = list(_files(root, INPUTS)), list(_files(root, *RESULTS))
+    found = versions()
+    programs = [
+        {"@id": f"#{name}", "@type": "SoftwareApplication", "name": name, "softwareVersion": version}
+        for name, version in found.items()
+    ]
+    newest = max((root / name).stat().st_mtime for name in results)
+    ended = str(np.datetime64(int(newest), "s")) + "Z"
+    return [
+        *_study_entries(study, inputs, results, ended),
         {
             "@id": "#run",
             "@type": "CreateAction",
@@ -166,7 +166,7 @@ def _graph(study: Study, root: Path) -> list[dict[str, Any]]:
         {"@id": LICENCE, "@type": "CreativeWork", "name": "MIT License", "identifier": "MIT"},
         *(
             {"@id": name, "@type": "CreativeWork", "name": f"Workflow Run Crate profile {name[28:]}"}
-            for name in profiles
+            for name in PROFILES
         ),
         *programs,
         *(_file(root, name) for name in (*inputs, *results)),
@@ -209,21 +209,9 @@ def damaged_files(root: Path | str) -> dict[str, str]:
         path = Path(root) / name
         if not path.is_file():
             found[name] = "missing"
-        elif _digest(path) != entry.get("sha256"):
+        elif sha256(path) != entry.get("sha256"):
             found[name] = "changed"
     return found
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """Largest relative difference of each variable of a study that was solved again; 0 is the same to the last bit."""
-
-    differences: dict[str, float]
-
-    @property
-    def same(self) -> bool:
-        """Whether every variable has the same values."""
-        return not any(self.differences.values())
 
 
 def study_of_crate(root: Path | str) -> Study:
@@ -243,13 +231,16 @@ def study_of_crate(root: Path | str) -> Study:
     return load_study(Path(root) / STUDY_FILE, database)
 
 
-def compare_results(before: Path, after: Path) -> Comparison:
-    """Compare two `study.nc`, variable by variable; a variable that one of them lacks differs without bound."""
+def compare_results(before: Path, after: Path) -> dict[str, float]:
+    """Return the largest relative difference of each variable of two `study.nc`.
+
+    0 is the same to the last bit; a variable that one of the files lacks differs without bound.
+    """
     import xarray as xr  # heavy: only this comparison needs it
 
     with xr.open_dataset(before) as one, xr.open_dataset(after) as two:
         names = sorted({*map(str, one.variables), *map(str, two.variables)})
-        return Comparison({name: _difference(one, two, name) for name in names})
+        return {name: _difference(one, two, name) for name in names}
 
 
 def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> float:
@@ -258,9 +249,4 @@ def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> float:
     a, b = one[name].values, two[name].values
     if a.dtype.kind not in "fc":
         return 0.0 if np.array_equal(a, b) else np.inf
-    same = (a == b) | (np.isnan(a) & np.isnan(b))
-    if same.all():
-        return 0.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        apart = np.abs(a - b) / np.fmax(np.abs(a), np.abs(b))
-    return float(np.where(same, 0.0, np.where(np.isnan(apart), np.inf, apart)).max())
+    return largest_difference(a, b)

@@ -174,18 +174,19 @@ def _sync_folder(folder: Path) -> None:
 
 def record_checksum(folder: StudyFolder, path: Path) -> None:
     """Write the SHA-256 of a file, in the format of `sha256sum`, into the folder `plan`."""
-    write_text(folder.checksum(path), f"{_sha256(path)}  ../{path.name}\n")
+    write_text(folder.checksum(path), f"{sha256(path)}  ../{path.name}\n")
 
 
 def matches_checksum(folder: StudyFolder, path: Path) -> bool:
     """Return whether a file is as it was when its checksum was recorded."""
     try:
-        return folder.checksum(path).read_text().split()[:1] == [_sha256(path)]
+        return folder.checksum(path).read_text().split()[:1] == [sha256(path)]
     except (OSError, UnicodeDecodeError):
         return False
 
 
-def _sha256(path: Path) -> str:
+def sha256(path: Path) -> str:
+    """Return the SHA-256 of a file, in hexadecimal digits."""
     with open(path, "rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 

@@ -100,13 +100,14 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     for name in before.layout:
         old = before.columns(name)[0]
         new = again.columns(name)[0] if name in again.layout else np.full(old.shape, np.nan)
-        differences[name] = _difference(old, new)
+        differences[name] = largest_difference(old, new)
     case = {name: row[name].values[0] for name in case_columns(row)}
     case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
     return Repeat(case, dict(options[group[number]]), differences)
 
 
-def _difference(old: np.ndarray, new: np.ndarray) -> float:
+def largest_difference(old: np.ndarray, new: np.ndarray) -> float:
+    """Return the largest relative difference of two arrays of one shape; NaN in one of them alone counts as inf."""
     same = (old == new) | (np.isnan(old) & np.isnan(new))
     if same.all():
         return 0.0

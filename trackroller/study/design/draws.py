@@ -6,7 +6,6 @@ Each function takes the independent factors, the number of samples, the seed and
 
 from __future__ import annotations
 
-import csv
 import itertools
 import warnings
 from collections.abc import Callable, Mapping
@@ -21,6 +20,7 @@ from scipy.stats import qmc
 from trackroller.errors import InputError, unknown_name
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
+from trackroller.study.csv_file import csv_lines
 from trackroller.study.design import arrays, correlation
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
@@ -220,22 +220,17 @@ def _levels(values: np.ndarray) -> tuple[tuple[Any, ...], np.ndarray]:
 
 
 def _table_lines(path: Any) -> tuple[list[str], list[list[str]]]:
-    """Return the names of the columns and the lines of cells."""
+    """Return the names of the columns and the lines of cells; no cell is empty."""
     if path is None or not Path(path).is_file():
         raise InputError("table", path, "the path of a CSV file with one column a factor")
     try:
-        with open(path, newline="", encoding="utf-8-sig") as stream:
-            lines = [line for cells in csv.reader(stream) if any(line := [cell.strip() for cell in cells])]
+        text = Path(path).read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as exc:
         raise InputError("table", str(path), f"UTF-8 text (byte {exc.start} is not)", "Save it as UTF-8.") from None
-    except (csv.Error, OSError) as exc:
-        raise InputError("table", str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
-    if len(lines) < 2:
-        raise InputError("table", str(path), "a CSV with a line of names and at least one case")
-    names = lines[0]
-    if len(set(names)) < len(names) or not all(names):
-        raise InputError("table", ", ".join(names), "a different name for each column")
-    for number, line in enumerate(lines[1:], start=2):
-        if len(line) != len(names) or not all(line):
+    except OSError as exc:
+        raise InputError("table", str(path), f"a readable CSV file ({exc})", "Check its rights.") from None
+    names, lines = csv_lines(text, path, "table", "case")
+    for number, line in enumerate(lines, start=2):
+        if not all(line):
             raise InputError("table", f"{path}, line {number}", f"{len(names)} values, none of them empty")
-    return names, lines[1:]
+    return names, lines

@@ -15,7 +15,6 @@ block.
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -33,6 +32,7 @@ from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
 from trackroller.roller.point_files import files_beside, find_beside
+from trackroller.study.csv_file import csv_lines
 
 LOAD_FIELDS = (
     "radial_force",
@@ -237,25 +237,9 @@ def _check_names(names: list[str]) -> None:
 
 
 def _table(path: Path) -> list[dict[str, Any]]:
-    """Return the blocks of a CSV file: a line of names, then one line for each block; empty cells are left out."""
-    text = read_text(path, "blocks")
-    try:
-        lines = [line for line in csv.reader(text.splitlines()) if any(cell.strip() for cell in line)]
-    except csv.Error as exc:
-        raise InputError("blocks", str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
-    if len(lines) < 2:
-        raise InputError("blocks", str(path), "a CSV with a line of names and at least one block")
-    names = [name.strip() for name in lines[0]]
-    if len(set(names)) < len(names) or not all(names):
-        raise InputError(
-            "blocks", ", ".join(names), "a different name for each column", f"Correct the first line of {path}."
-        )
-    for number, line in enumerate(lines[1:], start=2):
-        if len(line) != len(names):
-            raise InputError(
-                "blocks", f"{path}, line {number}", f"{len(names)} cells are wanted, there are {len(line)}"
-            )
-    return [{n: c.strip() for n, c in zip(names, line, strict=True) if c.strip()} for line in lines[1:]]
+    """Return the blocks of a CSV file, one from each line; empty cells are left out."""
+    names, lines = csv_lines(read_text(path, "blocks"), path, "blocks", "block")
+    return [{n: cell for n, cell in zip(names, line, strict=True) if cell} for line in lines]
 
 
 def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:

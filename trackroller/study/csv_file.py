@@ -1,0 +1,45 @@
+"""Read the CSV files of users: a line of names, then lines with one cell for each name."""
+
+from __future__ import annotations
+
+import csv
+import io
+from pathlib import Path
+
+from trackroller.errors import InputError
+
+
+def csv_lines(text: str, path: Path | str, field: str, what: str) -> tuple[list[str], list[list[str]]]:
+    """Return the names of the columns and the lines of cells; spaces around a cell and empty lines are left out.
+
+    Parameters
+    ----------
+    text : str
+        Content of the file.
+    path : Path or str
+        Its path, for messages.
+    field : str
+        Key of the study or spectrum that names the file, for messages.
+    what : str
+        What a line describes, such as 'case'.
+
+    Raises
+    ------
+    InputError
+        If the file is not readable as CSV, has only one line, repeats a name, or has a line of another length.
+    """
+    try:
+        cells = csv.reader(io.StringIO(text, newline=""))
+        lines = [line for row in cells if any(line := [cell.strip() for cell in row])]
+    except csv.Error as exc:
+        raise InputError(field, str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
+    if len(lines) < 2:
+        raise InputError(field, str(path), f"a CSV with a line of names and at least one {what}")
+    names = lines[0]
+    if len(set(names)) < len(names) or not all(names):
+        remedy = f"Correct the first line of {path}."
+        raise InputError(field, ", ".join(names), "a different name for each column", remedy)
+    for number, line in enumerate(lines[1:], start=2):
+        if len(line) != len(names):
+            raise InputError(field, f"{path}, line {number}", f"{len(names)} cells; there are {len(line)}")
+    return names, lines[1:]
