@@ -262,12 +262,8 @@ def sum_rays(patch, field, place, count, rule, work, out):
                 inv_all *= -rho * deep
                 f_x, f_y = v_x * inv_all, v_y * inv_all
             f_x, f_y = f_x - d_x, f_y - d_y
-            weight = (
-                rule[1, i]
-                * work[WEIGHT + k]
-                * tau
-                * math.sqrt(max((work[FAR + k] - tau) * (tau - work[NEAR + k]), 0.0))
-            )
+            inside = max((work[FAR + k] - tau) * (tau - work[NEAR + k]), 0.0)
+            weight = rule[1, i] * work[WEIGHT + k] * tau * math.sqrt(inside)
             q_e, q_t = weight * (f_x * c + f_y * s), weight * (f_y * c - f_x * s)
             wz, inv = inv * rho, inv * deep
             inv_2 = inv * inv
