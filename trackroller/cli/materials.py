@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from rich.console import Console
+from rich.table import Table
+
 from trackroller.cli.case import settings_of
 from trackroller.materials import add_material, load_database
 from trackroller.materials.tables import friction_rows, material_details, material_rows
 
 
 def _table(rows: list[dict[str, str]]) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
     table = Table(*(rows[0] if rows else ()))
     for row in rows:
         table.add_row(*(str(row.get(head, "")) for head in rows[0]))

@@ -5,17 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from rich.console import Console
+from rich.table import Table
 
+from trackroller.cli.case import case_of, is_study
+from trackroller.roller.case import to_table
+from trackroller.roller.options import Options
 from trackroller.study.config import load_study
 from trackroller.study.cost import bytes_a_case, duration, size
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.explain import explain as stages_of
+from trackroller.study.plan import case_options, chunk_size
+from trackroller.study.status import status_of
 
 MOST = 20_000  # cases of a study that --explain looks at
 
 
 def print_plan(path: Path | None, results: Path, explain: bool, words: list[str], no_shortcuts: bool) -> None:
     """Print the plan of a study file, or the stages of a case file or of the paper's example with key=value words."""
-    from trackroller.cli.case import is_study
-
     if path is None or not is_study(path):
         _print_case(path, words, no_shortcuts)
         return
@@ -27,9 +34,6 @@ def print_plan(path: Path | None, results: Path, explain: bool, words: list[str]
 
 def _print_study(path: Path, results: Path) -> None:
     """Print the number of cases and chunks, the expected time and the disk space."""
-    from trackroller.study.plan import chunk_size
-    from trackroller.study.status import status_of
-
     study = load_study(path)
     status = status_of(study, results)
     chunk = chunk_size(study, status.missing)
@@ -45,10 +49,6 @@ def _print_study(path: Path, results: Path) -> None:
 
 
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
-    from trackroller.cli.case import case_of
-    from trackroller.roller.case import to_table
-    from trackroller.roller.options import Options
-
     case, told = case_of(path, words)
     if no_shortcuts:
         told["shortcuts"] = False
@@ -56,11 +56,6 @@ def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None
 
 
 def _explain_study(path: Path, no_shortcuts: bool) -> None:
-    from trackroller.roller.case import to_table
-    from trackroller.roller.options import Options
-    from trackroller.study.design.entries import OPTION_FACTORS
-    from trackroller.study.plan import case_options
-
     study = load_study(path)
     design = study.design()
     table = to_table(design.drop_vars(list(design.coords)), study.materials)
@@ -80,14 +75,9 @@ def _explain_study(path: Path, no_shortcuts: bool) -> None:
 
 
 def _print_stages(table, options) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    from trackroller.study.explain import explain
-
     console = Console(width=None if Console().is_terminal else 140)
     shown = Table("stage", "runs", "of", "why")
     shown.columns[1].justify = shown.columns[2].justify = "right"
-    for stage in explain(table, options):
+    for stage in stages_of(table, options):
         shown.add_row(stage.name, f"{stage.count}" if stage.runs else "-", f"{stage.total} {stage.unit}", stage.why)
     console.print(shown)

@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from rich.console import Console
+from rich.table import Table
 
 from trackroller.cli.case import writable, write_result
 from trackroller.parameters import REGIME_LABELS
@@ -31,9 +33,6 @@ def run_spectrum(path: Path, json: bool, out: Path | None) -> None:
 
 def print_spectrum(ds: xr.Dataset) -> None:
     """Print the damage of each block, the lives in shifts, and sentences on their causes."""
-    from rich.console import Console
-    from rich.table import Table
-
     console = Console(width=None if Console().is_terminal else 140)
     title = f"{ds.attrs['title']}: damage per shift, in the track of each body that fails first"
     table = Table("block", "distance [m]", "regime", title=title, title_justify="left")

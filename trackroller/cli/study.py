@@ -5,21 +5,23 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
 from trackroller.study.config import Study, load_study
 from trackroller.study.cost import duration
 from trackroller.study.crate import write_crate
 from trackroller.study.files import StudyFolder
+from trackroller.study.plan import study_folder
+from trackroller.study.repeat import repeat_case
+from trackroller.study.run import run_study
+from trackroller.study.status import find_study, status_of
 
 
 def run_with_progress(
     path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
 ) -> None:
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    from trackroller.study.run import run_study
-
     study = load_study(path)
     console = Console(file=sys.stderr, soft_wrap=True)
     columns = (
@@ -61,9 +63,6 @@ def run_with_progress(
 
 def make_report(name: str, results: Path) -> None:
     """Make analysis, figures and report of a study that was run."""
-    from trackroller.study.plan import study_folder
-    from trackroller.study.status import find_study
-
     study = find_study(name, results)
     print(_report(study, study_folder(study.name, results)))
 
@@ -86,8 +85,6 @@ def _report(study: Study, folder: StudyFolder) -> Path:
 
 def print_status(name: str, results: Path) -> None:
     """Print how many cases of a study are done, missing and failed, and the failures by cause."""
-    from trackroller.study.status import find_study, status_of
-
     study = find_study(name, results)
     status = status_of(study, results)
     print(
@@ -111,9 +108,6 @@ def print_status(name: str, results: Path) -> None:
 
 def print_repeat(name: str, case: int, results: Path) -> int:
     """Solve a case again and compare; return the exit code, 0 if every number equals the stored one."""
-    from trackroller.study.repeat import repeat_case
-    from trackroller.study.status import find_study
-
     again = repeat_case(find_study(name, results), case, results)
     print(again.command())
     if again.largest == 0.0:

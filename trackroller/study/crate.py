@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database, load_database
@@ -29,8 +30,6 @@ from trackroller.study.provenance import versions
 from trackroller.study.repeat import largest_difference
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from trackroller.study.config import Study
 
 METADATA = "ro-crate-metadata.json"
@@ -236,8 +235,6 @@ def compare_results(before: Path, after: Path) -> dict[str, float]:
 
     0 is the same to the last bit; a variable that one of the files lacks differs without bound.
     """
-    import xarray as xr  # heavy: only this comparison needs it
-
     with xr.open_dataset(before) as one, xr.open_dataset(after) as two:
         names = sorted({*map(str, one.variables), *map(str, two.variables)})
         return {name: _difference(one, two, name) for name in names}
