@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import time
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,11 @@ def test_study_to_report_then_nothing_and_after_a_change_only_what_depends_on_it
     assert "12 of 12 cases solved (100 %)" in told
     assert "Report: results/tiny/report.html, made in" in told
     out = place / "results" / "tiny"
+    run("--report", "everything.zip")
+    with zipfile.ZipFile(place / "everything.zip") as archive:
+        held = {Path(name).name for name in archive.namelist()}
+        page = archive.read("everything/report.html").decode()
+    assert {p.name for p in (out / "figures").glob("*.svg")} < held and "can be sent by mail" in page
     assert {"design.nc", "study.nc", "sensitivity.nc", "report.html"} <= set(read_crate(out))
     assert damaged_files(out) == {}
     assert list((out / "figures").glob("*.svg")) and list((out / "figures").glob("*.png"))

@@ -25,7 +25,13 @@ rule figures:
             "trackroller.report.figures.sensitivity",
         ),
     output:
-        directory(f"{RESULTS}/figures"),
+        report(
+            directory(f"{RESULTS}/figures"),
+            patterns=["{name}.svg"],
+            caption="../report/figure.rst",
+            category="Figures",
+            labels={"figure": "{name}"},
+        ),
     log:
         f"{RESULTS}/logs/figures.log",
     conda:
@@ -41,7 +47,12 @@ rule report:
         sensitivity=f"{RESULTS}/sensitivity.nc",
         code=digest_file(f"{RESULTS}/code", "trackroller.report.page"),
     output:
-        f"{RESULTS}/report.html",
+        report(
+            f"{RESULTS}/report.html",
+            caption="../report/report.rst",
+            category="Report",
+            labels={"file": "report of the study"},
+        ),
     log:
         f"{RESULTS}/logs/report.log",
     conda:
