@@ -108,8 +108,8 @@ def render() -> str:
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += [
         "### contact_model_used, stopped\n",
-        "`contact_model_used` is the model that solved the case. `kalker` at accuracy `preview` is served by its",
-        "table, and `kalker_table` outside the table's range by `kalker`: "
+        "`contact_model_used` is the model that solved the case. The table serves `kalker` at accuracy",
+        "`preview` and for forces within a tolerance that it keeps. Outside its range `kalker` serves `kalker_table`: "
         + ", ".join(f"{i} {name}" for i, name in enumerate(p.CONTACT_MODELS))
         + ".",
         "`stopped` (with `stop_if`): 1 where the condition holds.\n",

@@ -15,7 +15,8 @@ import pytest
 
 import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
-from trackroller.roller.options import Options
+from trackroller.roller.accuracy import table_errors
+from trackroller.roller.options import Options, model_in_use
 from trackroller.study.config import parse_study
 from trackroller.study.plan import case_options
 
@@ -44,6 +45,16 @@ def test_contact_models_keep_their_numbers():
 def test_a_former_word_stands_for_its_successor_with_a_warning():
     with pytest.warns(FutureWarning, match="'auto' is no longer a choice of its own; 'kalker'"):
         assert Options(contact_model="auto").contact_model == "kalker"
+
+
+def test_the_table_serves_the_exact_theory_where_its_measured_error_suffices():
+    def used(accuracy, *outputs, law=""):
+        return model_in_use(Options(contact_model="kalker", accuracy=accuracy, outputs=outputs or ("forces",)), law)
+
+    bound = table_errors().p99
+    assert used(1.1 * bound) == used(1.1 * bound, "forces", "contact") == used("preview", "life") == "kalker_table"
+    assert used(0.8 * bound) == used("standard") == used(0.2, "forces", "peak_stress") == used(0.2, "friction_work")
+    assert used("standard") == used("preview", law='{"kind": "linear", "lowest": 0.5, "speed": 50}') == "kalker"
 
 
 def test_a_spin_model_needs_the_contact_model_that_has_one():

@@ -153,7 +153,7 @@ _OPTIONS = (
         {
             "sliding": "Coulomb friction at every point against the local creepage, as published; no adhesion area",
             "fastsim": "simplified theory of rolling contact (Kalker's FASTSIM)",
-            "kalker": "exact theory of rolling contact; at accuracy preview by its table",
+            "kalker": "exact theory of rolling contact; by its table at accuracy preview or if it keeps the tolerance",
             "kalker_table": "table of solutions of the exact theory; outside its range the exact theory",
         },
         factor=True,

@@ -9,9 +9,10 @@ from typing import Any
 from trackroller.contact.friction_laws import law_of
 from trackroller.errors import InputError
 from trackroller.parameters import OPTIONS
-from trackroller.roller.accuracy import Accuracy, accuracy_settings
+from trackroller.roller.accuracy import PRESETS, Accuracy, accuracy_settings, rounded_up, table_errors
 from trackroller.roller.stop import parse_condition
 
+MEASURED_OF_TABLE = {"forces", "contact"}  # outputs whose errors by the table of the exact theory are measured
 _Fields = make_dataclass(
     "_Fields", [(option.name, Any, field(default=option.default)) for option in OPTIONS.values()], frozen=True
 )
@@ -126,10 +127,18 @@ def model_in_use(options: Options, friction_law: str) -> str:
 
     Notes
     -----
-    `kalker` at accuracy preview takes its table where the table serves: Hertzian patches, constant friction and the
-    slip of the tangent plane.
+    `kalker` takes its table where the table serves: Hertzian patches, constant friction and the slip of the tangent
+    plane, at accuracy preview or within a tolerance of forces that the table was measured to keep.
     """
-    if options.contact_model != "kalker" or options.settings.name != "preview":
+    if options.contact_model != "kalker" or not _table_suffices(options):
         return options.contact_model
     fits = options.normal == "hertz" and "profile" not in options.slip_terms and law_of(friction_law).is_constant
     return "kalker_table" if fits else "kalker"
+
+
+def _table_suffices(options: Options) -> bool:
+    """Return whether the table of the exact theory alone is as exact as asked for."""
+    settings = options.settings
+    if settings.name in PRESETS:
+        return settings.name == "preview"
+    return set(options.outputs) <= MEASURED_OF_TABLE and rounded_up(table_errors().p99) <= settings.tolerance

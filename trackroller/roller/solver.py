@@ -69,8 +69,8 @@ def solve(
         "peak_stress", "life", "tractions", "subsurface".
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
-        "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). At accuracy "preview",
-        "kalker" uses its table. The former name "auto" stands for "kalker".
+        "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). "kalker" uses its table at
+        accuracy "preview", and for forces within a tolerance that the table keeps. "auto" is its former name.
     spin_model : str
         Position of the spin pole, assumptions 0, 1, 2 of the publication: "concentric", "edge", "skewed". It matters to
         "sliding" only.
@@ -241,7 +241,8 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     ds = build({name: block.values[name] for name in keep}, flags, attrs, single)
-    for name, told in error_attributes(options.settings, options.contact_model).items():
+    tabled = np.any(block.model == CONTACT_MODELS.index("kalker_table"))
+    for name, told in error_attributes(options.settings, "kalker_table" if tabled else options.contact_model).items():
         if name in ds:
             ds[name].attrs.update(told)
     return ds
