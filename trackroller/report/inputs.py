@@ -18,49 +18,30 @@ Table = list[dict[str, Any]]
 
 def factor_table(view: StudyView) -> Table:
     """List the factors: name, symbol, unit, values as set or as found, number of levels."""
-    given = view.study.get("factors", {})
+    found = view.study.get("factors", {})
+    given = found if isinstance(found, Mapping) else {}
     rows = []
     for name in view.factors:
-        levels, p = view.levels(name), PARAMETERS.get(name)
-        few = view.grid or len(levels) <= 12 or not view.numeric(name)
-        if few:
+        levels = view.levels(name)
+        if view.grid or len(levels) <= 12 or not view.numeric(name):
             words = name in ("motor_force", "guide_curve_radius")
             values = ", ".join(level_text(name, v, unit=words) for v in levels)
         else:
             values = _range(levels)
-        rows.append(
-            {
-                "name": capital(long_name(name)),
-                "symbol": _symbol(p.symbol) if p else ("", ""),
-                "unit": unit_text(p.unit) if p else "",
-                "values": values,
-                "count": len(levels),
-                "spec": _spec(given.get(name)) if isinstance(given, Mapping) else "",
-            }
-        )
-    return rows + _derived(view, given if isinstance(given, Mapping) else {})
-
-
-def _derived(view: StudyView, given: Mapping[str, Any]) -> Table:
-    """Rows of parameters that follow from the factors: their range and the expression."""
-    rows = []
-    for name, spec in given.items():
-        if name in view.factors or name not in view.table or not _spec(spec).startswith("="):
-            continue
-        levels, p = view.levels(name), PARAMETERS.get(name)
-        if not levels:
-            continue
-        rows.append(
-            {
-                "name": capital(long_name(name)),
-                "symbol": _symbol(p.symbol) if p else ("", ""),
-                "unit": unit_text(p.unit) if p else "",
-                "values": _range(levels) if view.numeric(name) else ", ".join(map(str, levels[:6])),
-                "count": len(levels),
-                "spec": _spec(spec),
-            }
-        )
+        rows.append(_row(name, levels, values, given.get(name)))
+    for name, spec in given.items():  # parameters that follow from the factors, with their expression
+        if name not in view.factors and name in view.table and _spec(spec).startswith("=") and view.levels(name):
+            levels = view.levels(name)
+            values = _range(levels) if view.numeric(name) else ", ".join(map(str, levels[:6]))
+            rows.append(_row(name, levels, values, spec))
     return rows
+
+
+def _row(name: str, levels: list[Any], values: str, spec: Any) -> dict[str, Any]:
+    p = PARAMETERS.get(name)
+    told = {"name": capital(long_name(name)), "symbol": _symbol(p.symbol) if p else ("", "")}
+    told |= {"unit": unit_text(p.unit) if p else "", "values": values}
+    return told | {"count": len(levels), "spec": _spec(spec)}
 
 
 def _range(levels: list[float]) -> str:

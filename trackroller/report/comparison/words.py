@@ -42,42 +42,50 @@ def sentences(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
     paired : dataset of `trackroller.report.comparison.pairs`
     tolerance : error [1] up to which a model is good enough
     """
-    return overview(paired, tolerance) + details(paired, tolerance)
+    if not paired.sizes["design"]:
+        return [overview(paired, tolerance)]
+    return [overview(paired, tolerance), *short(paired, tolerance), *details(paired, tolerance)]
 
 
-def overview(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """Say how the models were compared, and how good each model is; or why nothing can be said."""
+def overview(paired: xr.Dataset, tolerance: float = GOOD) -> str:
+    """Say how the models were compared, or why they cannot be compared."""
     reference, number = paired.attrs["reference"], paired.sizes["design"]
     left = f" {paired.attrs['left']} cases have no partner and are left out." if paired.attrs["left"] else ""
     if not number:
-        return [
+        return (
             f"The contact models cannot be compared: no design was solved with {reference} and another model. "
             "A grid, an inner/outer array or a table has such pairs; a sample that draws the model has none."
-        ]
-    found = errors(paired)
-    said = [
+        )
+    return (
         f"Errors are taken against {_exact(reference)} where both models roll, in {_designs(number)} that differ "
         f"in nothing but the model; good enough means within {percent(tolerance)}, at a level "
         f"of a factor in 9 of 10 designs; in brackets the errors.{left}"
-    ]
-    models = map(str, found["contact_model"].values)
-    return said + [_shares(found.sel(contact_model=m), paired, m, tolerance) for m in models]
+    )
 
 
 def short(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
     """Say in one sentence a model which share of the designs is within the tolerance."""
     if not paired.sizes["design"]:
-        return overview(paired, tolerance)
+        return [overview(paired, tolerance)]
     found, said = errors(paired), []
+    exact = paired["regime"].sel(contact_model=paired.attrs["reference"]).values
     for model in map(str, found["contact_model"].values):
-        one, parts = found.sel(contact_model=model), []
-        for q in measured(one):
-            if q.name in ("normal_force", "friction_force", "friction_energy", "peak_stress", "life"):
-                parts.append(f"{q.words.split(' (')[0]} in {percent(_share(one[q.name].values, tolerance))}")
-        if parts:
-            told = f"{', '.join(parts)} of {_designs(_compared(one))}"
-            said.append(f"{NAMES[model]} is within {percent(tolerance)} of {found.attrs['reference']}: {told}.")
-    return said or overview(paired, tolerance)[1:]
+        one = found.sel(contact_model=model)
+        if _compared(one) < FEWEST:
+            rolls = f"{_compared(one) or 'none'} of {_designs(paired.sizes['design'])} rolls"
+            said.append(f"{NAMES[model]}: too little to compare, for {rolls}.")
+            continue
+        parts = [
+            f"{q.words.split(' (')[0]} in {percent(_share(one[q.name].values, tolerance))}"
+            for q in measured(one)
+            if q.name in ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
+        ]
+        told = f"{', '.join(parts)} of {_designs(_compared(one))}"
+        own = paired["regime"].sel(contact_model=model).values
+        unlike = int(((own >= 0) & (exact >= 0) & (own != exact)).sum())
+        more = f" In {_designs(unlike)} the two are not in the same regime." if unlike else ""
+        said.append(f"{NAMES[model]} is within {percent(tolerance)} of {found.attrs['reference']}: {told}.{more}")
+    return said
 
 
 def details(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
@@ -101,7 +109,7 @@ def report_section(ds: xr.Dataset) -> dict[str, Any]:
     paired = pairs(ds)
     if paired is None:
         return {}
-    said, rows = overview(paired), []
+    rows: list[tuple[str, list[str]]] = []
     if paired.sizes["design"]:
         found = errors(paired)
         for model in map(str, found["contact_model"].values):
@@ -111,7 +119,13 @@ def report_section(ds: xr.Dataset) -> dict[str, Any]:
                     cells = [percent(float(np.mean(e <= GOOD))), *(percent(float(v)) for v in _spread(e)), str(e.size)]
                     rows.append((f"{model}: {q.words}", cells))
     columns = [f"designs within {percent(GOOD)}", "median error", "90 % below", "largest", "designs"]
-    return {"short": short(paired), "overview": said[:1], "details": details(paired), "columns": columns, "rows": rows}
+    return {
+        "short": short(paired),
+        "overview": [overview(paired)],
+        "details": details(paired),
+        "columns": columns,
+        "rows": rows,
+    }
 
 
 def _exact(reference: str) -> str:
@@ -133,26 +147,6 @@ def _compared(one: xr.Dataset) -> int:
 def _spread(e: np.ndarray) -> tuple[float, float, float]:
     """Median, what nine in ten stay below, and the largest; each is an error that was found."""
     return tuple(float(np.percentile(e, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]
-
-
-def _shares(one: xr.Dataset, paired: xr.Dataset, model: str, tolerance: float) -> str:
-    """One sentence of all designs: how many are within the tolerance in each quantity."""
-    compared = _compared(one)
-    if compared < FEWEST:
-        return (
-            f"{NAMES[model]}: too little to compare, for {compared or 'none'} of "
-            f"{_designs(paired.sizes['design'])} rolls."
-        )
-    parts = []
-    for q in measured(one):
-        e = _rolling(one[q.name])
-        middle, most, _ = _spread(e)
-        share = percent(float(np.mean(e <= tolerance)))
-        parts.append(f"{q.words} in {share} (half below {percent(middle)}, 90 % below {percent(most)})")
-    own, exact = (paired["regime"].sel(contact_model=m).values for m in (model, paired.attrs["reference"]))
-    unlike = int(((own >= 0) & (exact >= 0) & (own != exact)).sum())
-    more = f" In {_designs(unlike)} the two are not in the same regime." if unlike else ""
-    return f"{NAMES[model]} is good enough, of {_designs(compared)}, for {', '.join(parts)}.{more}"
 
 
 def _by_drive(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
