@@ -1,6 +1,6 @@
 """Made-up results with the shape of a gathered study, for tests of figures and report.
 
-The formulas only have the right tendencies (Hertz exponents, Woehler lines, Coulomb limits).
+The formulas only have the right tendencies (Hertz exponents, S-N curves, Coulomb limits).
 """
 
 from __future__ import annotations

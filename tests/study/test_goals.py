@@ -18,7 +18,7 @@ from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
 from trackroller.numerics import expressions
 from trackroller.report import sentences as words
-from trackroller.report.figures.woehler import curve, woehler
+from trackroller.report.figures.sn_diagram import curve, sn_diagram
 from trackroller.report.numbers import share
 from trackroller.report.page import contents
 from trackroller.report.view import StudyView
@@ -278,7 +278,7 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
         "base": {"roller_material": "steel", "guide_material": "steel"},
     }
     ds.attrs = {"study": json.dumps(study), "materials": json.dumps({"steel": STEEL | {"scatter_in_cycles": 4.0}})}
-    _, info = woehler(StudyView.of(ds))
+    _, info = sn_diagram(StudyView.of(ds))
     below, above = (
         int(((np.arange(40) % 4 > 0) & hit).sum()) for hit in (stress[:, 0, 0] < 360, stress[:, 0, 0] > 720)
     )

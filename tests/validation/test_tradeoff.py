@@ -110,7 +110,7 @@ def test_presets_are_rungs_in_order():
 
 
 def test_results_carry_their_expected_error():
-    """Attributes tell the measured error of the setting, and life errs by the Woehler exponent times its peak."""
+    """Attributes state the measured error of the setting; that of life is k times that of the peak (S-N curve)."""
     ds = solve_sliding(tr.Case(), accuracy=1e-2)
     assert (
         0 < ds.peak_stress.attrs["expected_relative_error"] <= ds.peak_stress.attrs["relative_error_99_percent"] < 0.02

@@ -139,7 +139,7 @@ def accuracy_settings(
     ----------
     accuracy : preset; or relative tolerance, in (0, 1), of what is asked for: F_N relative to itself, F_T and F_A to
         mu F_N, M_R to mu F_N sqrt(a b), friction work and peak stress to themselves. Measured to hold in 99 % of the
-        cases; life errs by the Woehler exponent times the peak. `Accuracy` objects pass.
+        cases; life errs by the exponent k of the S-N curve times the peak. `Accuracy` objects pass.
     contact_model : the ladder to choose from; the error of discretisation is meant, not that of the model
     outputs : groups of results that have to meet it
 

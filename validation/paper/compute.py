@@ -133,5 +133,5 @@ def results() -> dict[str, Any]:
 
 
 def life_ratio(of: float, to: float, exponent: float) -> float:
-    """Life at the stress `of` over that at the stress `to` on a Woehler line of this exponent."""
+    """Life at the stress `of` over that at the stress `to` on an S-N curve of this exponent."""
     return (to / of) ** exponent

@@ -230,8 +230,8 @@ def _stage_table(records: list[Record]) -> Block:
 
 def _life_words(life: dict[str, float]) -> str:
     words = (
-        "Life follows the peak by the Woehler exponent k: a relative error e of the peak is one of k e in life "
-        "(`life_error_estimate` tells it case by case). "
+        "A relative error e of the peak is an error of k e in life, with the exponent k of the S-N curve "
+        "(`life_error_estimate` states it for each case). "
     )
     if life:
         words += (

@@ -171,7 +171,7 @@ def _thinned(rows: list[Any], table: np.ndarray) -> list[Any]:
 
 
 def life_against_peak(ds: xr.Dataset) -> dict[str, float]:
-    """Ratio of the errors of life and of the peak in the searches: the Woehler exponent, for small errors."""
+    """Ratio of the errors of life and of the peak in the searches: the exponent of the S-N curve, for small errors."""
     search = ds.where((ds["stage"] == "peak") & (ds["method"] == "search"), drop=True)
     peak = search["error"].sel(quantity="peak_stress").values
     life = search["error"].sel(quantity="life").values

@@ -29,14 +29,14 @@ from trackroller.report.figures.sensitivity import (
     overview,
     tornado,
 )
-from trackroller.report.figures.woehler import woehler
+from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.known_errors import FRICTION_OUTPUTS, friction_error
 from trackroller.report.view import StudyView
 from trackroller.study.files import WorkError
 
 log = logging.getLogger(__name__)
 Draw = Callable[[], "tuple[Any, style.FigureInfo] | None"]
-OF_CASES = (by_factor, life_map, stress_against_fit, woehler, forces_against_axial, regime_map)
+OF_CASES = (by_factor, life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)
 FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
 

@@ -1,4 +1,4 @@
-"""The S-N diagram (Wöhler lines) of each body with the operating points of a study."""
+"""The S-N diagram (Wöhler diagram) of each body with the operating points of a study."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def scatters(material: Mapping[str, Any]) -> bool:
     return material.get("scatter_in_cycles") is not None or material.get("scatter_in_stress") is not None
 
 
-def woehler(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
 
     A body of which no life lies on the axis gets no panel: a heap of marks at the edge says nothing.
@@ -185,7 +185,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Any], rule: str, top
         most, limit = (np.array([line_of(known[n])[i] if n in known else np.nan for n in names]) for i in (0, 1))
         said.append(strength(body, view.column(f"peak_stress_{body}"), limit, most, view.rolling))
     texts = [s.text for s in said if s] + [_scatter_words(known, names) for _, names in shown[:1]]
-    return style.FigureInfo("woehler", caption, " ".join(t for t in texts if t))
+    return style.FigureInfo("sn_diagram", caption, " ".join(t for t in texts if t))
 
 
 def _scatter_words(known: Mapping[str, Any], names: Points) -> str:
