@@ -14,6 +14,7 @@ from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.report import choices, parts
 from trackroller.report import sentences as words
 from trackroller.report.effects import effect_of
+from trackroller.report.enough import samples
 from trackroller.report.view import StudyView
 from trackroller.study.config import parse_study
 
@@ -42,6 +43,7 @@ def analysis(rng, method):
     if method == "morris":
         ds["sigma"] = (dims, value * rng.uniform(0, 2, shape))
     ds["take_times"] = ("output", rng.choice([1.0, 1.0, 4.0, 8.0, np.nan], 2))
+    ds["half_width"] = 0.05 * np.sqrt(ds["take_times"]) * rng.uniform(0.75, 1.0, 2)
     ds["note"] = ("output", np.array(["all rows used"] * 2, dtype=object))
     ds = ds.assign_coords(
         factor=np.array([n.replace(" ", "_") for n in NAMES[:count]], dtype=object),
@@ -80,14 +82,25 @@ def test_every_sentence_on_indices_is_true(method):
         for output in map(str, sens["output"].values):
             kinds |= check_indices(sens, output, INDICES[method])
         check_leads(sens, INDICES[method])
-        said = words.samples(sens, 512)
-        needed = sens["take_times"].values[np.isfinite(sens["take_times"].values)]
-        assert (said is None) == (needed.size == 0)
-        if said is not None:
-            more = needed.max()
-            assert said.text.startswith("Yes" if more <= 1 else "No")
-            assert more <= 1 or f"`samples: {int(512 * more)}`" in said.text
+        check_samples(sens, samples(sens, 500))
     assert "index" in kinds
+
+
+def check_samples(sens, said):
+    """Yes or no by the widest interval of all outputs; the number and its half width by one over the root."""
+    times, half = sens["take_times"].values, sens["half_width"].values
+    if sens.attrs["method"] == "grid" or np.isnan(times).all():
+        assert said is None
+        return
+    more = np.nanmax(times)
+    widest = np.nanmax(half[times == more])
+    told = [float(t) / 100 for t in re.findall(r"± ([\d.]+) %", said.text)]
+    assert told[0] == pytest.approx(widest, rel=0.06)
+    assert said.text.startswith("Yes" if more <= 1 else "No")
+    if more > 1:
+        asked = 512 if sens.attrs["method"] == "saltelli" else 500
+        assert f"`samples: {int(asked * more)}`" in said.text
+        assert told[1] == pytest.approx(widest / np.sqrt(more), rel=0.06)
 
 
 def check_indices(sens, output, index):

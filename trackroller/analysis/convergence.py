@@ -50,6 +50,13 @@ def course(estimate: Callable[[int], Estimates], at: Sequence[int] | np.ndarray,
     return {f"{name}_course{end}": np.stack([row[name + end] for row in rows]) for name, end in keys}
 
 
+def half_width(low: np.ndarray, high: np.ndarray) -> float:
+    """Return the half width of the widest interval; NaN if none is known."""
+    half = (np.asarray(high) - np.asarray(low)) / 2
+    half = half[np.isfinite(half)]
+    return float(half.max()) if half.size else math.nan
+
+
 def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
     """Return the factor on the sample size that brings the widest interval to a target.
 
@@ -67,11 +74,9 @@ def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
     The half width falls as one over the root of the samples. A Sobol sequence does better, so the factor is
     conservative.
     """
-    half = (np.asarray(high) - np.asarray(low)) / 2
-    half = half[np.isfinite(half)]
-    if half.size == 0 or not target > 0:
+    times = (half_width(low, high) / target) ** 2 if target > 0 else math.nan
+    if math.isnan(times):
         return math.nan
-    times = float((half.max() / target) ** 2)
     return 1.0 if times <= 1.0 else float(2 ** math.ceil(math.log2(times) - 1e-9))
 
 

@@ -222,31 +222,32 @@ def _quality(
     share = np.array([one.used / max(1, one.total) for one in found])
     unit = _UNIT.get(design.method, "rows")
     notes = [note(column, one.used, one.total, unit) for column, one in zip(columns, found, strict=True)]
-    times = [_times(one.estimates, design.method) for one in found]
+    bounds = [_bounds(one.estimates, design.method) for one in found]
     if design.meta.get("groups"):
-        bounds = result["group_ST_low"].values, result["group_ST_high"].values
-        times = [convergence.take_times(low, high, convergence.HALF_WIDTH) for low, high in zip(*bounds, strict=True)]
+        bounds = list(zip(result["group_ST_low"].values, result["group_ST_high"].values, strict=True))
+    wanted = convergence.HALF_WIDTH_MORRIS if design.method == "morris" else convergence.HALF_WIDTH
+    times = [convergence.take_times(*both, wanted) for both in bounds]
+    half = [convergence.half_width(*both) for both in bounds]
     return {
         name: ("output", values, {"long_name": words} | ({} if values.dtype == object else {"units": "1"}))
         for name, values, words in (
             ("used_share", share, "share of the rows that the indices use"),
             ("reliable", (share >= RELIABLE).astype(np.int8), f"1 where at least {RELIABLE:g} of the rows are used"),
             ("note", np.array(notes, dtype=object), "rows left out, and why"),
+            ("half_width", np.array(half), "half width of the widest interval (of mu*: over the largest mu*)"),
             ("take_times", np.array(times), "factor on the samples after which the intervals are narrow enough"),
         )
     }
 
 
-def _times(out: indices.Estimates, method: str) -> float:
-    name = {"saltelli": "ST", "morris": "mu_star"}.get(method, "first")
-    if name not in out or method == "grid":
-        return float("nan")
-    target = convergence.HALF_WIDTH
-    if method == "morris":
-        largest = np.nanmax(out["mu_star"], initial=0.0)
-        target = convergence.HALF_WIDTH_MORRIS * float(largest)
-    bounds = [(out[f"{n}_low"], out[f"{n}_high"]) for n in (name, "S1") if f"{n}_low" in out]
-    return max(convergence.take_times(low, high, target) for low, high in bounds)
+def _bounds(out: indices.Estimates, method: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bounds of the indices that must be narrow, as shares of the variance or of the largest mu*."""
+    names = [n for n in ({"saltelli": "ST", "morris": "mu_star"}.get(method, "first"), "S1") if f"{n}_low" in out]
+    if method == "grid" or not names:
+        return np.full(1, np.nan), np.full(1, np.nan)
+    low, high = (np.concatenate([out[f"{name}_{end}"] for name in names]) for end in ("low", "high"))
+    whole = float(np.nanmax(out["mu_star"], initial=0.0)) if method == "morris" else 1.0
+    return (low / whole, high / whole) if whole > 0 else (low * np.nan, high * np.nan)
 
 
 def analyse(

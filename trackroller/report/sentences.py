@@ -160,25 +160,6 @@ def _range_words(sens: xr.Dataset, output: str, ranks: list[Rank]) -> str:
     return text + "."
 
 
-def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
-    """Say whether the samples suffice, and if not, which number to write into the study file.
-
-    Parameters
-    ----------
-    asked : `samples` of the study file, 0 for a design without samples
-    """
-    needed = {str(o): _times(sens, str(o)) for o in sens["output"].values} if "take_times" in sens else {}
-    needed = {name: value for name, value in needed.items() if np.isfinite(value)}
-    if not needed or not asked:
-        return None
-    worst = max(needed, key=lambda name: needed[name])
-    values = {"take_times": needed[worst], "output": worst, "asked": asked}
-    if needed[worst] <= 1:
-        return Sentence("enough", "Yes: the indices of all outputs have converged.", values)
-    text = f"No: the indices of {of_output(sens, worst)} have not converged. Write `samples: "
-    return Sentence("more", f"{text}{int(needed[worst] * asked)}` into the study file.", values)
-
-
 def convergence(sens: xr.Dataset, output: str) -> Sentence:
     """Say how wide the widest interval is, and whether there were samples enough."""
     ranks, more = order(sens, output), _times(sens, output)

@@ -10,6 +10,7 @@ from trackroller.report import choices, parts
 from trackroller.report import sentences as words
 from trackroller.report.aims import target
 from trackroller.report.claims import Sentence
+from trackroller.report.enough import samples
 from trackroller.report.findings import best_design, occurrence, valid_designs
 from trackroller.report.known_errors import accuracy, friction_error, full_sliding
 from trackroller.report.numbers import capital, count
@@ -46,7 +47,7 @@ def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> lis
                 *(Sentence("models", text) for text in models),
             ],
         ),
-        ("Enough samples?", [enough(view, sens)]),
+        ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
 
@@ -71,11 +72,3 @@ def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
         return [choices.robustness(sens, lives[0])] if lives else []
     ranked = [n for n in [*LIVES, *names] if n in names and words.order(sens, n)]
     return [words.decides(sens, ranked[0]), *parts.sentences(sens, ranked[0])] if ranked else []
-
-
-def enough(view: StudyView, sens: xr.Dataset | None) -> Sentence | None:
-    """Say whether the samples suffice; designs without samples need no answer."""
-    asked = view.study.get("samples")
-    if sens is None or not isinstance(asked, int) or words.robust_design(sens):
-        return None
-    return words.samples(sens, asked)

@@ -1,0 +1,87 @@
+"""The number of samples that the report asks for: enough on functions with known indices, and not far too many."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from trackroller.analysis.sensitivity import analyse_dataset
+from trackroller.report.enough import samples
+from trackroller.study.config import parse_study
+
+PI = np.pi
+CARRIERS = {
+    "axial_force": {"uniform": [-PI, PI]},
+    "motor_force": {"uniform": [-PI, PI]},
+    "velocity": {"uniform": [1.0, 1.0 + 2 * PI]},
+}
+V = np.array([0.5 * (1 + 0.1 * PI**4 / 5) ** 2, 49 / 8, 8 * 0.01 * PI**8 / 225])  # Ishigami, a = 7, b = 0.1
+EXACT = {"ST": np.array([V[0] + V[2], V[1], V[2]]) / V.sum(), "first": np.array([V[0], V[1], 0]) / V.sum()}
+
+
+def analysed(design, count, seed):
+    """The Ishigami function in the solver's place; the polynomial part alone for given data."""
+    data = {"name": "e", "design": design, "samples": count, "seed": seed, "factors": CARRIERS}
+    data["analysis"] = {"outputs": ["friction_power"], "measures": ["first"]}
+    data["outputs"] = ["forces", "friction_work"]
+    study = parse_study(data | ({"second_order": False} if design == "saltelli" else {}))
+    ds = study.design()
+    x1, x2, x3 = ds["axial_force"].values, ds["motor_force"].values, ds["velocity"].values - 1 - PI
+    ds["friction_power"] = ("case", np.sin(x1) + 7 * np.sin(x2) ** 2 + 0.1 * x3**4 * np.sin(x1))
+    ds.attrs = {"study": study.merged()}
+    return analyse_dataset(ds, ["friction_power"])
+
+
+@pytest.mark.parametrize(
+    ("design", "index", "start"), [("saltelli", "ST", 60), ("lhs", "first", 200), ("morris", "", 8)]
+)
+def test_the_number_asked_for_is_enough_and_not_far_too_much(design, index, start):
+    """The half width at that number is at most the promised one and a quarter more, and the indices lie within it."""
+    said = samples(analysed(design, start, 1), start)
+    assert said.kind == "more"
+    number = int(re.search(r"Write `samples: (\d+)`", said.text)[1])
+    base = 64 if design == "saltelli" else start
+    assert number % base == 0 and (number // base).bit_count() == 1
+    late = analysed(design, number, 2)
+    half = float(late["half_width"][0])
+    assert half < 1.25 * said.values["predicted"] and half > 0.4 * said.values["predicted"]
+    assert samples(late, number).kind == "enough" or half < 1.25 * (0.15 if design == "morris" else 0.05)
+    assert float(analysed(design, number // 4, 3)["half_width"][0]) > (0.15 if design == "morris" else 0.05)
+    if index:
+        assert np.abs(late[index].values[0] - EXACT[index]).max() < 1.25 * half
+
+
+def lives(count, seed, spread=0.2):
+    """Two design points with a lognormal life, of which B10 and the probability of 1,000 h are known."""
+    data = {"name": "e", "design": "inner_outer", "samples": count, "seed": seed, "outputs": ["forces", "life"]}
+    data["factors"] = {"velocity": {"values": [30.0, 60.0]}, "axial_force": {"normal": [0.0, 1.0]}}
+    data["factors"]["friction_coefficient"] = {"uniform": [0.1, 0.3]}
+    data["analysis"] = {"target": {"roller_life_hours": {"min": 1000}}}
+    study = parse_study(data)
+    ds = study.design()
+    logs = 3 + spread * ds["axial_force"].values - 0.1 * (ds["velocity"].values > 45)
+    ds["roller_life_hours"] = ("case", 10**logs, {"units": "h"})
+    ds.attrs = {"study": study.merged()}
+    return analyse_dataset(ds)
+
+
+def test_design_points_need_samples_for_b10_and_probabilities():
+    said = samples(lives(50, 1), 50)
+    assert said.kind == "more" and said.text.startswith("No: B10 of the life of the roller at the best design point")
+    late = lives(said.values["number"], 2)
+    b10, low, high = (float(late[n].sel(output="roller_life_hours")[0]) for n in ("b10", "b10_low", "b10_high"))
+    assert (high - low) / 2 / b10 < 1.3 * said.values["predicted"] <= 1.3 * 0.1
+    exact = 10 ** (3 - 0.2 * stats.norm.ppf(0.9))
+    assert abs(b10 / exact - 1) < 1.25 * said.values["predicted"]
+    assert samples(late, said.values["number"]).kind == "enough"
+    few = samples(lives(20, 1, 0.001).drop_dims("target"), 20)  # so few that the lower bound of B10 is the shortest life itself
+    assert few.kind == "more" and "Write `samples: 80`" in few.text
+
+
+def test_designs_without_samples_are_not_told_to_take_more():
+    sens = analysed("lhs", 200, 1)
+    assert samples(sens.assign_attrs(method="central_composite"), 200) is None
+    table = samples(sens.assign_attrs(method="table", rows=200), 1024)  # `samples` does not count for a table
+    assert table.text.split("only. ")[1].startswith(f"A table of {table.values['number']} rows gives")
+    assert table.values["number"] == 200 * table.values["take_times"]
