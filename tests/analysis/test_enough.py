@@ -75,7 +75,8 @@ def test_design_points_need_samples_for_b10_and_probabilities():
     exact = 10 ** (3 - 0.2 * stats.norm.ppf(0.9))
     assert abs(b10 / exact - 1) < 1.25 * said.values["predicted"]
     assert samples(late, said.values["number"]).kind == "enough"
-    few = samples(lives(20, 1, 0.001).drop_dims("target"), 20)  # so few that the lower bound of B10 is the shortest life itself
+    # so few that the lower bound of B10 is the shortest life itself
+    few = samples(lives(20, 1, 0.001).drop_dims("target"), 20)
     assert few.kind == "more" and "Write `samples: 80`" in few.text
 
 
