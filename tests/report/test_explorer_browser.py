@@ -192,6 +192,26 @@ def test_ten_pareto_sets_are_those_of_the_package(browser, pages, grid, sample):
         page.close()
 
 
+def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, grid):
+    constraints = ["roller_peak_stress < 250 or axial_force == 0", "regime != full_slip"]
+    told = yaml.safe_load(grid.attrs["study"]) | {"constraints": constraints}
+    told["factors"] = {name: told["factors"][name] for name in grid.dims if name in told["factors"]}
+    ds = grid.assign_attrs(study=yaml.safe_dump(told, sort_keys=False))
+    out = pareto(ds, {"roller_life_hours": "max", "axial_force": "max"}, constraints)
+    page = browser.open(written(ds, place, "constraints"))
+    asked = "{roller_life_hours: 'max', axial_force: 'max'}, {constraints: ['met']}"
+    wanted = out["row"].values[out["optimal"].values == 1].tolist()
+    assert page.run(f"trackroller.pareto({asked})") == wanted != page.run(f"trackroller.pareto({asked[:48]})")
+    assert constraints[0] in page.run("document.querySelector('#explorer').textContent")
+    view = StudyView.of(ds)
+    lost = int((view.inside & ~view.valid).sum())
+    assert lost and f"{lost} constraints not met" in page.run("document.querySelector('.counts').textContent")
+    assert shown(page)[1] == view.valid.sum()
+    page.run("trackroller.select({constraints: ['not met']})")
+    assert shown(page)[0] == grid_size() - out.sizes["row"]
+    page.close()
+
+
 def test_a_brush_drawn_with_the_pointer_selects_and_a_click_takes_it_back(page, grid):
     left, top, width, _ = page.box("#explorer .stack canvas + canvas")
     axes = page.run("document.querySelectorAll('[data-axis]:checked').length")

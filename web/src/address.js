@@ -78,6 +78,7 @@ function goalsFrom(told, state, columns) {
       .filter(([name, pair]) => columns.get(name)?.values && Array.isArray(pair))
       .map(([name, pair]) => [name, [number(pair[0]), number(pair[1])]]),
   );
+  state.own = told.own === true && columns.has("constraints");
   if (Array.isArray(told.regimes)) state.regimes = ["rolling", "full_slip", "lift_off"].filter((name) => told.regimes.includes(name));
 }
 

@@ -1,7 +1,7 @@
 // Colours that keep apart in greyscale and for every kind of colour vision, and a shape for each state.
 const STATES = {
-  light: ["#0b5a8f", "#6b7177", "#b87400", "#c03a00", "#111111", "#9a3f7e"],
-  dark: ["#7cc0ee", "#9aa2aa", "#f0b03c", "#ff8a5c", "#f4f4f4", "#e39ac8"],
+  light: ["#0b5a8f", "#6b7177", "#b87400", "#c03a00", "#111111", "#9a3f7e", "#00785a"],
+  dark: ["#7cc0ee", "#9aa2aa", "#f0b03c", "#ff8a5c", "#f4f4f4", "#e39ac8", "#4fc9a4"],
 };
 const LEVELS = {
   light: ["#0b5a8f", "#c07700", "#00785a", "#b23a7a", "#5b5b5b", "#6f8f00", "#7a4fb5", "#111111"],
@@ -10,7 +10,7 @@ const LEVELS = {
 // cividis (Nuñez, Anderton and Renslow 2018), read at eight places
 const CIVIDIS = ["#00224e", "#123570", "#3b496c", "#575d6d", "#797877", "#a59c74", "#d3c164", "#fee838"];
 
-export const SHAPES = ["disc", "ring", "triangle", "square", "cross", "diamond"];
+export const SHAPES = ["disc", "ring", "triangle", "square", "cross", "diamond", "plus"];
 
 export const isDark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 

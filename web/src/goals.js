@@ -8,7 +8,7 @@ const WAYS = [["max", "as large as possible"], ["min", "as small as possible"]];
 export function goals(model) {
   const { table: study } = model;
   const free = [...study.of("output"), ...study.of("factor", "input").filter((c) => c.number)];
-  const state = { goals: [], limits: {}, regimes: ["rolling"] };
+  const state = { goals: [], limits: {}, regimes: ["rolling"], own: study.columns.has("constraints") };
   const given = Object.entries(study.goals).filter(([name]) => study.columns.get(name)?.values);
   state.goals = given.length > 1 ? given.slice(0, 3) : free.slice(0, 2).map((c) => [c.name, c.name.includes("life") ? "max" : "min"]);
   const said = el("p", { role: "status", "aria-live": "polite" });
@@ -60,24 +60,26 @@ export function goals(model) {
       });
       return el("label", {}, box, ` ${regime.texts[i]}`);
     });
-    replace(limits, fields, el("fieldset", {}, el("legend", {}, "Regimes allowed"), boxes));
+    const own = el("input", { type: "checkbox", checked: state.own, onchange: () => (state.own = own.checked) });
+    const told = study.columns.has("constraints") ? el("fieldset", {}, el("legend", {}, "Constraints of the study"), el("label", {}, own, ` ${study.constraints.join("; ")}`)) : null;
+    replace(limits, fields, el("fieldset", {}, el("legend", {}, "Regimes allowed"), boxes), told ?? []);
   }
 
   const usual = () => state.regimes.length === 1 && state.regimes[0] === "rolling";
 
   function asked() {
-    return usual() ? state.limits : { ...state.limits, regime: state.regimes };
+    return { ...state.limits, ...(usual() ? {} : { regime: state.regimes }), ...(state.own ? { constraints: ["met"] } : {}) };
   }
 
   // The same question as keys of a study file.
   function inWords() {
-    const constraints = Object.entries(state.limits).flatMap(([name, [low, high]]) => [
+    const constraints = [...(state.own ? study.constraints : []), ...Object.entries(state.limits).flatMap(([name, [low, high]]) => [
       ...(low === null ? [] : [`${name} >= ${low}`]),
       ...(high === null ? [] : [`${name} <= ${high}`]),
-    ]);
+    ])];
     if (!usual()) for (const name of ["rolling", "full_slip", "lift_off"]) if (!state.regimes.includes(name)) constraints.push(`regime != ${name}`);
     if (!usual() && state.regimes.length === 3) constraints.push("regime != failed");
-    return `pareto: {${state.goals.map(([n, w]) => `"${n}": ${w}`).join(", ")}}\nconstraints: [${constraints.map((c) => `'${c}'`).join(", ")}]`;
+    return `pareto: {${state.goals.map(([n, w]) => `${JSON.stringify(n)}: ${w}`).join(", ")}}\nconstraints: [${constraints.map((c) => JSON.stringify(c)).join(", ")}]`;
   }
 
   function run() {

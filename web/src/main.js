@@ -68,7 +68,7 @@ function start(study, place) {
   const shown = (first.length ? first : outputs).slice(0, FIRST_OUTPUTS);
   const y = shown[0] ?? factors[1] ?? factors[0] ?? study.columns.get("state");
   const x = factors.find((c) => c.number) ?? factors[0] ?? study.columns.get("regime");
-  Object.assign(model.views, { x: x.name, y: y.name, histogram: y.name, axes: [...factors, ...shown].map((c) => c.name).concat("regime", "state") });
+  Object.assign(model.views, { x: x.name, y: y.name, histogram: y.name, axes: [...factors, ...shown].map((c) => c.name).concat("regime", "state", study.columns.has("constraints") ? "constraints" : []) });
 
   let cached = null;
   const colours = () => {

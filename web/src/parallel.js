@@ -58,7 +58,7 @@ export function parallel(model, colours, say) {
     for (const [key, rows] of groups) {
       const state = key % 8;
       context.strokeStyle = list[Math.floor(key / 8)];
-      context.setLineDash(state === 0 ? [] : state === 1 ? [6, 2] : [2, 3]);
+      context.setLineDash(state === 0 ? [] : state === 1 || state === 6 ? [6, 2] : [2, 3]);
       for (const row of rows) {
         context.beginPath();
         path(context, row);

@@ -42,8 +42,12 @@ function tests(table, limits) {
   });
 }
 
-const namesRegime = (limits) =>
-  Array.isArray(limits) ? limits.some((text) => /\bregime\b/.test(text)) : Object.hasOwn(limits ?? {}, "regime");
+// The rolling cases alone are candidates, unless a limit or a constraint of the study speaks of regimes.
+function namesRegime(table, limits) {
+  const speaks = (texts) => texts.some((text) => /\bregime\b/.test(text));
+  if (Array.isArray(limits)) return speaks(limits);
+  return Object.hasOwn(limits ?? {}, "regime") || (Object.hasOwn(limits ?? {}, "constraints") && speaks(table.constraints));
+}
 
 export function paretoRows(table, goals, limits) {
   const sides = Object.entries(goals);
@@ -55,7 +59,7 @@ export function paretoRows(table, goals, limits) {
     return way === "min" ? values : Float64Array.from(values, (v) => -v);
   });
   const regime = table.columns.get("regime").codes;
-  const last = namesRegime(limits) ? 2 : 0; // rolling, full slip, lift-off
+  const last = namesRegime(table, limits) ? 2 : 0; // rolling, full slip, lift-off
   const checks = tests(table, limits);
   if (table.compared) {
     const models = table.columns.get("contact_model");

@@ -17,6 +17,7 @@ function masks(r) {
     triangle: (u, v) => v >= -r && v <= r - 1 && Math.abs(u) <= (v + r) / 2 + 0.5,
     square: (u, v) => Math.max(Math.abs(u), Math.abs(v)) <= r - 1,
     cross: (u, v) => Math.abs(Math.abs(u) - Math.abs(v)) < 1.1,
+    plus: (u, v) => Math.min(Math.abs(u), Math.abs(v)) < 1.1,
     diamond: (u, v) => Math.abs(u) + Math.abs(v) <= r,
   };
   return SHAPES.map((name) => {

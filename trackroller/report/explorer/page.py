@@ -65,6 +65,7 @@ def explorer(ds: xr.Dataset, view: StudyView | None = None) -> dict[str, Any]:
         "strengths": strengths(ds),
         "states": list(STATES),
         "goals": view.study.get("pareto") or default_objectives(ds),
+        "constraints": list(view.study.get("constraints") or ()),
         "compared": compared(view),
         "columns": packed,
     }

@@ -19,7 +19,7 @@ from trackroller.study import goals
 from trackroller.study.outputs import Output, default_names, outputs, read_study
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
-STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged")
+STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
 DETAILS = (
     "normal_force",
     "lateral_force",
@@ -169,7 +169,8 @@ def _details(ds: xr.Dataset, dims: list[str], known: set[str]) -> list[Column]:
 def _states(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
     """Return regime, state, validity flags (of each body where they are known), and reason of failure."""
     regime = np.clip(np.nan_to_num(view.regime, nan=3), 0, 3).astype(int)
-    state = np.where(view.valid, 0, np.where(regime > 0, regime + 1, np.where(view.rolling, 1, 5)))
+    rolls = np.where(view.inside, 6, np.where(view.rolling, 1, 5))
+    state = np.where(view.valid, 0, np.where(regime > 0, regime + 1, rolls))
     found = [
         Column("regime", "Regime", "", "state", regime, REGIMES, REGIME_LABELS),
         Column("state", "State", "", "state", state, STATES, STATES),
@@ -180,6 +181,9 @@ def _states(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
             said = [flag_text(int(mask), list(view.flags)) for mask in np.unique(masks)]
             body = name.partition("_")[2]
             found.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, said))
+    if view.met is not None:
+        met = ("met", "not met")
+        found.append(Column("constraints", "Constraints of the study", "", "state", 1 - view.met.astype(int), met, met))
     if "reason" in ds:
         reason = ds["reason"].broadcast_like(ds["regime"]).transpose(*dims) if "regime" in ds else ds["reason"]
         texts = reason.values.astype(str).ravel()
