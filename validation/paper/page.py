@@ -57,6 +57,12 @@ def blocks(found: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Blo
             "computation yields, from this software, beside what the paper, its program and CONTACT print. "
             "`snakemake -s validation/Snakefile --cores all paper` makes this page.",
         ),
+        (
+            "p",
+            "The published model is `contact_model: sliding`; with `hertz: published`, `stress_bodies: published` it "
+            "also repeats the published table and body (columns *ours, its options*). The default of this software is "
+            "`kalker`. Each column and picture names its model; numbers without a name hold for `sliding`.",
+        ),
         ("h2", "Where the published numbers hold, and where they do not"),
         *verdict(found),
         ("h2", "Table 1: the case"),
