@@ -1,4 +1,4 @@
-"""The command line: parse, call, print.
+"""The command line: read the arguments and call the command.
 
 Exit codes: 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the program.
 """
@@ -29,7 +29,7 @@ materials = typer.Typer(no_args_is_help=True, help="The material and friction da
 app.add_typer(materials, name="materials")
 
 SET_HELP = f"key=value, may be repeated; a parameter of the case or an option: {options_text()}"
-NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="spare nothing; the numbers stay the same")]
+NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="skip no stage; the results stay the same")]
 Results = Annotated[Path, typer.Option("--results", help="folder that holds results/NAME/")]
 StudyFile = Annotated[Path, typer.Argument(help="study file (YAML)", show_default=False)]
 AnyStudy = Annotated[str, typer.Argument(help="study file, or name of a study that was run", show_default=False)]
@@ -57,7 +57,10 @@ def solve(
     sheet: Annotated[Path | None, typer.Option("--report", help="write a printable sheet (HTML) as well")] = None,
     no_shortcuts: NoShortcuts = False,
 ) -> None:
-    """Solve one case; exit 1 if it fails. Keys: parameters and materials of a case, options of a study file."""
+    """Solve one case, and exit with 1 if it fails.
+
+    The keys are the parameters and materials of a case and the options of a study file.
+    """
     from trackroller.cli.case import solve_and_tell
 
     more = {"shortcuts": False} if no_shortcuts else {}
@@ -68,11 +71,11 @@ def solve(
 def plan(
     target: Annotated[Path | None, typer.Argument(help="study or case file (YAML)", show_default=False)] = None,
     results: Results = Path("results"),
-    explain: Annotated[bool, typer.Option("--explain", help="stages that run, and those that are spared")] = False,
+    explain: Annotated[bool, typer.Option("--explain", help="print which stages run, and why")] = False,
     settings: Annotated[list[str] | None, typer.Option("--set", help="key=value of a case")] = None,
     no_shortcuts: NoShortcuts = False,
 ) -> None:
-    """Number of cases, chunks, expected time and disk, and with --explain the stages; nothing is solved."""
+    """Print the number of cases and chunks, the expected time and disk space; solve nothing."""
     from trackroller.cli.plan import print_plan
 
     print_plan(target, results, explain, settings or [], no_shortcuts)
@@ -82,12 +85,12 @@ def plan(
 def run(
     study: StudyFile,
     results: Results = Path("results"),
-    rerun_failed: Annotated[bool, typer.Option("--rerun-failed", help="solve failed cases anew")] = False,
+    rerun_failed: Annotated[bool, typer.Option("--rerun-failed", help="solve the failed cases again")] = False,
     scheduler: Annotated[str | None, typer.Option(help="local or tcp://host:port, dask.distributed")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no progress bar")] = False,
     report: Annotated[bool, typer.Option("--report", help="make analysis, figures and report as well")] = False,
 ) -> None:
-    """Solve what is missing of a study and gather it; stop and start again as often as you like."""
+    """Solve the missing cases of a study and gather the results; a stopped run goes on where it stopped."""
     from trackroller.cli.study import run_with_progress
 
     run_with_progress(study, results, rerun_failed, scheduler, quiet, report)
@@ -117,7 +120,7 @@ def explore(
 
 @app.command()
 def status(study: AnyStudy, results: Results = Path("results")) -> None:
-    """Done, missing, failed by reason and by factor level, and the time left."""
+    """Print how many cases are solved, missing and failed, the causes of failures, and the time left."""
     from trackroller.cli.study import print_status
 
     print_status(study, results)
@@ -129,7 +132,7 @@ def repeat(
     case: Annotated[int, typer.Argument(help="case number (variable `case` of study.nc)", show_default=False)],
     results: Results = Path("results"),
 ) -> None:
-    """Solve one case of a study anew and compare; prints the command that does so without the study."""
+    """Solve one case of a study again, compare the results, and print a command that solves this case alone."""
     from trackroller.cli.study import print_repeat
 
     raise typer.Exit(print_repeat(study, case, results))
@@ -162,7 +165,7 @@ def spectrum(
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
 ) -> None:
-    """Damage of a load spectrum per shift, and life in shifts of roller and guide."""
+    """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts."""
     from trackroller.cli.spectrum import run_spectrum
 
     run_spectrum(file, as_json, out)
@@ -183,7 +186,7 @@ def plot(
 
 @materials.command("list")
 def materials_list() -> None:
-    """Names and values of all materials."""
+    """Print the names and values of all materials."""
     from trackroller.cli.materials import print_list
 
     print_list()
@@ -191,7 +194,7 @@ def materials_list() -> None:
 
 @materials.command("show")
 def materials_show(name: Annotated[str, typer.Argument(show_default=False)]) -> None:
-    """Every value of a material with unit, source and mark."""
+    """Print every value of a material with its unit and source, and whether it is a placeholder."""
     from trackroller.cli.materials import print_material
 
     print_material(name)
@@ -199,7 +202,7 @@ def materials_show(name: Annotated[str, typer.Argument(show_default=False)]) -> 
 
 @materials.command("friction")
 def materials_friction() -> None:
-    """Friction coefficients by pair."""
+    """Print the friction coefficient of each pair of materials."""
     from trackroller.cli.materials import print_friction
 
     print_friction()
@@ -210,9 +213,9 @@ def materials_add(
     name: Annotated[str, typer.Argument(show_default=False)],
     settings: Annotated[list[str], typer.Option("--set", help="field=value, e.g. youngs_modulus=210000")],
     file: Annotated[Path, typer.Option(help="your materials file")] = Path("config/materials.yaml"),
-    replace: Annotated[bool, typer.Option("--replace", help="change a material that is there already")] = False,
+    replace: Annotated[bool, typer.Option("--replace", help="change a material that the file has already")] = False,
 ) -> None:
-    """Put a material into your own file; comments in it stay."""
+    """Write a material into your own file; comments in the file stay."""
     from trackroller.cli.materials import add
 
     add(name, settings, file, replace)
@@ -228,7 +231,7 @@ def main() -> None:
 
 
 def run_app(command: Callable[[], object]) -> int:
-    """Call a command and return its exit code; tell every error in one line on stderr."""
+    """Call a command, print every error in one line on stderr, and return the exit code."""
     try:
         command()
     except SystemExit as exc:

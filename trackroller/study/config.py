@@ -45,18 +45,18 @@ def check_name(name: str, where: str = "name") -> str:
 
 
 class _Design(BaseModel):
-    """Name, cases and design of a study file."""
+    """Keys of a study file that state its name, its cases and its design."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, title="trackroller study", ser_json_inf_nan="constants")
 
     name: str = Field(description="names the results folder; letters, digits, '.', '_', '-'")
     description: str = Field("", description="one sentence at the head of the report")
-    base: dict[str, Any] = Field({}, description="values of all cases; what is not given takes its default")
-    factors: dict[str, dict[str, Any]] = Field({}, description="what is varied, a list or a distribution each")
+    base: dict[str, Any] = Field({}, description="values of all cases; other parameters take their defaults")
+    factors: dict[str, dict[str, Any]] = Field({}, description="what varies: a list or a distribution for each factor")
     design: str = Field("grid", description="how the factors are combined")
-    samples: int = Field(1024, ge=1, le=10_000_000, description="rows, trajectories or base samples of a sample")
-    seed: int = Field(1, ge=0, le=2**32 - 2, description="same seed, same design")
-    table: str | None = Field(None, description="CSV of cases for design: table, beside the study file")
+    samples: int = Field(1024, ge=1, le=10_000_000, description="number of rows, trajectories or base samples")
+    seed: int = Field(1, ge=0, le=2**32 - 2, description="the same seed gives the same design")
+    table: str | None = Field(None, description="for design table: CSV file of cases beside the study file")
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
     exchange: Literal["factors", "groups"] | None = Field(
         None, description="saltelli: columns are exchanged by factor (default) or by group of analysis.groups"
@@ -111,9 +111,9 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     analysis: Analysis = Field(
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
     )
-    pareto: dict[str, str] = Field({}, description="outputs or factors with max or min: the designs no other beats")
+    pareto: dict[str, str] = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
     constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
-    chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases a job; chosen if not given")
+    chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases in each job; chosen if not given")
 
     @field_validator(*(option.name for option in IN_STUDY), mode="before")
     @classmethod
@@ -205,7 +205,7 @@ class Study:
 
     @cached_property
     def materials(self) -> MaterialDatabase:
-        """The material database (built-in, with the user's own over it)."""
+        """Return the material database: the built-in one, changed and extended by the user's file."""
         return load_database() if self.database is None else self.database
 
     @property
@@ -232,7 +232,7 @@ class Study:
 
     @cached_property
     def drawn(self) -> SampledDesign:
-        """The factors' columns, drawn once: a CSV of a million cases takes seconds to read."""
+        """Return the drawn design; it is kept, because reading a CSV of a million cases takes seconds."""
         return build.draw(self)
 
     def design(self) -> xr.Dataset:
@@ -247,7 +247,7 @@ class Study:
 
 
 def parse_study(data: Mapping[str, Any], path: Path | None = None, database: Any = None) -> Study:
-    """A study from a mapping with the keys of a study file; raises `InputError` for whatever is wrong."""
+    """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     try:
         config = StudyFile.model_validate(dict(data))
     except ValidationError as error:

@@ -1,4 +1,4 @@
-"""Keys of a study file that say how results are analysed and which designs are best.
+"""Check the keys of a study file that state how results are analysed and which designs are best.
 
     analysis:
       outputs: [roller_life_hours, friction_power, peak_stress[1,guide]]
@@ -38,7 +38,7 @@ TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table")
 
 
 class Analysis(BaseModel):
-    """The key `analysis` of a study file; see the fields' descriptions."""
+    """The key `analysis` of a study file; each field has a description."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -173,7 +173,7 @@ def check_scatter(wanted: bool | float, design: str, materials: Iterable[Any]) -
         raise InputError(
             "analysis.material_scatter",
             True,
-            f"no scatter is known of {', '.join(bare)}",
+            f"materials with scatter; the database has none for {', '.join(bare)}",
             "Give scatter_in_cycles with the materials, or T_N itself: material_scatter: 4.",
         )
 
@@ -258,5 +258,5 @@ def _unknown(where: str, name: str, known: Iterable[str], groups: Iterable[str])
         example = ",".join(word for d, word in (("contact", "1"), ("body", "roller")) if d in dims)
         if example:
             return InputError(where, name, "one number a case", f"Choose one, such as {name}[{example}].")
-    short = [n for n in dict.fromkeys(known) if "[" not in n]  # a list with the parts of variables would be too long
+    short = [n for n in dict.fromkeys(known) if "[" not in n]  # with the parts of variables the list is too long
     return unknown_name(where, name, short)

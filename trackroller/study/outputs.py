@@ -30,7 +30,7 @@ BOOKKEEPING = {
 }
 FIELDS = {"x", "y", "z", "grid"}
 
-# The outputs that are analysed by default: name -> (variable, selection, how contacts are joined, scale, words)
+# Outputs that are analysed by default: name -> (variable, selection, how contacts are joined, scale, words).
 DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
     "roller_life_hours": ("roller_life_hours", {}, "min", "log10", "life of the roller"),
     "guide_life_hours": ("guide_life_hours", {}, "min", "log10", "life of the guide"),
@@ -137,13 +137,13 @@ def _raw(ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]) -
     try:
         part = ds.sel({k: v for k, v in choice.items() if k in ds[variable].dims})
     except KeyError:
-        raise InputError("analysis.outputs", name, "contacts are 1 and 2, bodies roller and guide") from None
+        raise InputError("analysis.outputs", name, "contact 1 or 2, body roller or guide") from None
     values = flat(part, variable, dims).astype(float)
     if values.ndim > 1 and not join:
         raise InputError(
             "analysis.outputs",
             name,
-            "one number a case is wanted",
+            "an output with one number for each case",
             f"Choose a contact and body, such as {variable}[1,roller].",
         )
     if values.ndim > 1:
