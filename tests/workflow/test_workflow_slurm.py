@@ -107,24 +107,11 @@ def numbers(place, results):
 
 
 def test_cluster_gives_the_numbers_of_a_local_run_though_a_worker_is_killed(slurm, place):
-    subprocess.run(
-        [
-            "snakemake",
-            "-s",
-            str(ROOT / "Snakefile"),
-            "--cores",
-            "2",
-            "--config",
-            "results=local",
-            "--",
-            "local/tiny/study.nc",
-        ],
-        cwd=place,
-        env=slurm,
-        check=True,
-        capture_output=True,
-        timeout=480,
+    words = ["snakemake", "-s", str(ROOT / "Snakefile"), "--cores", "2", "--config", "results=local"]
+    local = subprocess.run(
+        [*words, "--", "local/tiny/study.nc"], cwd=place, env=slurm, capture_output=True, text=True, timeout=480
     )
+    assert local.returncode == 0, local.stdout + local.stderr
     hold = place / "hold"
     hold.touch()
     path = os.pathsep.join([str(place / "hook"), str(ROOT)])

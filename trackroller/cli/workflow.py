@@ -84,7 +84,7 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], N
     WorkError
         If the study was edited after the main process had planned it.
     """
-    study, results = load_study(config["study"]), config["results"]
+    study, results = load_study(config["study"], planned=not main), config["results"]
     if main:
         return _held.enter_context(working_plan(study, results, tell=tell))
     plan = read_plan(study, study_folder(study.name, results))

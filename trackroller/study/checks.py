@@ -69,4 +69,3 @@ def cross_check(study: Study) -> None:
     _check_options(study)
     build.check_correlations(study)
     build.check_materials(study)
-    build.check_geometry(study)

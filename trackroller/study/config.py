@@ -246,7 +246,9 @@ class Study:
         return build.build(self)
 
 
-def parse_study(data: Mapping[str, Any], path: Path | None = None, database: Any = None) -> Study:
+def parse_study(
+    data: Mapping[str, Any], path: Path | None = None, database: Any = None, planned: bool = False
+) -> Study:
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     try:
         config = StudyFile.model_validate(dict(data))
@@ -254,10 +256,12 @@ def parse_study(data: Mapping[str, Any], path: Path | None = None, database: Any
         raise _translate(error) from None
     study = Study(config, path, database)
     cross_check(study)
+    if not planned:
+        build.check_geometry(study)
     return study
 
 
-def load_study(path: str | Path, database: Any = None) -> Study:
+def load_study(path: str | Path, database: Any = None, planned: bool = False) -> Study:
     """Read and check a study file.
 
     Parameters
@@ -266,6 +270,8 @@ def load_study(path: str | Path, database: Any = None) -> Study:
         The YAML file.
     database : MaterialDatabase, optional
         Materials. Default: the built-in database, changed and extended by the user's own file.
+    planned : bool
+        The geometry of every case is checked already; a job of a cluster need not draw the whole design for it.
 
     Returns
     -------
@@ -283,4 +289,4 @@ def load_study(path: str | Path, database: Any = None) -> Study:
         data = parse_mapping(read_text(path, "study file"), "study file")
         if data.get("table") is not None:
             find_beside(data["table"], "table")
-        return parse_study(data, path, database)
+        return parse_study(data, path, database, planned)

@@ -67,14 +67,15 @@ def fingerprints(table: CaseTable, options: list[dict[str, Any]] | dict[str, Any
         heads = [known[id(o)] for o in options]
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
     given = any(np.any(column != "") for column in texts)
-    out = np.empty(len(rows), dtype="S32")
-    for i, row in enumerate(rows):
-        digest = heads[i].copy()
-        digest.update(row.tobytes())
+    data, width = memoryview(rows.reshape(-1).view(np.uint8)), rows.itemsize * rows.shape[1]
+    found = bytearray()
+    for i, head in enumerate(heads):
+        digest = head.copy()
+        digest.update(data[i * width : (i + 1) * width])
         if given:
             digest.update(json.dumps([column[i] for column in texts]).encode())
-        out[i] = digest.hexdigest()[:32]
-    return out
+        found += digest.digest()[:16]
+    return np.frombuffer(found.hex().encode(), dtype="S32")
 
 
 def chunk_name(cases: np.ndarray) -> str:

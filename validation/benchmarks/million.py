@@ -25,6 +25,7 @@ import yaml
 from trackroller.study import store
 from trackroller.study.caselists import load_list
 from trackroller.study.config import load_study
+from trackroller.study.design.build import MAX_CASES
 from trackroller.study.plan import make_plan
 from trackroller.study.solve import solve_rows
 
@@ -118,11 +119,20 @@ def main() -> None:
         (rule, [*run, f"results/million/{file}"])
         for rule, file in (("analysis", "sensitivity.nc"), ("figures", "figures"), ("report", "report.html"))
     ]
+    minute = 0.0
     for step, command in steps:
         wall, cpu, memory = measured(command, place)
         print(f"{step:10}{wall:8.1f} s {cpu:8.1f} s CPU {memory:6.2f} GB", flush=True)
+        if step == "plan":
+            minute = cpu * MAX_CASES / (8 * number)
+            print(
+                f"{'':10}{minute:8.1f} s CPU for the {MAX_CASES:,} cases that a study may have, at this rate",
+                flush=True,
+            )
     size = (place / "results" / "million" / "study.nc").stat().st_size
     print(f"study.nc {size / 1e6:.0f} MB in {place}")
+    if minute > 60 and number > 100_000:
+        raise SystemExit("the limit is more than can be planned in a minute: change MAX_CASES")
 
 
 if __name__ == "__main__":
