@@ -16,6 +16,7 @@ from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
+from trackroller.materials import load_database
 from trackroller.numerics import expressions
 from trackroller.report import sentences as words
 from trackroller.report.figures.sn_diagram import curve, sn_diagram
@@ -94,9 +95,46 @@ def test_wrong_goals_of_a_study_are_refused_with_field_and_remedy(data, parts):
 
 def test_material_scatter_needs_materials_that_have_some():
     data = {"name": "n", "design": "inner_outer", "factors": {"axial_force": {"uniform": [0.0, 1.0]}}}
-    with pytest.raises(InputError, match=r"materials with scatter; the database has none for 1\.7225-normalised"):
+    with pytest.raises(InputError, match=r"materials with scatter; the database has none for 1\.7225-normalised \(roller\)"):
         parse_study(data | {"analysis": {"material_scatter": True}})
     assert parse_study(data | {"analysis": {"material_scatter": 4}}).config.analysis.material_scatter == 4
+
+
+@pytest.mark.parametrize(
+    ("outputs", "refused"),
+    [
+        (["roller_life_hours"], ""),
+        (["life_cycles[1,roller]", "max_pressure"], ""),
+        (["max_pressure"], ""),
+        (["guide_life_cycles"], "guide"),
+        (["roller_life_cycles", "life_cycles[2,guide]"], "guide"),
+        (None, "guide"),
+    ],
+)
+def test_material_scatter_is_refused_only_for_a_body_whose_life_is_asked_for(tmp_path, outputs, refused):
+    """The roller's material scatters, the guide's does not."""
+    own = "{like: 1.7225-normalised, scatter_in_cycles: 4}"
+    (tmp_path / "own.yaml").write_text(f"materials: {{tested: {own}}}")
+    database = load_database(tmp_path / "own.yaml")
+    data = {
+        "name": "n",
+        "design": "inner_outer",
+        "base": {"roller_material": "tested"},
+        "factors": {"axial_force": {"uniform": [0.0, 1.0]}},
+        "analysis": {"material_scatter": True, "outputs": outputs},
+    }
+    if not refused:
+        assert parse_study(data, database=database).config.analysis.material_scatter is True
+        return
+    with pytest.raises(InputError, match=rf"\({refused}\).*other body"):
+        parse_study(data, database=database)
+
+
+def test_material_scatter_is_refused_for_a_table_too(tmp_path):
+    (tmp_path / "cases.csv").write_text("axial_force\n1\n2\n")
+    data = {"name": "n", "design": "table", "table": str(tmp_path / "cases.csv")}
+    with pytest.raises(InputError, match="design: inner_outer"):
+        parse_study(data | {"analysis": {"material_scatter": True}})
 
 
 def test_conditions_compare_join_and_treat_what_is_not_a_number_as_not_met():

@@ -164,11 +164,12 @@ def spectrum(
     file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="write the page of the spectrum (HTML) too")] = None,
 ) -> None:
-    """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts."""
+    """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours."""
     from trackroller.cli.spectrum import run_spectrum
 
-    run_spectrum(file, as_json, out)
+    run_spectrum(file, as_json, out, report)
 
 
 @app.command()

@@ -16,12 +16,13 @@ if TYPE_CHECKING:
 
 
 def write(ds: xr.Dataset, path: Path | str) -> Path:
-    """Write the sheet of one case or the report of a study as one HTML file.
+    """Write the sheet of one case, the page of a load spectrum or the report of a study as one HTML file.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `trackroller.solve` for one case, or the gathered results of a study (`study.nc`).
+        Result of `trackroller.solve` for one case or of `solve_spectrum`, or the gathered results of a study
+        (`study.nc`).
     path : Path or str
         The file to write. It stands alone and can be sent by mail.
 
@@ -42,6 +43,10 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     """
     from trackroller.report.sheet.page import write_sheet  # heavy: jinja2, and matplotlib for the figures
 
+    if "damage_sum" in ds:
+        from trackroller.report.sheet.spectrum_page import write_spectrum
+
+        return write_spectrum(ds, path)
     if "study" not in ds.attrs:
         return write_sheet(ds, path)
     from trackroller.report.build import build_report

@@ -31,15 +31,24 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     database : MaterialDatabase
         The materials it was solved with.
     """
-    values = {key: _plain(value) for key, value in case.as_dict().items()}
+    values = plain_inputs(case)
+    if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
+        values["friction_coefficient"] = float(to_table(case, database).friction_coefficient[0])
+    return ds.assign_attrs({CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))})
+
+
+def plain_inputs(case: Case) -> dict[str, Any]:
+    """Return the inputs of a case as JSON can write them."""
+    return {key: _plain(value) for key, value in case.as_dict().items()}
+
+
+def material_values(case: Case, database: MaterialDatabase) -> dict[str, dict[str, Any]]:
+    """Return the values of both materials of a case with their sources, by `roller_material` and `guide_material`."""
     bodies = {name: database.material(getattr(case, name)) for name in MATERIAL_FIELDS}
-    materials = {
+    return {
         name: body.as_dict() | {"sources": {k: r.source for k, r in body.records.items()}, "guesses": body.placeholders}
         for name, body in bodies.items()
     }
-    if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
-        values["friction_coefficient"] = float(to_table(case, database).friction_coefficient[0])
-    return ds.assign_attrs({CASE: json.dumps(values), MATERIALS: json.dumps(materials)})
 
 
 def _plain(value: Any) -> Any:

@@ -161,21 +161,35 @@ def output_names(groups: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def check_scatter(wanted: bool | float, design: str, materials: Iterable[Any]) -> None:
-    """Check that materials have a scatter if the analysis counts on it; only design `inner_outer` has a B10."""
+def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
+    """Check that the materials of each body whose life is asked for have a scatter, if the analysis counts on it.
+
+    Parameters
+    ----------
+    config : the study file
+    materials : materials that occur, by body
+
+    Raises
+    ------
+    InputError : another design than `inner_outer`, which alone has a B10, or a material without scatter
+    """
+    wanted = config.analysis.material_scatter
     if wanted is False:
         return
-    if design != "inner_outer":
+    if config.design != "inner_outer":
         remedy = "Remove the key: only inner_outer has a B10 life."
         raise InputError("analysis.material_scatter", wanted, "design: inner_outer", remedy)
-    bare = [m.name for m in materials if m.scatter_in_cycles is None and m.scatter_in_stress is None]
-    if wanted is True and bare:
-        raise InputError(
-            "analysis.material_scatter",
-            True,
-            f"materials with scatter; the database has none for {', '.join(bare)}",
-            "Give scatter_in_cycles with the materials, or T_N itself: material_scatter: 4.",
-        )
+    asked = config.analysis.outputs or [f"{body}_life_cycles" for body in materials if "life" in config.outputs]
+    for body, used in materials.items():
+        bare = [m.name for m in used if m.scatter_in_cycles is None and m.scatter_in_stress is None]
+        if wanted is True and bare and any("life" in name and body in name for name in asked):
+            raise InputError(
+                "analysis.material_scatter",
+                True,
+                f"materials with scatter; the database has none for {', '.join(bare)} ({body})",
+                "Give scatter_in_cycles with the materials, or T_N itself: material_scatter: 4. Or name only the "
+                "lives of the other body under analysis.outputs.",
+            )
 
 
 def check(config: Any, factors: Mapping[str, Any]) -> None:

@@ -125,7 +125,7 @@ def collect(ds: xr.Dataset, database: MaterialDatabase | None = None) -> Facts:
         regime=regime,
         reason=str(ds["reason"].item()) if "reason" in ds else "",
         inputs=[input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
-        materials=_materials(materials),
+        materials=body_materials(materials),
         contacts=contacts,
         whole=quantity_rows(ds, WHOLE_ROWS),
         lives=lives,
@@ -137,7 +137,7 @@ def collect(ds: xr.Dataset, database: MaterialDatabase | None = None) -> Facts:
     )
 
 
-def _materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
+def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
     """Return head, values and source of each material, once if both bodies are of the same."""
     roller, guide = (materials[f"{body}_material"] for body in BODIES)
     told = [("roller and guide", roller)] if roller == guide else [("roller", roller), ("guide", guide)]

@@ -214,24 +214,16 @@ def check_materials(study: Study) -> None:
     ------
     InputError : an unknown material, or a material without scatter
     """
-    names: dict[str, str] = {}
-    for name in MATERIAL_FIELDS:
-        if name in study.config.base:
-            names[study.config.base[name]] = f"base.{name}"
-        for value in study.factors.get(name, {}).get("values", []):
-            names[value] = f"factors.{name}"
     pairs = [*study.factors.get("material_pair", {}).get("values", [])]
     if "material_pair" in study.config.base:
         pairs.append(study.config.base["material_pair"])
-    for pair in pairs:
-        names |= {material: "material_pair" for material in pair}
-    if not pairs:
-        for name in MATERIAL_FIELDS:
-            if name not in study.config.base and name not in study.factors:
-                names.setdefault(_DEFAULT_MATERIAL, name)
-    used = [study.materials.material(name) for name in names]
-    if study.config.design != "table":
-        check_scatter(study.config.analysis.material_scatter, study.config.design, used)
+    used = {}
+    for i, name in enumerate(MATERIAL_FIELDS):
+        given = [study.config.base[name]] if name in study.config.base else []
+        given += [*study.factors.get(name, {}).get("values", []), *(pair[i] for pair in pairs)]
+        materials = dict.fromkeys(given or [_DEFAULT_MATERIAL])
+        used[name.removesuffix("_material")] = [study.materials.material(material) for material in materials]
+    check_scatter(study.config, used)
 
 
 def check_geometry(study: Study) -> None:

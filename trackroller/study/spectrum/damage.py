@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.damage import fatigue
-from trackroller.parameters import REGIMES
-from trackroller.study.spectrum.file import Spectrum, overrollings_per_shift
+from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.roller.case import to_table
+from trackroller.roller.record import material_values, plain_inputs
+from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
@@ -80,6 +83,7 @@ def damage_dataset(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDat
     first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
     variables: dict[str, Any] = {
         "distance": ("block", [b.distance for b in spectrum.blocks], _attrs("m", "distance per shift", "s")),
+        "duration": ("block", [b.hours for b in spectrum.blocks], _attrs("h", "hours of travel per shift", "t")),
         "overrollings": (("block", "body"), overrollings, _attrs("1", "overrollings per shift", "n")),
         "peak_stress": (_BCB, stress, _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")),
         "life_cycles": (_BCB, life, _attrs("1", "overrollings to failure at the stress of the block", "N")),
@@ -87,10 +91,31 @@ def damage_dataset(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDat
         "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
         "life_shifts": (_CB, shifts, _attrs("1", "shifts to failure of each track", "L_S")),
     }
+    distance, duration = (float(np.sum(variables[name][1])) for name in ("distance", "duration"))
     for i, body in enumerate(BODIES):
-        meta = _attrs("1", f"shifts to the first failure of the {body}", f"L_S,{('TR', 'G')[i]}")
-        variables[f"{body}_life_shifts"] = ((), first[i], meta)
-    return _labelled(spectrum, variables, solved, _scattered(spectrum, stress, cycles, bodies, rule), rule)
+        index, to = ("TR", "G")[i], f"to the first failure of the {body}"
+        for unit, name, words, scale in (
+            ("1", "shifts", "shifts", 1.0),
+            ("km", "km", "distance", distance / 1e3),
+            ("h", "hours", "hours of travel", duration),
+        ):
+            meta = _attrs(unit, f"{words} {to}", f"L_{name[0].upper() if name == 'shifts' else name[0]},{index}")
+            variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
+    variables |= _loads(spectrum, database)
+    found = _labelled(spectrum, variables, solved, _scattered(spectrum, stress, cycles, bodies, rule), rule)
+    roller = {name: value for name, value in plain_inputs(case).items() if name not in LOAD_FIELDS}
+    return found.assign_attrs(roller=json.dumps(roller), materials=json.dumps(material_values(case, database)))
+
+
+def _loads(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, Any]:
+    """Return the loads of each block, (block), friction as the number that its pair of materials has."""
+    table = to_table([block.case for block in spectrum.blocks], database)
+    out = {}
+    for name in LOAD_FIELDS:
+        parameter = PARAMETERS[name]
+        meta = _attrs(parameter.units, parameter.long_name, parameter.symbol)
+        out[name] = ("block", np.asarray(getattr(table, name), dtype=float), meta)
+    return out
 
 
 def _attrs(units: str, long_name: str, symbol: str) -> dict[str, str]:
@@ -128,9 +153,10 @@ def _labelled(
         )
         meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
         variables["life_shifts_at_probability"] = (("probability", *_CB), scattered, meta)
-    for name in ("regime", "converged", "validity"):
+    for name in ("regime", "converged", "validity", "validity_body"):
         if name in solved:
-            variables[name] = ("block", solved[name].values, dict(solved[name].attrs))
+            dims = ("block", "body")[: solved[name].ndim]
+            variables[name] = (dims, solved[name].values, dict(solved[name].attrs))
     attrs = {key: value for key, value in solved.attrs.items() if key != "life_conventions"} | {
         "title": spectrum.name,
         "description": spectrum.description,
@@ -140,42 +166,3 @@ def _labelled(
         "critical_damage": spectrum.critical_damage,
     }
     return xr.Dataset(variables, coords=coords, attrs=attrs)
-
-
-def summary(ds: xr.Dataset) -> list[str]:
-    """Return one sentence for each body: its life in shifts, its track, and the block with the most damage."""
-    sentences = []
-    for body in BODIES:
-        shifts = ds["life_shifts"].sel(body=body)
-        if bool(shifts.isnull().any()):
-            bad = _undefined_blocks(ds, body)
-            sentences.append(f"The life of the {body} is not known: {bad}{_at_most(ds, body)}.")
-            continue
-        if bool(np.isinf(shifts).all()):
-            sentences.append(f"The {body} takes no damage in this spectrum.")
-            continue
-        contact = ds["contact"].values[int(np.argmin(shifts.values))]
-        share = ds["damage"].sel(body=body, contact=contact) / ds["damage_sum"].sel(body=body, contact=contact)
-        worst = int(np.argmax(share.values))
-        sentences.append(
-            f"The {body} lasts {float(shifts.min()):.4g} shifts; contact {contact} fails first, "
-            f"and {100 * float(share[worst]):.0f} % of its damage comes from '{ds['block'].values[worst]}'."
-        )
-    return sentences
-
-
-def _at_most(ds: xr.Dataset, body: str) -> str:
-    """Return an upper bound of the life from the known blocks; an empty text if these blocks do no damage."""
-    known = float(ds["damage"].sel(body=body).sum("block").max())  # skips the unknown ones
-    return f"; at most {ds.attrs['critical_damage'] / known:.4g} shifts by the other blocks" if known > 0 else ""
-
-
-def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
-    unknown = ds["damage"].sel(body=body).isnull().any("contact").values
-    names = ds["block"].values
-    if np.isnan(ds["overrollings"].sel(body=body).values[unknown]).all():
-        return "give guide_overrollings_per_hour, or guide_overrollings of each block"
-    listed = ", ".join(
-        f"'{name}' ({REGIMES[int(r)]})" for name, r in zip(names[unknown], ds["regime"].values[unknown], strict=True)
-    )
-    return f"no stress in {listed}"

@@ -69,6 +69,11 @@ class Block:
     distance: float
     guide_overrollings: float | None = None
 
+    @property
+    def hours(self) -> float:
+        """Return the hours of travel per shift at the velocity of the case [m/min]."""
+        return self.distance / (60.0 * self.case.velocity)
+
 
 @dataclass(frozen=True)
 class Spectrum:
@@ -263,7 +268,7 @@ def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
         guide = block.guide_overrollings
         if guide is None:
             per_hour = case.guide_overrollings_per_hour
-            guide = math.nan if per_hour is None else per_hour * block.distance / (60.0 * case.velocity)
+            guide = math.nan if per_hour is None else per_hour * block.hours
         guide = 0.0 if block.distance == 0 and block.guide_overrollings is None else guide
         rows.append((block.distance * 1e3 / (2 * math.pi * float(radius)), guide))
     return np.array(rows, dtype=float)

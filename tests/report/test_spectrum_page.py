@@ -1,0 +1,136 @@
+"""The sentences, the table, the figure and the page of a load spectrum, recomputed from the raw blocks."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import trackroller as tr
+from trackroller.materials import builtin_database
+from trackroller.report.figures.spectrum import damage_by_block
+from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
+from trackroller.study.spectrum.file import Spectrum
+from trackroller.study.spectrum.solve import solve_spectrum
+
+DB = builtin_database()
+NUMBER = r"(\d[\d,]*(?:\.\d+)?)(?:·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?"
+PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+
+
+def value(found):
+    return float(found[0].replace(",", "")) * 10.0 ** int((found[1] or "0").translate(PLAIN))
+
+
+def random_spectrum(seed, **material):
+    """Solve two to six blocks by a made-up solver: stresses, lift-offs and failures at random."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 7))
+    blocks = [
+        {"name": f"b{i}", "distance": float(rng.uniform(1, 5000)), "velocity": float(rng.uniform(5, 90))}
+        for i in range(count)
+    ]
+    passes = {"guide_overrollings_per_hour": 100.0} if rng.random() < 0.7 else {}
+    spec = Spectrum.from_dict(
+        {"blocks": blocks, "base": passes | material, "life_rule": rng.choice(["haibach", "unlimited"])}
+    )
+    stress = rng.uniform(80, 700, (count, 2, 2)) if rng.random() < 0.9 else np.full((count, 2, 2), 100.0)
+    regime = rng.choice([0, 2, 3], count, p=[0.9, 0.06, 0.04])
+    stress[regime == 2, 0], stress[regime == 3] = np.nan, np.nan
+
+    def solve(cases, outputs, database, **options):
+        variables = {"peak_stress": (("case", "contact", "body"), stress), "regime": ("case", regime.astype(np.int8))}
+        return xr.Dataset(variables, coords={"contact": [1, 2], "body": ["roller", "guide"]})
+
+    return spec, solve_spectrum(spec, DB, solve=solve)
+
+
+def test_every_sentence_on_a_spectrum_is_true():
+    kinds = set()
+    for seed in range(150):
+        spec, ds = random_spectrum(seed)
+        for body, said in zip(("roller", "guide"), sentences(ds), strict=True):
+            kinds.add(said.kind)
+            damage = ds["damage"].sel(body=body).values
+            total = damage.sum(axis=0)
+            assert (said.kind == "spectrum_unknown") == np.isnan(total).any()
+            assert (said.kind == "spectrum_unlimited") == (total == 0).all()
+            if said.kind != "spectrum":
+                continue
+            worst = int(np.argmax(total))
+            shifts, km, hours = (value(found) for found in re.findall(rf"{NUMBER} (?:shifts|km|h)\b", said.text))
+            assert shifts == pytest.approx(1 / total[worst], rel=0.006)
+            assert km == pytest.approx(sum(b.distance for b in spec.blocks) / 1e3 / total[worst], rel=0.006)
+            drive = sum(b.distance / 60 / b.case.velocity for b in spec.blocks)
+            assert hours == pytest.approx(drive / total[worst], rel=0.006)
+            assert f"contact {worst + 1} fails first" in said.text
+            most = int(np.argmax(damage[:, worst]))
+            told = float(re.search(r"and ([\d.]+) % of its damage", said.text)[1])
+            assert f"'{spec.blocks[most].name}'" in said.text
+            assert told == pytest.approx(100 * damage[most, worst] / total[worst], abs=0.51)
+    assert kinds == {"spectrum", "spectrum_unknown", "spectrum_unlimited"}
+
+
+def test_table_has_units_and_its_shares_add_up():
+    _, ds = random_spectrum(4)
+    table = block_table(ds)
+    assert all("[" in head for head in table.heads if head not in ("Block", "Regime", "Share"))
+    assert "Mean travel speed [m/min]" in table.heads and "Radial force [N]" not in table.heads
+    place = table.heads.index("Share")
+    shares = [float(row[place].removesuffix(" %")) for row in table.rows[:-1]]
+    assert sum(shares) == pytest.approx(100, abs=2)
+    assert "radial force −200 N" in table.note
+
+
+def test_lives_at_failure_probabilities_have_three_units():
+    _, ds = random_spectrum(4, roller_material={"like": "1.7225-normalised", "scatter_in_cycles": 4.0})
+    rows = {row.words: row for row in life_rows(ds, "roller")}
+    assert [rows[f"life in {name}"].unit for name in ("shifts", "km", "hours")] == ["shifts", "km", "h"]
+    shifts, km, hours = (value(f) for f in re.findall(rf"{NUMBER} \w+", rows["until 10 % have failed"].value))
+    assert km / shifts == pytest.approx(float(ds["roller_life_km"] / ds["roller_life_shifts"]), rel=0.02)
+    assert hours / shifts == pytest.approx(float(ds["roller_life_hours"] / ds["roller_life_shifts"]), rel=0.02)
+
+
+def test_figure_shows_the_blocks_of_known_damage_and_joins_the_small_ones():
+    _, ds = random_spectrum(4)
+    figure, info = damage_by_block(ds)
+    bars = figure.axes[0].patches
+    assert sum(bar.get_width() for bar in bars) == pytest.approx(100)
+    assert max(float(w) for w in re.findall(r"([\d.]+) %", info.sentence)) <= 100
+    many = xr.concat([ds.isel(block=[0])] * 30, "block", data_vars="minimal").assign_coords(
+        block=[f"b{i}" for i in range(30)]
+    )
+    figure, _ = damage_by_block(many)
+    assert figure.axes[0].get_yticklabels()[-1].get_text() == "14 others"
+    assert damage_by_block(ds.assign(damage=ds["damage"] * np.nan)) is None
+
+
+def test_page_of_a_spectrum_stands_alone(tmp_path):
+    from typer.testing import CliRunner
+
+    from trackroller.cli.main import app
+
+    (tmp_path / "shift.yaml").write_text(
+        "name: sorter\nbase: {motor_force: 0, axial_force: 5}\ncontact_model: sliding\nblocks:\n"
+        "- {name: loaded, distance: 100}\n- {name: empty, distance: 50, radial_force: -60}\n"
+    )
+    page = tmp_path / "page.html"
+    done = CliRunner().invoke(app, ["spectrum", str(tmp_path / "shift.yaml"), "--report", str(page)])
+    assert done.exit_code == 0, done.output
+    text = page.read_text(encoding="utf-8")
+    for part in (
+        "Damage by block",
+        "data:image/svg",
+        "life in km",
+        "Roller peak [MPa]",
+        "Source:",
+        "trackroller spectrum shift.yaml",
+    ):
+        assert part in text
+    assert not re.search(r"(?:src|href)=\"(?!data:|#)", text)
+    ds = solve_spectrum(
+        Spectrum.from_dict({"blocks": [{"distance": 9, "axial_force": 200}], "contact_model": "sliding"}), DB
+    )
+    assert "lift" in " ".join(row[5] for row in block_table(ds).rows) or np.isnan(ds["roller_life_km"])
+    assert isinstance(warnings(ds), list)
+    assert tr.report(ds, tmp_path / "again.html").read_text(encoding="utf-8").startswith("<!doctype html>")

@@ -1,0 +1,55 @@
+"""The figure of a load spectrum: the share of each block in the damage of roller and guide."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from trackroller.report.figures import style
+from trackroller.report.numbers import listing
+from trackroller.report.sheet.spectrum import percent, track
+from trackroller.study.spectrum.damage import BODIES
+
+MOST = 16  # blocks drawn one by one; the others stand together
+
+
+def damage_by_block(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
+    """Draw the share of each block in the damage of the track that fails first, one panel a body.
+
+    Parameters
+    ----------
+    ds : result of `solve_spectrum`
+
+    Returns
+    -------
+    The figure and its caption, or None if no body has known damage.
+    """
+    shares = {}
+    for body in BODIES:
+        damage = ds["damage"].sel(body=body, contact=track(ds, body)).values
+        if np.isfinite(damage).all() and damage.sum() > 0:
+            shares[body] = damage / damage.sum()
+    if not shares:
+        return None
+    names = [str(name) for name in ds["block"].values]
+    order = np.argsort(-sum(shares.values()), kind="stable")
+    shown, rest = order[:MOST], order[MOST:]
+    words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
+    figure = style.new_figure(24 + 6.0 * len(words), style.WIDE_MM)
+    panels = figure.subplots(1, len(shares), sharey=True, squeeze=False)[0]
+    told = []
+    for axes, colour, (body, part) in zip(panels, style.palette(2), shares.items(), strict=False):
+        values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
+        bars = axes.barh(words, 100 * values, color=colour, height=0.62)
+        axes.bar_label(bars, [percent(float(v)) for v in values], padding=2, fontsize=7)
+        axes.set_xlim(0, 118)
+        axes.set_xlabel(f"share of the damage of the {body} [%]")
+        axes.grid(axis="y", visible=False)
+        most = int(np.argmax(part))
+        told.append(f"{percent(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
+    panels[0].invert_yaxis()
+    style.head(figure, f"Damage by block: {ds.attrs['title']}")
+    style.finish(figure)
+    caption = "Share of each block in the damage of a shift, in the track of each body that fails first."
+    return figure, style.FigureInfo("damage_by_block", caption, f"{listing(told)}.")
