@@ -168,6 +168,7 @@ def test_expressions_compute_what_they_say():
         ("a + True", "character 5"),
         ("a + 'x'", "text"),
         ("sqrt(a, a)", "takes 1"),
+        ("10 * tan(contact_angle)", r"contact_angle is in degrees. Write tan\(radians\(contact_angle\)\)"),
         ("9**9**9**9 * aa", "Did you mean 'a'"),
         ("(" * 400, "syntax error|nested"),
         ("a" * 600, "500 characters"),

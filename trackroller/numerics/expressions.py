@@ -198,6 +198,8 @@ def _tree(text: str, field: str) -> ast.expr:
         check_depth(tree, text, field)
         check_angles(tree, text, field)
         return tree
+    except InputError:
+        raise
     except SyntaxError as exc:
         raise InputError(field, text, f"syntax error at character {exc.offset}", _REMEDY) from None
     except (RecursionError, MemoryError, ValueError):

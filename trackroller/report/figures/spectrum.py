@@ -11,6 +11,7 @@ from trackroller.report.numbers import listing
 from trackroller.report.sheet.spectrum import percent, track
 from trackroller.study.spectrum.damage import BODIES
 
+WIDTH_MM = 125.0  # of a column of the page
 MOST = 16  # blocks drawn one by one; the others stand together
 
 
@@ -36,15 +37,16 @@ def damage_by_block(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     order = np.argsort(-sum(shares.values()), kind="stable")
     shown, rest = order[:MOST], order[MOST:]
     words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
-    figure = style.new_figure(24 + 6.0 * len(words), style.WIDE_MM)
+    figure = style.new_figure(24 + 6.0 * len(words), WIDTH_MM)
     panels = figure.subplots(1, len(shares), sharey=True, squeeze=False)[0]
     told = []
     for axes, colour, (body, part) in zip(panels, style.palette(2), shares.items(), strict=False):
         values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
         axes.bar_label(bars, [percent(float(v)) for v in values], padding=2, fontsize=7)
-        axes.set_xlim(0, 118)
-        axes.set_xlabel(f"share of the damage of the {body} [%]")
+        axes.set_xlim(0, 125)
+        axes.set_xticks(range(0, 101, 25))
+        axes.set_xlabel(f"damage of the {body} [%]")
         axes.grid(axis="y", visible=False)
         most = int(np.argmax(part))
         told.append(f"{percent(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")

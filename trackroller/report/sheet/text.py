@@ -38,7 +38,9 @@ def print_facts(ds: xr.Dataset) -> None:
     for flag in facts.flags:
         console.print(f"warning  {flag.sentence} {flag.remedy}")
     undefined = [str(name) for name, variable in ds.data_vars.items() if variable.ndim <= 2 and _is_undefined(variable)]
-    if undefined:
+    if undefined and not any(contact.carries for contact in facts.contacts):
+        console.print(f"undefined here: all {len(undefined)} forces, stresses, lives and other results")
+    elif undefined:
         console.print(f"undefined here: {', '.join(undefined)}")
     fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
     if fields:
