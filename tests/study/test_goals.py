@@ -95,7 +95,9 @@ def test_wrong_goals_of_a_study_are_refused_with_field_and_remedy(data, parts):
 
 def test_material_scatter_needs_materials_that_have_some():
     data = {"name": "n", "design": "inner_outer", "factors": {"axial_force": {"uniform": [0.0, 1.0]}}}
-    with pytest.raises(InputError, match=r"materials with scatter; the database has none for 1\.7225-normalised \(roller\)"):
+    with pytest.raises(
+        InputError, match=r"materials with scatter; the database has none for 1\.7225-normalised \(roller\)"
+    ):
         parse_study(data | {"analysis": {"material_scatter": True}})
     assert parse_study(data | {"analysis": {"material_scatter": 4}}).config.analysis.material_scatter == 4
 
