@@ -2,7 +2,7 @@
 import { scaleLinear } from "d3-scale";
 import { theme } from "./colours.js";
 import { plot } from "./plot.js";
-import { placesOf, scaleOf } from "./scales.js";
+import { ordered, placesOf, scaleOf } from "./scales.js";
 import { count, heading, number } from "./words.js";
 
 const BINS = 32;
@@ -48,7 +48,7 @@ export function histogram(model) {
   function said(column, unlimited, missing) {
     const parts = [`${heading(column)} of ${count(model.count)} selected cases`];
     if (!scaleOf(column).levels) {
-      const values = finite(column.values, model);
+      const values = finite(column, model);
       if (values.length) parts.push(`median ${number(values[values.length >> 1], 3)}, from ${number(values[0], 3)} to ${number(values[values.length - 1], 3)}`);
     }
     if (unlimited) parts.push(`${count(unlimited)} unlimited`);
@@ -60,9 +60,9 @@ export function histogram(model) {
 }
 
 // Finite values of the selected cases in rising order.
-function finite(values, model) {
+function finite(column, model) {
   const found = new Float64Array(model.count);
   let n = 0;
-  for (let i = 0; i < values.length; i++) if (!model.misses[i] && Number.isFinite(values[i])) found[n++] = values[i];
-  return found.subarray(0, n).sort();
+  for (const row of ordered(column)) if (!model.misses[row] && Number.isFinite(column.values[row])) found[n++] = column.values[row];
+  return found.subarray(0, n);
 }

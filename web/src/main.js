@@ -16,6 +16,7 @@ import { slices } from "./slices.js";
 import { table } from "./table.js";
 import { count, heading } from "./words.js";
 
+const QUICK = 20000; // cases; above, the running medians follow when a brush rests
 const FIRST_OUTPUTS = 4; // outputs that have an axis at the start
 
 function counts(model) {
@@ -128,6 +129,7 @@ function start(study, place) {
     el("div", { class: "tools" }, link),
   );
 
+  let [later, medians] = [0, 0]; // timers
   const draws = {
     selection() {
       bar.draw();
@@ -137,7 +139,10 @@ function start(study, place) {
       barsSaid.textContent = bars.draw();
       list.draw();
       fields.draw();
-      if (!study.grid) cuts.draw();
+      if (study.grid) return;
+      clearTimeout(medians);
+      if (study.count > QUICK) medians = setTimeout(cuts.draw, 120);
+      else cuts.draw();
     },
     view() {
       cached = null;
@@ -168,7 +173,6 @@ function start(study, place) {
     sort: () => list.draw(),
     slice: () => cuts.draw(),
   };
-  let later = 0;
   model.listen((what) => {
     draws[what]();
     if (what === "hover") return;

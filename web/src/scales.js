@@ -66,6 +66,7 @@ function numberScale(...columns) {
 
 const made = new WeakMap();
 const placed = new WeakMap();
+const orders = new WeakMap();
 
 // Place of every case on the axis of a column, from 0 to 1.
 export function placesOf(column) {
@@ -81,9 +82,12 @@ export function placesOf(column) {
 
 // All cases in the order of their places; those without a value are left out.
 export function ordered(column) {
-  const places = placesOf(column);
-  const rows = Uint32Array.from(places.keys()).filter((row) => !Number.isNaN(places[row]));
-  return rows.sort((a, b) => places[a] - places[b]);
+  if (!orders.has(column)) {
+    const places = placesOf(column);
+    const rows = Uint32Array.from(places.keys()).filter((row) => !Number.isNaN(places[row]));
+    orders.set(column, rows.sort((a, b) => places[a] - places[b]));
+  }
+  return orders.get(column);
 }
 
 export function scaleOf(column) {

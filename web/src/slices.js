@@ -7,7 +7,7 @@ import { count, heading, unitOf } from "./words.js";
 
 const WINDOWS = 24; // places of the running median
 const SHARE = 0.12; // part of the rows in one window
-const MOST_ROWS = 6000; // rows behind a running median; more rows do not change it visibly
+const MOST_ROWS = 4000; // rows behind a running median; more rows do not change it visibly
 const FEWEST = 8; // rows of the smallest window
 const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
 
@@ -23,7 +23,6 @@ export function slices(model) {
     .map((list) => ({ list, scaleY: commonScale(list), base: plot(260, `Curves of ${list.map((c) => c.label).join(", ")}`) }));
   const held = new Map(factors.map((c) => [c.name, c.codes ? Math.floor((c.levels.length - 1) / 2) : 0]));
   const state = { x: (factors.find((c) => c.number && c.codes?.length && c.levels.length > 2) ?? factors[0])?.name ?? "" };
-  const orders = new Map(); // cases in the order of a factor
   const rowOf = study.grid ? places() : null;
   const fields = el("div", { class: "tools" });
   const said = el("p", { class: "facts", role: "status", "aria-live": "polite" });
@@ -77,8 +76,7 @@ export function slices(model) {
 
   // Valid selected cases along a factor, at most MOST_ROWS of them.
   function chosen(column) {
-    if (orders.get(column) === undefined) orders.set(column, ordered(column));
-    const rows = orders.get(column).filter((row) => !model.misses[row] && model.state[row] === 0);
+    const rows = ordered(column).filter((row) => !model.misses[row] && model.state[row] === 0);
     const step = Math.ceil(rows.length / MOST_ROWS);
     return step > 1 ? rows.filter((_, i) => i % step === 0) : rows;
   }
