@@ -1,9 +1,11 @@
-"""Read a number that a user wrote, and nothing that only looks like one."""
+"""Read a number that a user wrote, and nothing that only looks like one; compare the values of a column."""
 
 from __future__ import annotations
 
 import re
 from typing import Any
+
+import numpy as np
 
 _TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)
 MAX_LENGTH = 400  # characters of a number
@@ -33,3 +35,11 @@ def read_number(value: Any) -> float:
         return float(value)
     except (TypeError, OverflowError) as exc:
         raise ValueError(str(exc)) from None
+
+
+def all_equal(values: np.ndarray) -> bool:
+    """Return whether all values (n,) of a column are equal; NaN, which stands for 'not given', equals NaN."""
+    same = values == values[:1]
+    if values.dtype.kind == "f":
+        same |= np.isnan(values) & np.isnan(values[:1])
+    return bool(np.all(same))

@@ -131,6 +131,8 @@ def plus_minus(value: float, low: float, high: float) -> str:
 
 def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     """Write a share of variance or a probability as '61 ± 3 %', or '61 %' without an interval; never below 0."""
+    if math.isinf(value):
+        return "unlimited"
     exact, half = 100 * max(0.0, value), 50 * (high - low)
     if math.isfinite(half):
         return f"{exact:.0f} ± {max(1.0, half):.0f} %" if half >= 0.5 or exact >= 1 else f"{exact:.1f} ± {half:.1f} %"

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.numerics.numbers import all_equal
 from trackroller.study.design.build import case_columns
 from trackroller.study.files import StudyFolder, WorkError, write_whole
 from trackroller.study.identity import chunk_name
@@ -93,7 +94,4 @@ def write_list(folder: StudyFolder, cases: CaseList) -> None:
 
 def _shortened(values: np.ndarray) -> np.ndarray:
     """Return the first value alone if all values of a column are equal."""
-    equal = values == values[:1]
-    if values.dtype.kind == "f":
-        equal |= np.isnan(values) & np.isnan(values[:1])
-    return values[:1] if equal.all() else values
+    return values[:1] if all_equal(values) else values

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import EXACTNESS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.geometry import contact_geometry
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -99,7 +100,7 @@ def _matched_rows(ds: xr.Dataset, columns: Mapping[str, np.ndarray], models: lis
     own = ds[MODEL].values.astype(str)
     code = np.zeros(own.size, dtype=np.int64)
     for values in columns.values():
-        if not _varies(values):
+        if all_equal(values):
             continue
         _, number = np.unique(values, return_inverse=True)
         _, code = np.unique(code * (int(number.max()) + 1) + number, return_inverse=True)
@@ -147,16 +148,8 @@ def _factors(study: Mapping[str, Any], inputs: Mapping[str, np.ndarray], order: 
     given = study.get("factors", {})
     free = [str(n) for n, spec in given.items() if not (isinstance(spec, Mapping) and "expression" in spec)]
     free += [n for n in OPTION_FACTORS if isinstance(study.get(n), list)] + [d for d in order if d != "case"]
-    vary = [n for n, values in inputs.items() if _varies(values) and n != MODEL]
+    vary = [n for n, values in inputs.items() if not all_equal(values) and n != MODEL]
     return [n for n in dict.fromkeys(free) if n in vary] or [n for n in vary if n not in MATERIAL_FIELDS]
-
-
-def _varies(values: np.ndarray) -> bool:
-    """Is there more than one value? NaN, for not given, is one."""
-    same = values == values[:1]
-    if values.dtype.kind == "f":
-        same |= np.isnan(values) & np.isnan(values[:1])
-    return not bool(np.all(same))
 
 
 def _with_life(ds: xr.Dataset) -> xr.Dataset:

@@ -19,19 +19,12 @@ from trackroller.report.comparison.groups import (
     span,
 )
 from trackroller.report.comparison.pairs import pairs
-from trackroller.report.numbers import capital, rounded
+from trackroller.report.numbers import capital, percent
 
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM"}
 MOST = 0.9  # share of the designs of a level that counts as the level
 FLAT = 0.1  # a factor whose levels differ less in the share of good designs is not worth a sentence
 FEWEST = 3  # designs that roll in both models; of fewer nothing is said
-
-
-def percent(value: float) -> str:
-    """A share or an error in two figures."""
-    if not np.isfinite(value):
-        return "unlimited"
-    return f"{rounded(100 * value, 2)} %" if value >= 1e-4 or value == 0 else "0.01 %"
 
 
 def sentences(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:

@@ -13,11 +13,11 @@ from matplotlib.figure import Figure
 from trackroller.report.comparison.errors import GOOD, errors, measured
 from trackroller.report.comparison.groups import spin_is_its_own
 from trackroller.report.comparison.pairs import pairs
-from trackroller.report.comparison.words import gap, percent, short, telling_factors
+from trackroller.report.comparison.words import gap, short, telling_factors
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
 from trackroller.report.figures.panels import capped, mark_unlimited
-from trackroller.report.numbers import capital, with_unit
+from trackroller.report.numbers import capital, percent, with_unit
 
 Drawn = tuple["Figure", style.FigureInfo] | None
 Values = Callable[["xr.Dataset"], "xr.DataArray"]
