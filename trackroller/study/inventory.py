@@ -148,6 +148,6 @@ def check_default_model(study: Study, folder: StudyFolder) -> None:
             "contact_model",
             option.default,
             f"it is the default now, the study file names no contact model, and {folder.root} was solved with another",
-            f"Nothing was changed. Add the line `contact_model: {earlier}` to the study file to keep that model and its "
-            f"results, or `contact_model: {option.default}` to solve all cases anew.",
+            f"Nothing was changed. Add the line `contact_model: {earlier}` to the study file to keep that model and "
+            f"its results, or `contact_model: {option.default}` to solve all cases anew.",
         )
