@@ -17,6 +17,8 @@ LOCKS = ("requirements.lock", "requirements-ci.lock")
 HEAD = """# Licences of the dependencies
 
 Made by `make lock` from the metadata of the packages. trackroller is under the MIT licence and ships none of them.
+The script of the explorer holds fflate (MIT) and d3-scale with the d3 modules it needs (ISC); their licences stand at
+its head, in `trackroller/report/explorer/assets/explorer.js` and in every report.
 
 | package | licence |
 | --- | --- |

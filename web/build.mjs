@@ -33,7 +33,8 @@ const options = {
 };
 const script = await build({ ...options, entryPoints: ["src/main.js"] });
 const style = await build({ ...options, entryPoints: ["src/explorer.css"] });
-const notice = licences(Object.keys(script.metafile.inputs));
+const kept = Object.entries(Object.values(script.metafile.outputs)[0].inputs).filter(([, { bytesInOutput }]) => bytesInOutput > 0);
+const notice = licences(kept.map(([path]) => path));
 const files = {
   "explorer.js": `/*! The explorer of trackroller (MIT) with\n${notice}\n*/\n${script.outputFiles[0].text}`,
   "explorer.css": style.outputFiles[0].text,

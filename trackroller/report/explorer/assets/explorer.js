@@ -1,5 +1,5 @@
 /*! The explorer of trackroller (MIT) with
-d3-array 3.2.5 (ISC), d3-color 3.1.1 (ISC), d3-format 3.1.3 (ISC), d3-interpolate 3.0.2 (ISC), d3-time 3.1.1 (ISC), d3-time-format 4.1.1 (ISC)
+d3-array 3.2.5 (ISC), d3-color 3.1.1 (ISC), d3-format 3.1.3 (ISC), d3-interpolate 3.0.2 (ISC)
 
 Copyright 2010-2026 Mike Bostock
 
