@@ -31,7 +31,8 @@ def probabilities(
     The bounds are those of Clopper and Pearson for an effective number of samples p (1 - p) / var(p) [1]_. A Latin
     hypercube has at most n / (n - 1) times the variance of a random sample, and it takes away the part that is a sum
     of functions of the single factors [2]_. var(p) is therefore the variance that such a sum misses, over n. The sum
-    is fitted, and its error is that for held-out rows. With few events (or few non-events) the fit proves little: the
+    is fitted, and its error is that for held-out rows. A grown hypercube with a share of empty strata keeps this share
+    of the part taken away. With few events (or few non-events) the fit proves little: the
     effective number is at most n times the smaller of both counts. Coverage: ``validation/probability_intervals.py``.
 
     References
@@ -42,7 +43,8 @@ def probabilities(
     n, p = len(hits), hits.mean(axis=0)
     missed = hits.var(axis=0)
     if unit is not None and ordered is not None:
-        missed = np.minimum(missed, _unexplained(hits, unit, ordered))
+        fitted = np.minimum(missed, _unexplained(hits, unit, ordered))
+        missed = fitted + _empty(unit) * (missed - fitted)
     gain = p * (1 - p) / np.maximum(missed, 1e-300)
     low, high = bounds(p, n * np.clip(gain, 1.0, np.maximum(1.0, n * np.minimum(p, 1 - p))))
     return p, low, high
@@ -65,6 +67,12 @@ def bounds(share: np.ndarray, count: np.ndarray | float) -> tuple[np.ndarray, np
         low = np.where(hit > 0, stats.beta.ppf(0.025, hit, count - hit + 1), 0.0)
         high = np.where(hit < count, stats.beta.ppf(0.975, hit + 1, count - hit), 1.0)
     return low, high
+
+
+def _empty(unit: np.ndarray) -> float:
+    """Return the largest share of the n strata of a factor that hold no sample; lists count as stratified."""
+    own = unit[:, (unit % 1 != 0).any(axis=0)]
+    return max((1 - len(np.unique((column * len(unit)).astype(int))) / len(unit) for column in own.T), default=0.0)
 
 
 def _unexplained(hits: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> np.ndarray:
