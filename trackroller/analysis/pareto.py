@@ -231,7 +231,9 @@ def _of_points(table: xr.Dataset, name: str) -> xr.DataArray:
         own = table["target"].values == output
         if not own.any():
             raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
-        found, told, units = table["target_probability"][int(np.argmax(own))], f"the target of {output}", "1"
+        place = int(np.argmax(own))
+        told, units = f"meeting the target for {table['target_name'].values[place]}", "1"
+        found = table["target_probability"].isel(target=place)
     elif kind:
         if output not in table["output"].values or kind not in table:
             raise InputError("pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}")
