@@ -67,7 +67,7 @@ def fingerprints(table: CaseTable, options: list[dict[str, Any]] | dict[str, Any
         heads = [known[id(o)] for o in options]
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
     given = any(np.any(column != "") for column in texts)
-    data, width = memoryview(rows.reshape(-1).view(np.uint8)), rows.itemsize * rows.shape[1]
+    data, width = rows.reshape(-1).view(np.uint8).data, rows.itemsize * rows.shape[1]
     found = bytearray()
     for i, head in enumerate(heads):
         digest = head.copy()
