@@ -46,6 +46,14 @@ def test_grid_has_one_row_a_combination_the_last_factor_fastest():
     assert design["roller_material"].dtype == object
 
 
+def test_studies_and_cases_take_the_exact_theory_unless_told_otherwise():
+    shipped = [tr.load_study(path).config for path in STUDIES]
+    asked = {(config.contact_model, config.accuracy) for config in [parse_study({"name": "a"}).config, *shipped]}
+    assert asked == {("kalker", "standard")}
+    found = tr.solve(tr.Case(motor_force=0, friction_coefficient=0.1), "forces")
+    assert found.attrs["contact_model"] == "kalker" and int(found.contact_model_used) == 2
+
+
 def test_design_is_what_solve_takes_and_keeps_infinity():
     study = parse_study({"name": "g", "factors": {"guide_curve_radius": {"values": ["inf", 220]}}})
     design = study.design()
