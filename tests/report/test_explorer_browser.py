@@ -266,6 +266,33 @@ def test_a_click_pins_a_case_and_two_stand_side_by_side(page, grid):
     assert f"--set roller_profile_radius={level}" in commands[0]
 
 
+def test_table_and_commands_are_copied(browser, pages):
+    stub = "Object.defineProperty(navigator, 'clipboard', {value: {writeText: async t => { window.copied = t; }}})"
+    page = browser.open(pages["grid"], before=stub)
+    page.run("trackroller.select({axial_force: [30, 30], friction_coefficient: [0.3, 0.3]}); trackroller.pin(9)")
+    page.run("document.querySelector('.pinned .command button').click()")
+    assert page.run("window.copied") == page.run("trackroller.commands(9)[0]")
+    page.run("[...document.querySelectorAll('.tools button')].find(b => b.textContent === 'Copy').click()")
+    lines = page.run("window.copied").splitlines()
+    assert lines[0].startswith("case\tfriction_coefficient\t") and len(lines) == 1 + shown(page)[0]
+    page.close()
+
+
+def test_a_sorted_table_starts_with_the_largest_and_ends_with_missing_values(page, grid):
+    head = "[...document.querySelectorAll('.head button')].find(b => b.textContent.startsWith('Life of the roller'))"
+    page.run(f"{head}.click(); {head}.click()")
+    lives = grid["roller_life_hours"].values.ravel()
+    best = page.run("document.querySelector('.rows [role=rowheader]').textContent")
+    assert (
+        lives[int(best)] == np.nanmax(lives)
+        and page.run(f"{head}.parentElement.getAttribute('aria-sort')") == "descending"
+    )
+    page.run("document.querySelector('.cases').focus()")
+    page.key("End")
+    last = page.run("[...document.querySelectorAll('.rows [role=rowheader]')].at(-1).textContent")
+    assert np.isnan(lives[int(last)]) == np.isnan(lives).any()
+
+
 def test_a_touched_case_is_told_in_words(page):
     page.run("document.querySelector('#explorer canvas[tabindex]').focus()")
     page.key("ArrowRight")

@@ -182,6 +182,10 @@ def test_a_browser_shows_it_whole_and_without_console_errors(report):
             page.resize(width)
             found = page.run(OVERFLOW)
             assert found["images"] == 0 and found["out"] == [] and found["page"] <= found["width"] == width
+        page.run("document.querySelector('figure a').click()")
+        assert page.run("getComputedStyle(document.querySelector('figure:target img')).position") == "fixed"
+        page.key("Escape")
+        assert page.run("document.querySelector('figure:target')") is None
         assert page.complaints == [] and page.requests == [report.as_uri()]
 
 

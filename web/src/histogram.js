@@ -29,7 +29,7 @@ export function histogram(model) {
     base.clear();
     const ticks = scaleY.ticks(4).filter(Number.isInteger).map((k) => [share(k), count(k)]);
     base.frame(scale, { ticks, levels: false }, heading(column), "Cases");
-    const bars = [...Array.from({ length: bins }, (_, k) => [k / bins, (k + 1) / bins]), [1.02, 1.06], [-0.06, -0.02]];
+    const bars = [...Array.from({ length: bins }, (_, k) => [k / bins, (k + 1) / bins]), [1.01, 1.04], [-0.04, -0.01]];
     bars.forEach(([from, to], k) => {
       const [left, width] = [base.x(from), Math.max(1, base.x(to) - base.x(from) - 1)];
       for (const [n, colour] of [[all[k], line], [chosen[k], mark]]) {

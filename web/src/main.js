@@ -263,4 +263,9 @@ async function open() {
   }
 }
 
+// Escape closes an enlarged figure; an address that names no element leaves the page where it is.
+addEventListener("keydown", (event) => {
+  if (event.key === "Escape" && document.querySelector("figure:target")) location.hash = "closed";
+});
+
 open();
