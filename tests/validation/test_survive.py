@@ -1,4 +1,4 @@
-"""Kill real runs while they solve and while they gather; `validation/benchmarks/survive.py` kills ten times."""
+"""Kill real runs while they solve and while they gather; `validation/benchmarks/survive.py` kills eleven times."""
 
 from __future__ import annotations
 
