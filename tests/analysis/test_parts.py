@@ -192,6 +192,7 @@ def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
     assert [row[1] for row in table.rows] == ["Load", "Friction coefficient", "Roller material"]
     text = " ".join(s.text for head, said in summary.in_short(StudyView.of(ds), sens, []) for s in said)
     assert "By groups, roller material accounts for" in text and "load" in text
+    assert (text.index("By groups") < text.index("explains")) if exchange == "groups" else "(total index)" in text
 
 
 def test_levels_reach_analysis_table_and_summary():

@@ -71,4 +71,8 @@ def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
         lives = [n for n in LIVES if n in names]
         return [choices.robustness(sens, lives[0])] if lives else []
     ranked = [n for n in [*LIVES, *names] if n in names and words.order(sens, n)]
-    return [words.decides(sens, ranked[0]), *parts.sentences(sens, ranked[0])] if ranked else []
+    if not ranked:
+        return []
+    said, more = words.decides(sens, ranked[0]), parts.sentences(sens, ranked[0])
+    by_group = "group_ST" in sens and words.headline(sens) == "first"  # the design serves groups better than factors
+    return [*more, said] if by_group else [said, *more]
