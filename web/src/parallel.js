@@ -132,9 +132,10 @@ export function parallel(model, colours, say) {
     };
     context.textAlign = "center";
     wrapped(heading(column), 15, 4).forEach((line, k) => text(line, at, 11 + 12 * k, ink));
-    context.textAlign = "left";
+    const last = axes.length > 1 && column === axes[axes.length - 1]; // its labels would be cut off on the right
+    context.textAlign = last ? "right" : "left";
     const shown = scale.ticks.length > 14 ? scale.ticks.filter((_, k) => k % Math.ceil(scale.ticks.length / 14) === 0) : scale.ticks;
-    for (const [where, words] of shown) text(words.length > 14 ? `${words.slice(0, 13)}…` : words, at + 5, y(where) + 4, ink);
+    for (const [where, words] of shown) text(words.length > 14 ? `${words.slice(0, 13)}…` : words, last ? at - 5 : at + 5, y(where) + 4, ink);
     const brush = model.brushes.get(column.name);
     if (!brush) return;
     context.fillStyle = mark;
