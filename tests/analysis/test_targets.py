@@ -7,6 +7,7 @@ from scipy import stats
 from trackroller.analysis.probability import bounds, probabilities
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
+from trackroller.report import choices
 from trackroller.study.config import parse_study
 from trackroller.study.design.grown_lhs import grown_lhs
 
@@ -87,6 +88,9 @@ def test_cases_that_miss_a_constraint_miss_the_target():
     out = analyse_dataset(solved(POINTS | {"constraints": ["friction_coefficient < 0.2"]}))
     power = out["target_probability"].sel(target=out["target"] == "friction_power").values
     np.testing.assert_allclose(power, 0.5, atol=0.005)
+    said = choices.robustness(out, "roller_life_hours")
+    assert "nine of ten rolling cases that meet the constraints reach" in said.text and "no B10 is left" in said.text
+    assert (out["b10_safe"].sel(output="roller_life_hours") == 0).all()  # half of the cases count as life 0
 
 
 EVENTS = {
