@@ -6,6 +6,7 @@ import functools
 import os
 import signal
 import subprocess
+import sys
 import time
 import zipfile
 from pathlib import Path
@@ -74,6 +75,13 @@ def test_study_to_report_then_nothing_and_after_a_change_only_what_depends_on_it
 def test_wrong_configuration_is_told_without_a_traceback(place, words, named):
     told = snakemake(place, "-n", *words, code=1)
     assert named in told and "Traceback" not in told
+
+
+@pytest.mark.parametrize(("error", "lines"), [("WorkError('the disk is full')", 1), ("KeyError('a mistake')", 3)])
+def test_a_script_tells_an_error_of_the_work_in_one_line(tmp_path, error, lines):
+    code = f"from trackroller.cli.workflow import WorkError, log_to\nlog_to('rule.log')\nraise {error}\n"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1 and len(done.stderr.splitlines()) == lines, done.stderr
 
 
 def test_killed_workflow_goes_on_without_unlocking_and_solves_no_finished_chunk_again(place):

@@ -8,6 +8,7 @@ import logging
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from types import TracebackType
 from typing import Any, TextIO
 
 from trackroller.errors import InputError, unknown_name
@@ -152,8 +153,17 @@ def finished(folder: StudyFolder, seconds: float) -> str:
 
 def log_to(path: str, step: str = "") -> None:
     """Send the log lines and warnings of this process to a rule's log file, and tell the user the step's name."""
+    sys.excepthook = _tell_error
     if step:
         print(step, file=sys.stderr, flush=True)
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s", force=True)
     logging.captureWarnings(True)
+
+
+def _tell_error(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """Print an error of the input or the work in one line, any other error with its traceback."""
+    if isinstance(error, (InputError, WorkError)):
+        print(f"trackroller: {error}", file=sys.stderr)
+    else:
+        sys.__excepthook__(kind, error, trace)
