@@ -246,7 +246,7 @@ def test_the_shipped_study_may_be_edited(tmp_path):
         text = (tmp_path / "results" / "contact_models" / "report.html").read_text(encoding="utf-8")
         assert "Contact models compared" in text and "200 N radial" not in text
         drawn = {p.stem for p in (tmp_path / "results" / "contact_models" / "figures").glob("*.svg")}
-        assert drawn >= FIGURES | {"models-patches", "models-map"}
+        assert drawn >= FIGURES | {"models-patches"}
 
 
 def test_the_shipped_study_holds_friction_drive_and_spin_and_its_words_are_written(own, tmp_path):
