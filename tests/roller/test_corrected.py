@@ -1,6 +1,7 @@
 """Equilibrium by the table of the exact theory, corrected by elements."""
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -85,3 +86,51 @@ def test_the_second_solution_of_a_patch_takes_one_grid(monkeypatch):
     monkeypatch.setattr(correction, "NEAR", 0.3)
     balance(scene_of(CASES[:2]))
     assert [shape[-1] for shape in grids[:3]] == [8, 16, 16]
+
+
+def test_the_estimated_error_of_forces_bounds_their_change_on_finer_elements():
+    cases = CASES[:5]
+    found, best = (
+        tr.solve(cases, ("forces",), contact_model="kalker", accuracy=dataclasses.replace(QUICK, elements=n))
+        for n in (16, 40)
+    )
+    capacity = best.normal_force.values * np.array([case.friction_coefficient for case in cases])[:, None]
+    told = found.force_error_estimate.values
+    for name in ("lateral_force", "driving_force"):
+        assert np.all(np.abs(found[name] - best[name]).values / capacity < told), name
+    assert np.median(best.force_error_estimate.values) < 0.6 * np.median(told) and told.max() < 0.05
+    assert found.force_error_estimate.attrs["units"] == "1"
+
+
+def test_errors_are_told_only_where_they_were_measured():
+    """A bound of ellipses says nothing about solved pressures, and one of constant friction nothing about laws."""
+    case = tr.Case(motor_force=0.0)
+    told = tr.solve(case, ("forces",), contact_model="sliding").lateral_force.attrs
+    assert told["relative_error_99_percent"] > 0
+    falling = dict(friction_law={"kind": "exponential", "speed": 20})
+    others = (
+        tr.solve(case, ("forces",), contact_model="sliding", normal="halfspace"),
+        tr.solve(tr.Case(motor_force=0.0, **falling), ("forces",), contact_model="sliding"),
+    )
+    for ds in others:
+        assert "relative_error_99_percent" not in ds.lateral_force.attrs
+        assert np.isnan(ds.force_error_estimate).all()
+    slides = tr.solve(tr.Case(motor_force=-1000.0), ("forces",), contact_model="kalker")
+    assert slides.regime == 1 and np.all(slides.force_error_estimate == 0)
+
+
+def test_results_converge_with_the_observed_orders():
+    """On 16, 32 and 64 elements: forces and moments over mu F_N, work and peak over themselves."""
+    cases = [*CASES[:2], tr.Case(motor_force=-15, friction_coefficient=0.4, roller_profile_radius=-9)]
+    friction = np.array([case.friction_coefficient for case in cases])[:, None]
+    names = ("lateral_force", "driving_force", "spin_moment", "friction_energy_per_distance", "peak_stress")
+    grids = []
+    for n in (16, 32, 64):
+        accuracy = dataclasses.replace(PRESETS["reference"], elements=n)
+        ds = tr.solve(cases, ("forces", "friction_work", "peak_stress"), contact_model="kalker", accuracy=accuracy)
+        forces = [ds[name].values / (friction * ds.normal_force.values) for name in names[:3]]
+        grids.append([*forces, *(np.log(ds[name].values) for name in names[3:])])
+    for k, name in enumerate(names):
+        steps = [np.sqrt(np.mean((b[k] - a[k]) ** 2)) for a, b in itertools.pairwise(grids)]
+        order = np.log2(steps[0] / steps[1])
+        assert 1.3 < order < 3.3, (name, order)

@@ -110,6 +110,9 @@ class KalkerModel(ContactModel):
             return self.correction.works(ellipse, slip, friction, rows)
         return self._solution(ellipse, slip, friction, rows).works
 
+    def force_error(self, n):
+        return self._law.error(n) if self.correction is None else self.correction.error.copy()
+
     def state(self, n):
         return self._law.state(n) if self.correction is None else self.correction.state(n)
 

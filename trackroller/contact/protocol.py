@@ -113,6 +113,10 @@ class ContactModel:
         """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
         return np.zeros(n), np.ones(n, bool)
 
+    def force_error(self, n: int) -> np.ndarray:
+        """Return the estimated error of the friction forces of n rollers over mu F_N, (n, 2); NaN if unknown."""
+        return np.full((n, 2), np.nan)
+
     def used(self, n: int) -> np.ndarray:
         """Return the name of the contact model that gave the forces of each of n rollers, object array (n,)."""
         return np.full(n, self.name, dtype=object)

@@ -276,13 +276,12 @@ def _sum(one: Levels, other: Levels) -> Levels:
     return Levels(*(a + b for a, b in zip(vars(one).values(), vars(other).values(), strict=True)))
 
 
-def error_attributes(settings: Accuracy, contact_model: str) -> dict[str, dict[str, Any]]:
-    """Attributes that tell the expected error of discretisation, by result variable."""
-    levels = expected_errors(settings, contact_model)
+def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
+    """Attributes that tell the expected errors of discretisation `levels`, by result variable."""
     return {
         variable: {
             "expected_relative_error": rounded_up(max(levels[q].median, 1e-16)),
-            "relative_error_99_percent": rounded_up(max(levels[q].bound, 1e-16)),
+            "relative_error_99_percent": rounded_up(max(levels[q].bound, levels[q].p99, 1e-16)),
             "relative_error_refers_to": _RELATIVE_TO[q],
         }
         for variable, q in _QUANTITY_OF.items()

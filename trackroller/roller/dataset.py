@@ -59,6 +59,14 @@ _ALL = (
     Variable("lateral_force", "forces", _C, "N", "F_T", "lateral friction force on the roller"),
     Variable("driving_force", "forces", _C, "N", "F_A", "longitudinal friction force on the roller"),
     Variable("spin_moment", "forces", _C, "N mm", "M_R", "spin moment about the contact normal"),
+    Variable(
+        "force_error_estimate",
+        "forces",
+        _C,
+        "1",
+        "delta(F)/(mu F_N)",
+        "estimated error of F_T and F_A from discretisation over mu F_N",
+    ),
     Variable("rolling_radius_shift", "forces", (), "mm", "r_Delta0", "deviation of the rolling radius"),
     Variable("slip", "forces", (), "1", "xi", "longitudinal creepage r_Delta0/r_A, > 0 braking"),
     Variable(

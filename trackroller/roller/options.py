@@ -9,7 +9,15 @@ from typing import Any
 from trackroller.contact.friction_laws import law_of
 from trackroller.errors import InputError
 from trackroller.parameters import OPTIONS
-from trackroller.roller.accuracy import PRESETS, Accuracy, accuracy_settings, rounded_up, table_errors
+from trackroller.roller.accuracy import (
+    PRESETS,
+    Accuracy,
+    Levels,
+    accuracy_settings,
+    expected_errors,
+    rounded_up,
+    table_errors,
+)
 from trackroller.roller.stop import parse_condition
 
 MEASURED_OF_TABLE = {"forces", "contact"}  # outputs whose errors by the table of the exact theory are measured
@@ -42,6 +50,15 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
     def settings(self) -> Accuracy:
         """Discretisation of each stage that the accuracy stands for."""
         return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
+
+    def expected_errors(self, contact_model: str, constant_friction: bool) -> dict[str, Levels]:
+        """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
+
+        The measurements hold for ellipses, constant friction and the rigid slip that each model has by itself.
+        """
+        if self.normal != "hertz" or self.slip_terms or not constant_friction:
+            return {}
+        return expected_errors(self.settings, contact_model)
 
     def changed(self, **values: Any) -> Options:
         """Return the options with other values for some of them."""

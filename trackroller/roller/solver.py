@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
+from trackroller.contact.friction_laws import law_of
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
@@ -138,6 +139,7 @@ def solve(
     _check_cases(table, options)
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
     ds = with_reasons(_assemble(join(windows), options, single), table, options)
+    _tell_errors(ds, table, options)
     if not single or hasattr(cases, "data_vars"):
         return ds
     return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database or load_database())
@@ -205,6 +207,7 @@ def _solve_group(table: CaseTable, options: Options) -> Block:
     results = Results.start(scene, balance(scene))
     wanted = set(options.outputs)
     stages.forces(results)
+    stages.force_error(results, options)
     stages.contact(results, options)
     stages.steep_friction(results, options)
     if "friction_work" in wanted:
@@ -241,8 +244,14 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     ds = build({name: block.values[name] for name in keep}, flags, attrs, single)
-    tabled = np.any(block.model == CONTACT_MODELS.index("kalker_table"))
-    for name, told in error_attributes(options.settings, "kalker_table" if tabled else options.contact_model).items():
+    return ds
+
+
+def _tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
+    """Add the measured errors of discretisation as attributes, where the cases were solved as it was measured."""
+    constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
+    tabled = np.any(ds.contact_model_used.values == CONTACT_MODELS.index("kalker_table"))
+    model = "kalker_table" if tabled else options.contact_model
+    for name, told in error_attributes(options.expected_errors(model, constant)).items():
         if name in ds:
             ds[name].attrs.update(told)
-    return ds

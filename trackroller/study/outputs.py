@@ -22,6 +22,7 @@ BOOKKEEPING = {
     "validity",
     "validity_body",
     "error_estimate",
+    "force_error_estimate",
     "life_error_estimate",
     "reason",
     "stopped",

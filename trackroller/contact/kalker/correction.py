@@ -48,7 +48,7 @@ class Correction:
         self.offset, self.slope = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))  # over mu F_N, mu F_N and mu F_N c
         self.limit = np.zeros((n, 2, 3))  # extrapolation to small elements, in the same units
         self.place, self.reach = np.full((n, 2), np.nan), np.zeros((n, 2))
-        self.error = np.full((n, 2), np.nan)
+        self.error = np.full((n, 2), np.nan)  # of the friction forces over mu F_N, estimated
         self.beyond = np.zeros(n, bool)  # rollers outside the table's range
         self.count = 0  # of solved patches
         self.store = Store(2 * n)
@@ -125,7 +125,8 @@ class Correction:
                 found = dataclasses.replace(found, energy_residual=self.store.get(slot).energy_residual)
             else:
                 self.limit[own, side[pick]] = found.limit / scale[pick]
-                self.error[own, side[pick]] = np.max(found.error_estimate[:, :2] / scale[pick, :2], axis=1)
+                if forces:
+                    self.error[own, side[pick]] = found.force_error / scale[pick, 0]
             self.store.put(slot, found)
         return exact
 

@@ -45,6 +45,7 @@ class KalkerLaw:
         self._starts: dict[tuple[int, int, bool], tuple[np.ndarray, float]] = {}  # tractions and creepage
         self._misses: dict[tuple[int, int], int] = {}
         self._states: dict[tuple[int, int], tuple[float, bool]] = {}
+        self._errors: dict[tuple[int, int], float] = {}
         self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
 
     def __call__(
@@ -100,6 +101,10 @@ class KalkerLaw:
         solution = parts[0] if len(parts) == 1 else joined(parts, np.argsort(np.concatenate(picks)))
         kept = zip(solution.traction.astype(np.float32), creep.longitudinal, strict=True)
         self._starts.update(zip(keys, kept, strict=True))
+        if fine and settings.extrapolate:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                error = solution.force_error / (friction * patch.normal_force)
+            self._errors.update(zip((key[:2] for key in keys), error, strict=True))
         for key, value, good in zip(keys, solution.residual, solution.converged, strict=True):
             if not good:
                 self._misses[key[:2]] = self._misses.get(key[:2], 0) + 1
@@ -119,6 +124,10 @@ class KalkerLaw:
         both = [[self._states.get((i, k), (0.0, True)) for k in (0, 1)] for i in range(n)]
         values = np.array(both, float).reshape(n, 2, 2)
         return values[:, :, 0].max(axis=1), values[:, :, 1].min(axis=1) > 0
+
+    def error(self, n: int) -> np.ndarray:
+        """Return the estimated error of the friction forces over mu F_N, (n, 2)."""
+        return np.array([[self._errors.get((i, k), np.nan) for k in (0, 1)] for i in range(n)]).reshape(n, 2)
 
     def kept(self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray) -> PatchSolution:
         """Return the solution as `solve` does; reuse that of the last call of `kept` for the same patches."""

@@ -129,12 +129,22 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         energy,
         limit,
         np.abs(error),
+        _force_error(ellipse, friction, np.abs(error[:, :2]).max(axis=1), fine.stick_fraction, elements),
         fine.own_slip,
         fine.residual,
         fine.steps,
         fine.products,
         fine.residual <= settings.tolerance,
     )
+
+
+def _force_error(ellipse, friction, change: np.ndarray, stick: np.ndarray, elements: int) -> np.ndarray:
+    """Return the estimated error of the friction forces, (n,) [N], by their change from elements of twice the size."""
+    capacity = friction * ellipse.normal_force
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(capacity > 0.0, change / capacity, 0.0)
+        ratio = ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
+    return capacity * extrapolation.force_error(share, stick, ratio, elements)
 
 
 def _full(value, n: int) -> np.ndarray:

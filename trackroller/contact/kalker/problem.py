@@ -74,6 +74,8 @@ class PatchSolution:
         What the extrapolation has added to the resultants [N, N, N mm]; 0 without extrapolation.
     error_estimate : ndarray, shape (n, 3)
         |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation.
+    force_error : ndarray, shape (n,)
+        Estimated error of the friction forces [N], see `extrapolation.force_error`; NaN without extrapolation.
     own_slip : ndarray, shape (n,)
         Slip per travel speed that the traction mu p_max of an element causes at itself [1], see `subgrid`.
     residual : ndarray, shape (n,)
@@ -95,6 +97,7 @@ class PatchSolution:
     energy_residual: np.ndarray
     limit: np.ndarray
     error_estimate: np.ndarray
+    force_error: np.ndarray
     own_slip: np.ndarray
     residual: np.ndarray
     steps: np.ndarray

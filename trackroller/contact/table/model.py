@@ -84,6 +84,10 @@ class TableModel(ContactModel):
         """Return residual and convergence of the friction law in the patches solved exactly; 0 and True by table."""
         return self.exact.state(n)
 
+    def force_error(self, n: int) -> np.ndarray:
+        """Return the estimated error of the rollers outside the table's range; NaN of the others, (n, 2)."""
+        return np.where((self.used(n) == self.exact.name)[:, None], self.exact.force_error(n), np.nan)
+
     def used(self, n: int) -> np.ndarray:
         """Return the name of the model that gave the forces of each of n rollers."""
         beyond = self._beyond if self.correction is None else self._beyond | self.correction.beyond

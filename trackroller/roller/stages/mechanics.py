@@ -86,6 +86,29 @@ def forces(results: Results) -> None:
     v["transmitted_force"] = a[:, 0] + a[:, 1]
 
 
+def force_error(results: Results, options: Options) -> None:
+    """Add the estimated error of the friction forces over mu F_N; models without one tell the measured bound.
+
+    The error of F_T in one contact changes F_N of the other by up to its 1/sin(2 alpha) fold. A contact near lift-off
+    feels it most.
+    """
+    scene, v = results.scene, results.values
+    found = scene.model.force_error(scene.n)
+    twins = scene.mirror.symmetric
+    found[twins] = np.fmax(found[twins, :1], found[twins, 1:])
+    measured = options.expected_errors(scene.model.name, not scene.loads.falling).get("friction_force")
+    if measured is not None:
+        found = np.where(np.isnan(found), max(measured.bound, measured.p99), found)
+    capacity = scene.loads.friction[:, None] * v["normal_force"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
+        load = (found * capacity)[:, ::-1] / (2.0 * scene.loads.sine * scene.loads.cosine)[:, None]
+        found = found + np.sqrt(used) * load / v["normal_force"]
+    known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
+    found = np.where(known[:, None], 0.0, found)
+    v["force_error_estimate"] = np.where(np.isfinite(v["lateral_force"]), found, np.nan)
+
+
 def contact(results: Results, options: Options) -> None:
     """Add extent, pressure, shear, adhesion area and spin pole of both contacts."""
     v, patch, model = results.values, results.patch, results.scene.model
