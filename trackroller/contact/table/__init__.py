@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from trackroller.contact.table.coordinates import RATIOS
 from trackroller.contact.table.spline import (
-    LARGEST_COUPLING,
-    RATIOS,
     TableSolution,
     nearest_forces,
     solve_patch,
     stored,
 )
 
-__all__ = ["LARGEST_COUPLING", "RATIOS", "TableSolution", "nearest_forces", "solve_patch", "stored"]
+__all__ = ["RATIOS", "TableSolution", "nearest_forces", "solve_patch", "stored"]

@@ -1,0 +1,1 @@
+"""Build the table of the exact rolling theory and measure its errors and its range."""
