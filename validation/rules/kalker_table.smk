@@ -6,10 +6,7 @@ KALKER_TABLE = f"{RESULTS}/kalker_table"
 
 rule kalker_table:
     input:
-        levels=[
-            f"{KALKER_TABLE}/levels/{level}.npz"
-            for level in FORCES.levels
-        ],
+        levels=[f"{KALKER_TABLE}/levels/{level}.npz" for level in FORCES.levels],
         code=digest_file(f"{KALKER_TABLE}/code", "validation.kalker_table.measure"),
     output:
         table=f"{KALKER_TABLE}/kalker_table.npz",

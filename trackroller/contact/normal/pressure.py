@@ -16,7 +16,6 @@ from functools import lru_cache
 
 import numpy as np
 from scipy import fft
-from scipy.signal import fftconvolve
 
 from trackroller.contact.influence import displacements, pressure_displacements
 
@@ -90,7 +89,9 @@ def lift(shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: fl
     """
     ny, nx = shear_lateral.shape
     along_x, along_y = pressure_displacements(hx, hy, ny, nx, 0, 0)
-    whole = fftconvolve(shear_lateral, along_x) + fftconvolve(shear_rolling, along_y)
+    lengths = fft.next_fast_len(3 * ny - 2, real=True), fft.next_fast_len(3 * nx - 2, real=True)
+    pairs = (shear_lateral, along_x), (shear_rolling, along_y)
+    whole = fft.irfft2(sum(fft.rfft2(load, lengths) * fft.rfft2(move, lengths) for load, move in pairs), lengths)
     return -per_stress * whole[ny - 1 : 2 * ny - 1, nx - 1 : 2 * nx - 1]
 
 
