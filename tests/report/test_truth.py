@@ -96,8 +96,9 @@ def check_valid(raw, said):
     if raw.limits and raw.inside.any():
         meet, of = first(rf"{NUMBER.replace('(', '(None|', 1)} of the {NUMBER} meet `{raw.limits[0]}`", said.text)
         assert (0 if meet == "None" else value(meet), value(of)) == (raw.valid.sum(), raw.inside.sum())
-    if "All statements" in said.text:
-        assert value(first(rf"stress use the {NUMBER}\.", said.text)[0]) == raw.valid.sum() < raw.rolling.sum()
+    assert ("outside the model" in said.text) == (0 < raw.valid.sum() and raw.inside.sum() < raw.rolling.sum())
+    if "Statements on life" in said.text:
+        assert value(first(rf"stress use the {NUMBER} unless", said.text)[0]) == raw.valid.sum() < raw.rolling.sum()
     elif raw.valid.any():
         assert raw.valid.sum() == raw.rolling.sum()
     for flag, body, cases in said.values["reasons"]:

@@ -48,7 +48,8 @@ def valid_designs(view: StudyView) -> Sentence:
         told = listing([f"`{limit}`" for limit in view.study["constraints"]])
         text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {told}."
     if valid and valid < rolls:
-        text += f" All statements on life and stress use the {count(valid)}."
+        text += f" Statements on life and stress use the {count(valid)} unless they name another set"
+        text += "; sensitivity indices also count the designs outside the model." if inside < rolls else "."
     values = {"total": total, "rolling": rolls, "inside": inside, "valid": valid, "lost": lost, "reasons": reasons}
     return Sentence("valid", text, values, np.ones(total, dtype=bool))
 
