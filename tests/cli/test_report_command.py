@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from typer.testing import CliRunner
 
 from trackroller.cli.main import app
 from trackroller.errors import InputError
+from trackroller.materials import load_database
 from trackroller.study.crate import damaged_files
 
 STUDY = """
@@ -39,6 +41,14 @@ def test_a_run_with_report_writes_analysis_figures_and_page(place):
     folder = place / "results" / "reported"
     assert {"study.nc", "sensitivity.nc", "figures", "report.html"} <= {p.name for p in folder.iterdir()}
     assert damaged_files(folder) == {}
+
+
+def test_materials_stand_in_the_report_with_their_sources(place):
+    page = (place / "results" / "reported" / "report.html").read_text(encoding="utf-8")
+    steel = load_database().material("1.7225-normalised")
+    source = steel.records["tensile_strength"].source
+    table = page[page.index("<h3>Materials") :]
+    assert source and source in html.unescape(table[: table.index("</table>")])
 
 
 def test_the_report_of_a_study_can_be_made_again(place, monkeypatch):

@@ -100,3 +100,10 @@ class Material:
         """Return plain numbers and texts, which a case accepts as a material."""
         values = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "records"}
         return {key: value for key, value in values.items() if value not in (None, "")}
+
+    def with_sources(self) -> dict[str, Any]:
+        """Return `as_dict` with the sources of the values (`sources`) and the names of those that are `guesses`."""
+        return self.as_dict() | {
+            "sources": {k: r.source for k, r in self.records.items()},
+            "guesses": self.placeholders,
+        }

@@ -124,8 +124,15 @@ def materials_table(attrs: Mapping[str, Any]) -> Table:
     for name, values in stored.items() if isinstance(stored, Mapping) else ():
         if isinstance(values, Mapping):
             row = {key: number(float(values[key])) for key, _ in columns if _is_number(values.get(key))}
-            rows.append({"name": name, "source": str(values.get("source", "")), **row})
+            rows.append({"name": name, "source": material_source(values), **row})
     return rows
+
+
+def material_source(values: Mapping[str, Any]) -> str:
+    """Return where the values of a material come from, and which of them are guesses."""
+    source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
+    guesses = values.get("guesses", ())
+    return f"{source}." + (f" Guesses without a source: {', '.join(map(plain, guesses))}." if guesses else "")
 
 
 def _is_number(value: Any) -> bool:

@@ -44,11 +44,7 @@ def plain_inputs(case: Case) -> dict[str, Any]:
 
 def material_values(case: Case, database: MaterialDatabase) -> dict[str, dict[str, Any]]:
     """Return the values of both materials of a case with their sources, by `roller_material` and `guide_material`."""
-    bodies = {name: database.material(getattr(case, name)) for name in MATERIAL_FIELDS}
-    return {
-        name: body.as_dict() | {"sources": {k: r.source for k, r in body.records.items()}, "guesses": body.placeholders}
-        for name, body in bodies.items()
-    }
+    return {name: database.material(getattr(case, name)).with_sources() for name in MATERIAL_FIELDS}
 
 
 def _plain(value: Any) -> Any:

@@ -55,8 +55,8 @@ def versions() -> dict[str, str]:
 
 
 def materials_used(study: Study, names: list[str]) -> dict[str, Any]:
-    """Return the values of materials by name."""
-    return {name: study.materials.material(name).as_dict() for name in names}
+    """Return the values of materials with their sources, by name."""
+    return {name: study.materials.material(name).with_sources() for name in names}
 
 
 def attributes(study: Study, materials: list[str]) -> dict[str, Any]:

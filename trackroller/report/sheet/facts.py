@@ -13,6 +13,7 @@ import numpy as np
 
 from trackroller.damage import fatigue
 from trackroller.parameters import REGIMES
+from trackroller.report.inputs import material_source
 from trackroller.report.numbers import life, number, rounded
 from trackroller.report.sheet.flags import Flag, flags_of
 from trackroller.report.sheet.rows import (
@@ -21,7 +22,6 @@ from trackroller.report.sheet.rows import (
     is_told,
     limit_rows,
     material_rows,
-    material_source,
     quantity_rows,
 )
 from trackroller.roller.geometry import rolling_radius

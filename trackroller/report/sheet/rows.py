@@ -66,13 +66,6 @@ def material_rows(values: Mapping[str, Any]) -> list[Row]:
     ]
 
 
-def material_source(values: Mapping[str, Any]) -> str:
-    """Return where the values of a material come from, and which of them are guesses."""
-    source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
-    guesses = values.get("guesses", ())
-    return f"Source: {source}." + (f" Guesses without a source: {', '.join(guesses)}." if guesses else "")
-
-
 def quantity_rows(ds: xr.Dataset, names: tuple[tuple[str, str], ...]) -> list[Row]:
     """Return the finite ones of some results, each with its unit."""
     return [
