@@ -150,7 +150,7 @@ export function parallel(model, colours, say) {
   // Ends of a brush on the axis, from 0 to 1.
   function pieces(column, scale, brush) {
     if (byLevels(column)) {
-      const half = 0.5 / Math.max(1, column.levels.length);
+      const half = 0.3 / Math.max(1, column.levels.length);
       return brush.map((code) => [scale.unit(code) - half, scale.unit(code) + half]);
     }
     const end = (value, open) => (Number.isFinite(value) ? scale.unit(value) : open);

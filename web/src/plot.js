@@ -56,6 +56,9 @@ export function plot(height, label) {
 const cut = (words, most) => (words.length > most ? `${words.slice(0, most - 1)}…` : words);
 
 function thinned(ticks, most) {
-  const step = Math.ceil(ticks.length / Math.max(1, most));
-  return ticks.filter((_, i) => i % step === 0);
+  const kept = [];
+  for (const tick of [...ticks].sort((a, b) => b[0] - a[0])) {
+    if (!kept.length || kept.at(-1)[0] - tick[0] >= 1 / Math.max(1, most)) kept.push(tick);
+  }
+  return kept;
 }

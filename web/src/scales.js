@@ -15,9 +15,20 @@ export function bounds(values) {
   return low <= high ? [low, high] : [NaN, NaN];
 }
 
-function levelScale(column) {
+// Numbers lie in proportion to their values unless two of them would touch; names lie in even steps.
+function levelPlaces(column) {
   const n = Math.max(1, column.levels.length);
-  const place = (code) => (code < 0 ? NaN : (code + 0.5) / n);
+  const even = column.levels.map((_, i) => (i + 0.5) / n);
+  if (!column.number || n < 3 || !column.levels.every(Number.isFinite)) return even;
+  const [low, high] = bounds(column.levels);
+  const places = column.levels.map((value) => 0.5 / n + ((value - low) / (high - low)) * (1 - 1 / n));
+  const sorted = [...places].sort((a, b) => a - b);
+  return sorted.every((place, i) => !i || place - sorted[i - 1] >= 0.4 / n) ? places : even;
+}
+
+function levelScale(column) {
+  const places = levelPlaces(column);
+  const place = (code) => (code < 0 ? NaN : places[code]);
   return {
     levels: true,
     unit: (code) => place(code),
@@ -47,8 +58,10 @@ function numberScale(...columns) {
   let ticks = scale.ticks(5);
   if (log) {
     const step = Math.max(1, Math.ceil(decades / 6));
-    const whole = ticks.filter((t) => Math.abs(Math.log10(t) - Math.round(Math.log10(t))) < 1e-9);
-    ticks = whole.length > 1 ? whole.filter((_, i) => i % step === 0) : ticks.filter((_, i) => i % Math.ceil(ticks.length / 5) === 0);
+    const start = Math.ceil(Math.log10(first) / step - 1e-9) * step;
+    const whole = [];
+    for (let power = start; power <= Math.log10(last) + 1e-9; power += step) whole.push(10 ** power);
+    ticks = whole.length > 1 ? whole : ticks.filter((_, i) => i % Math.ceil(ticks.length / 5) === 0);
   }
   return {
     levels: false,
