@@ -48,7 +48,7 @@ validate: $(STAMP)
 test: $(STAMP)
 	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile
 
-# without the studies of accuracy, which make test runs
+# without the studies of accuracy and the whole processes, which make test runs
 test-quick: $(STAMP)
 	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile -m "not long and not slow and not slurm" $(wildcard $(PHYSICS))
 

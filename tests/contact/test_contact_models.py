@@ -146,6 +146,7 @@ UNLIKE = [
 
 @pytest.mark.parametrize("normal", ["hertz", "halfspace"])
 @pytest.mark.parametrize("change", UNLIKE)
+@pytest.mark.long
 def test_energy_balance_of_unlike_materials_counts_the_pressures(change, normal):
     """Shear moves unlike surfaces along the normal, where pressures work; drive and tilting forces are not all then."""
     case = tr.Case(**change)

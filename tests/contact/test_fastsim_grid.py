@@ -151,6 +151,7 @@ def worn_points():
         ({"points": worn_points(), "frame": "contact"}, 0.06, 0.05),
     ],
 )
+@pytest.mark.long
 def test_beside_the_exact_theory_on_drawn_profiles(profile, forces, peak):
     """Forces over mu F_N; sliding errs by up to 30 % on the same patches."""
     case = tr.Case(roller_profile=profile, friction_coefficient=0.2, motor_force=-10.0)

@@ -89,6 +89,7 @@ def test_the_curvature_in_the_rolling_direction_is_that_of_bodies_of_revolution(
 
 
 @pytest.mark.parametrize("n", [61, 91, 361])
+@pytest.mark.long
 def test_automatic_smoothing_leaves_the_curvature_of_a_circle(n):
     """1 um of noise on points of a circle: wrong by less than 35 % of 1/r anywhere near the contact, in 32 draws."""
     u, near = np.linspace(-4.5, 4.5, n), np.linspace(-1.0, 1.0, 81)
@@ -293,6 +294,7 @@ def test_coarse_and_uneven_points_give_the_circle():
     np.testing.assert_allclose(ds.max_pressure[1:], ds.max_pressure[:1].values.repeat(2, 0), rtol=1e-2)
 
 
+@pytest.mark.long
 def test_a_groove_worn_hollow_carries_in_two_patches():
     """Beside a hollow at the nominal contact: no pressure in the middle, the load on both sides, through the chain."""
     hollow = [[float(u), float(-u * u / 14 + 0.02 * math.exp(-((u / 0.3) ** 2)))] for u in np.linspace(-2, 2, 201)]

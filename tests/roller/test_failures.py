@@ -97,6 +97,7 @@ def test_a_row_that_misses_its_tolerance_has_a_reason_and_others_have_none():
     assert "reason" not in solve_sliding(tr.Case(), "forces")
 
 
+@pytest.mark.long
 def test_a_failed_case_ends_with_exit_1_and_its_reason(tmp_path):
     (tmp_path / "case.yaml").write_text("roller_profile_radius: -6.001\ncontact_model: fastsim\n")
     told = trackroller("solve", "case.yaml", cwd=tmp_path, code=1).stdout

@@ -51,6 +51,7 @@ def test_the_regime_ends_at_the_limit_and_not_before(side):
     assert _regime(replace(CASE, motor_force=bound + 1e-2 * sign)) == "full_slip"
 
 
+@pytest.mark.long
 def test_more_radial_force_holds_more_axial_force():
     held = [limits(replace(CASE, radial_force=-force)).axial_force[1] for force in (100, 200, 400)]
     assert held == sorted(held) and held[2] == pytest.approx(4 * held[0], rel=0.02)

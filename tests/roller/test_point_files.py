@@ -42,6 +42,7 @@ def test_thousands_and_words_are_refused_with_the_line(tmp_path, monkeypatch):
         read_points("c.csv", "guide_profile.file")
 
 
+@pytest.mark.long
 def test_files_lie_beside_the_case_or_below_the_working_directory(tmp_path):
     folder = tmp_path / "prof"
     folder.mkdir()
