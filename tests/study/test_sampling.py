@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from SALib.sample import sobol as salib
 
 from trackroller.errors import InputError
 from trackroller.numerics.expressions import comparisons, condition, evaluate, names
 from trackroller.study.config import parse_study
 from trackroller.study.design import arrays as designs
+from trackroller.study.design import saltelli
 from trackroller.study.design.factors import Factor, parse
 from trackroller.study.design.sampling import METHODS, sample
 
@@ -89,6 +91,18 @@ def test_morris_steps_change_one_factor_and_categories_reach_every_value():
     assert (steps.sum(axis=2) == 1).all() and (steps.sum(axis=1) == 1).all()
     assert set(design.columns["c"]) == set("abcde")
     assert np.isfinite(design.columns["z"]).all() and abs(design.columns["z"]).max() < 2.4  # cut at 1 and 99 %
+
+
+@pytest.mark.parametrize("second", [True, False])
+@pytest.mark.parametrize("groups", [[0], [0, 1, 2], [0, 1, 2, 3, 4, 5], [0, 1, 0, 2], [0, 0, 0, 1, 1]])
+def test_saltelli_rows_are_those_of_salib(groups, second):
+    k = len(groups)
+    problem = {"num_vars": k, "names": [f"x{j}" for j in range(k)], "bounds": [[0.0, 1.0]] * k}
+    if len(set(groups)) < k:
+        problem["groups"] = [f"group {group}" for group in groups]
+    for seed in (0, 77):
+        theirs = salib.sample(problem, 32, calc_second_order=second, seed=seed)
+        assert np.array_equal(saltelli.draw(32, groups, second, seed), theirs)
 
 
 def test_saltelli_rows_are_mixtures_of_two_samples():

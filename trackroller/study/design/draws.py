@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from SALib.sample import morris, sobol
+from SALib.sample import morris
 from scipy.stats import qmc
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
 from trackroller.study.csv_file import csv_lines
-from trackroller.study.design import arrays, correlation
+from trackroller.study.design import arrays, correlation, saltelli
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 from trackroller.study.design.saltelli import all_groups
@@ -74,13 +74,14 @@ def _problem(free: Factors) -> dict[str, Any]:
 def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     blocks = 1 << max(0, n - 1).bit_length()
     second = bool(settings["second_order"])
-    problem, meta = _problem(free), dict[str, Any](base_samples=blocks, second_order=second)
+    owners, meta = list(free), dict[str, Any](base_samples=blocks, second_order=second)
     if settings["groups"]:
         groups = all_groups(settings["groups"], free)
         owner = {name: group for group, members in groups.items() for name in members}
-        problem["groups"] = [owner[name] for name in free]
-        meta["groups"] = list(dict.fromkeys(problem["groups"]))  # the order in which SALib exchanges them
-    unit = sobol.sample(problem, blocks, calc_second_order=second, seed=seed)
+        owners = [owner[name] for name in free]
+        meta["groups"] = list(dict.fromkeys(owners))  # in the order of their first factors
+    order = list(dict.fromkeys(owners))
+    unit = saltelli.draw(blocks, [order.index(owner) for owner in owners], second, seed)
     return _map(free, unit), unit, meta
 
 
