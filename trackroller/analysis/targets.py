@@ -24,7 +24,15 @@ Found = tuple[np.ndarray, np.ndarray, np.ndarray]  # probability and its bounds,
 
 
 class Level(NamedTuple):
-    """A level of a factor or a class of its values: bounds of the numbers (NaN for a text), its text, its rows."""
+    """The rows of one level of a factor, or of one class of its values.
+
+    Attributes
+    ----------
+    factor : name of the factor
+    low, high : smallest and largest value of the factor in these rows; NaN if its values are texts
+    text : the level or class in words
+    rows : mask of the rows, shape (n,)
+    """
 
     factor: str
     low: float

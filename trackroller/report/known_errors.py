@@ -29,7 +29,10 @@ def friction_error(view: StudyView) -> Sentence | None:
 
 
 def full_sliding(view: StudyView) -> Sentence | None:
-    """Warn of designs that full sliding solved; a study with friction work states its own error instead."""
+    """State the known error of full sliding if designs were solved by it.
+
+    Return None if the study holds the friction work: another sentence then states the error measured in this study.
+    """
     rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
     if not rows.any() or np.isfinite(view.column("energy_residual")).any():
         return None

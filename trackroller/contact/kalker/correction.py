@@ -20,8 +20,8 @@ from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, St
 from trackroller.contact.protocol import Patch
 from trackroller.contact.slip import Creepage
 
-NEAR = 0.02  # change of the slip's place below which an iteration starts from the last solution of the patch
-LEAST_STEP = 1e-9  # change of the slip's place from which a derivative of the difference is taken
+NEAR = 0.02  # if the normalised slip changed less than this, the iteration starts from the patch's last solution
+LEAST_STEP = 1e-9  # least change of the normalised slip from which a derivative of the difference is taken
 STEEPEST = 3.0  # largest such derivative
 REACH = 2.0  # steps over which the derivative is trusted
 

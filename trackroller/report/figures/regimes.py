@@ -25,7 +25,7 @@ def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     ranked = sorted(view.factors, key=lambda f: -_spread(view, f))
     pair: Pair = (ranked[0], ranked[1])
     pair = pair if len(view.levels(pair[0])) >= len(view.levels(pair[1])) else (pair[1], pair[0])
-    if not view.numeric(pair[0]):  # long names stand beside the rows, not under the columns
+    if not view.numeric(pair[0]):  # a factor with long names goes on the vertical axis, where its names have room
         pair = (pair[1], pair[0])
     figure = style.new_figure(76, style.WIDE_MM)
     axes = figure.subplots()

@@ -74,13 +74,13 @@ def _problem(free: Factors) -> dict[str, Any]:
 def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     blocks = 1 << max(0, n - 1).bit_length()
     second = bool(settings["second_order"])
-    owners, meta = list(free), dict[str, Any](base_samples=blocks, second_order=second)
+    meta: dict[str, Any] = {"base_samples": blocks, "second_order": second}
+    groups = all_groups(settings["groups"] or {}, free)  # without groups each factor is one of its own
+    owner = {name: group for group, members in groups.items() for name in members}
+    owners = [owner[name] for name in free]
+    order = list(dict.fromkeys(owners))  # groups in the order of their first factors
     if settings["groups"]:
-        groups = all_groups(settings["groups"], free)
-        owner = {name: group for group, members in groups.items() for name in members}
-        owners = [owner[name] for name in free]
-        meta["groups"] = list(dict.fromkeys(owners))  # in the order of their first factors
-    order = list(dict.fromkeys(owners))
+        meta["groups"] = order
     unit = saltelli.draw(blocks, [order.index(owner) for owner in owners], second, seed)
     return _map(free, unit), unit, meta
 
