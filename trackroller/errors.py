@@ -1,4 +1,4 @@
-"""The errors a user must mend, each saying what to change."""
+"""Errors for bad input; each message says what is wrong, what is allowed and what to do."""
 
 from __future__ import annotations
 
@@ -34,16 +34,19 @@ class InputError(ValueError):
         text = f"{field} = {value!r} is not usable: {allowed}"
         super().__init__(f"{text}. {remedy}" if remedy else text)
 
-    def __reduce__(self):  # keeps its parts when it crosses a process border
+    def __reduce__(self):  # another process rebuilds the error from its four parts
         return type(self), (self.field, self.value, self.allowed, self.remedy)
 
 
 class ShapeError(InputError):
-    """Drawn shapes that are well told but cannot touch as a case says: of many cases, only such a one fails."""
+    """A valid profile whose shape cannot make contact in this case.
+
+    `solve` marks such a case as failed and goes on with the other cases.
+    """
 
 
 def nearest(name: str, options: Iterable[str]) -> str | None:
-    """The option a user most likely meant, or None."""
+    """Return the option that is most similar to a name, or None if no option is similar."""
     options = list(options)
     by_lower = {option.lower(): option for option in options}
     hit = difflib.get_close_matches(str(name).lower(), list(by_lower), n=1, cutoff=0.5)
@@ -51,8 +54,31 @@ def nearest(name: str, options: Iterable[str]) -> str | None:
 
 
 def unknown_name(kind: str, name: str, options: Iterable[str]) -> InputError:
-    """An `InputError` for a name that is not among `options`, with the nearest right one."""
+    """Return the error for a name that is not among `options`; it proposes the most similar option."""
     options = list(options)
     close = nearest(name, options)
     remedy = f"Did you mean '{close}'?" if close else "Use one of these names."
     return InputError(kind, name, "known names are " + ", ".join(map(str, options)), remedy)
+
+
+def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> None:
+    """Raise the error `unknown_name` for the first of `names` that is not among `options`.
+
+    Parameters
+    ----------
+    kind : str
+        What the names stand for, such as "case field".
+    names : iterable
+        Names as the user wrote them.
+    options : iterable of str
+        Known names.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown.
+    """
+    known = tuple(options)
+    for name in names:
+        if name not in known:
+            raise unknown_name(kind, str(name), known)

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.numerics.numbers import read_number
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
@@ -75,17 +75,11 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     """
     if not value:
         return {}
-    for key in value:
-        if key not in KEYS:
-            raise unknown_name(f"{field} entry", str(key), KEYS)
+    check_names(f"{field} entry", value, KEYS)
     forms = [key for key in FORMS if key in value]
     if len(forms) != 1:
-        raise InputError(
-            field,
-            sorted(map(str, value)),
-            "exactly one of " + ", ".join(FORMS),
-            "Keep the entry that describes the cross-section.",
-        )
+        remedy = "Keep the entry that describes the cross-section."
+        raise InputError(field, sorted(map(str, value)), "exactly one of " + ", ".join(FORMS), remedy)
     out = _shape(forms[0], value, field, read)
     if "points" not in out:
         for key in ("frame", "smooth"):
@@ -126,12 +120,9 @@ def _shape(form: str, value: Mapping[str, Any], field: str, read: PointReader | 
     out: dict[str, Any] = {"points": _points(rows, f"{field}.{form}"), "frame": frame}
     x = [p[0] for p in out["points"]]
     if frame == "contact" and not x[0] < 0 < x[-1]:
-        raise InputError(
-            f"{field}.{form}",
-            [x[0], x[-1]],
-            "points on both sides of the nominal contact x = 0",
-            "In frame: contact x counts from the nominal contact; in frame: section x = 0 is the middle of the guide.",
-        )
+        remedy = "In frame: contact x counts from the nominal contact; in frame: section from the middle of the guide."
+        allowed = "points on both sides of the nominal contact x = 0"
+        raise InputError(f"{field}.{form}", [x[0], x[-1]], allowed, remedy)
     smooth = value.get("smooth", 0.0)
     if smooth != "auto" and not (_is_number(smooth) and 0.0 <= float(smooth) < math.inf):
         raise InputError(f"{field}.smooth", smooth, "the standard deviation of the noise >= 0 [mm], or 'auto'")
@@ -150,9 +141,7 @@ def _arcs(rows: Any, field: str) -> list[dict[str, float]]:
     out: list[dict[str, float]] = []
     for i, row in enumerate(rows):
         here = f"{field}[{i}]"
-        for key in row:
-            if key not in ("radius", "to"):
-                raise unknown_name(f"{here} entry", str(key), ("radius", "to"))
+        check_names(f"{here} entry", row, ("radius", "to"))
         last = i == len(rows) - 1
         if "radius" not in row or ("to" in row) == last:
             raise InputError(here, dict(row), "a radius, and where the arc ends (`to`) for all but the last")
@@ -171,30 +160,23 @@ def _points(rows: Any, field: str) -> list[list[float]]:
     except (TypeError, ValueError):
         raise InputError(field, rows if len(str(rows)) < 200 else "...", "rows of two numbers x, z [mm]") from None
     if points.ndim != 2 or points.shape[1] != 2 or not FEWEST <= len(points) <= MOST:
-        raise InputError(
-            field, f"an array of shape {points.shape}", f"{FEWEST} to {MOST} rows of two numbers x, z [mm]"
-        )
-    if not np.all(np.isfinite(points)):
-        row = int(np.flatnonzero(~np.all(np.isfinite(points), axis=1))[0])
-        raise InputError(
-            f"{field}[{row}]", points[row].tolist(), "finite numbers", "Leave out the rows that were not measured."
-        )
-    falls = np.flatnonzero(np.diff(points[:, 0]) <= 0)
-    if falls.size:
-        row = int(falls[0]) + 1
-        raise InputError(
-            f"{field}[{row}]",
-            points[row].tolist(),
+        allowed = f"{FEWEST} to {MOST} rows of two numbers x, z [mm]"
+        raise InputError(field, f"an array of shape {points.shape}", allowed)
+    for wrong, allowed, remedy in (
+        (~np.isfinite(points).all(axis=1), "finite numbers", "Leave out the rows that were not measured."),
+        (
+            np.diff(points.T[0], prepend=-np.inf) <= 0,
             "x increases from row to row",
-            "Sort the points by x and keep one point for each x.",
-        )
+            "Sort by x; keep one point for each x.",
+        ),
+    ):
+        for row in np.flatnonzero(wrong)[:1].tolist():
+            raise InputError(f"{field}[{row}]", points[row].tolist(), allowed, remedy)
     return points.tolist()
 
 
 def _edge(value: Any, field: str) -> dict[str, float]:
     if not isinstance(value, Mapping) or not value:
         raise InputError(field, value, "a mapping with one or more of " + ", ".join(EDGE_KEYS))
-    for key in value:
-        if key not in EDGE_KEYS:
-            raise unknown_name(f"{field} entry", str(key), EDGE_KEYS)
+    check_names(f"{field} entry", value, EDGE_KEYS)
     return {key: _number(value[key], f"{field}.{key}", positive=True) for key in EDGE_KEYS if key in value}

@@ -9,7 +9,7 @@ from typing import Any
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.materials.entries import inline_material
 from trackroller.materials.material import Material
-from trackroller.materials.properties import FrictionValue
+from trackroller.materials.properties import Value
 from trackroller.parameters import FRICTION_LEVELS
 
 
@@ -21,14 +21,14 @@ class MaterialDatabase:
     ----------
     materials : mapping of str to Material
         Materials by name.
-    friction_table : mapping of frozenset of str to mapping of str to FrictionValue
+    friction_table : mapping of frozenset of str to mapping of str to Value
         Friction coefficients of each pair of names or families, by level.
     files : tuple of str
         Files from which the database was read, the built-in file first.
     """
 
     materials: Mapping[str, Material]
-    friction_table: Mapping[frozenset[str], Mapping[str, FrictionValue]]
+    friction_table: Mapping[frozenset[str], Mapping[str, Value]]
     files: tuple[str, ...] = ()
 
     def names(self) -> tuple[str, ...]:
@@ -70,17 +70,13 @@ class MaterialDatabase:
         if isinstance(material, Mapping):
             return inline_material(material, self.materials)
         if not isinstance(material, str):
-            raise InputError(
-                "material",
-                material,
-                "a name of the database or a mapping with its values",
-                "Put a name that looks like a number in quotes.",
-            )
+            remedy = "Put a name that looks like a number in quotes."
+            raise InputError("material", material, "a name of the database or a mapping with its values", remedy)
         if material not in self.materials:
             raise unknown_name("material", material, self.materials)
         return self.materials[material]
 
-    def friction(self, first: str | Material, second: str | Material, level: str = "typical") -> FrictionValue:
+    def friction(self, first: str | Material, second: str | Material, level: str = "typical") -> Value:
         """Return the friction coefficient of two bodies, in either order.
 
         Parameters
@@ -92,7 +88,7 @@ class MaterialDatabase:
 
         Returns
         -------
-        FrictionValue
+        Value
             Friction coefficient [1], its source and its placeholder mark. An entry for a material has priority over an
             entry for the material's family.
 

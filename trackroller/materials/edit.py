@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
-import tempfile
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
@@ -21,7 +22,7 @@ from trackroller.materials.properties import PROPERTIES
 from trackroller.materials.yaml_file import needs_quotes, read_text
 
 HEADER = """\
-# Your own materials and friction coefficients, laid over the built-in ones.
+# Your own materials and friction coefficients; they replace built-in ones of the same name.
 """
 FIELDS = (*NUMBERS, *TEXTS, "source", "placeholder")
 
@@ -60,19 +61,14 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     path = Path(os.path.realpath(Path(path).expanduser()))
     if not isinstance(name, str) or not name.strip():
         raise InputError("material name", name, "it must be a text that is not empty")
-    for key in values:
-        if key not in FIELDS:
-            raise unknown_name(f"material '{name}': field", key, FIELDS)
+    check_names(f"material '{name}': field", values, FIELDS)
     values = {key: value for key, value in values.items() if value is not None}
     if not values:
-        raise InputError(
-            f"material '{name}'", None, "it must have at least one value", f"Give one of {', '.join(PROPERTIES)}."
-        )
+        remedy = f"Give one of {', '.join(PROPERTIES)}."
+        raise InputError(f"material '{name}'", None, "it must have at least one value", remedy)
     text = read_text(path, "materials file") if path.exists() else HEADER
     builtin = read_database(None)
-    build_database(
-        text, str(path), over=builtin
-    )  # raises an error, so that a file that was broken before stays unchanged
+    build_database(text, str(path), over=builtin)  # raises an error if the file is wrong before the change
     text = _with_entry(text, path, name, _entry(values), replace)
     material = build_database(text, str(path), over=builtin).material(name)
     _write_at_once(path, text)
@@ -111,48 +107,22 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     editor.preserve_quotes = True
     editor.width = 4096
     editor.indent(mapping=2, sequence=4, offset=2)
-    block = _block(entry)
     data = editor.load(text)
-    if data is None or data.get("materials") is None:
-        # ruamel.yaml would drop the comments of a file without entries, so the section is appended to the text.
-        head = text if data is None else _without_empty_section(text)
-        out = io.StringIO()
-        editor.dump(CommentedMap({"materials": CommentedMap({_text(name): block})}), out)
-        return head + ("" if head.endswith("\n") or not head else "\n") + out.getvalue()
+    # ruamel.yaml would drop the comments of a file without entries, so they are put before the new section.
+    kept, data = (text.rstrip() + "\n", CommentedMap()) if data is None else ("", data)
+    if data.get("materials") is None:
+        data["materials"] = CommentedMap()
     materials = data["materials"]
     if name in materials and not replace:
-        raise InputError(
-            f"{path}: materials.{name}",
-            name,
-            "a name that the file does not use already",
-            "Choose another name, or replace the values (replace=True).",
-        )
-    if name in materials:
-        for key, value in block.items():
-            materials[name][key] = value
-    else:
-        _append(materials, _text(name), block)
+        allowed = "a name that the file does not use already"
+        remedy = "Choose another name, or replace the values (replace=True)."
+        raise InputError(f"{path}: materials.{name}", name, allowed, remedy)
+    if not materials:
+        materials.fa.set_block_style()  # also if the section is written as {}
+    materials.setdefault(_text(name), CommentedMap()).update(_block(entry))
     out = io.StringIO()
     editor.dump(data, out)
-    return out.getvalue()
-
-
-def _append(materials: Any, name: Any, block: Any) -> None:
-    """Add an entry at the end of the section, in block style even if the section is written as `{}`."""
-    if not materials:
-        materials.fa.set_block_style()
-    materials[name] = block
-
-
-def _without_empty_section(text: str) -> str:
-    """Return the text without an empty `materials:` line, which is then written again with an entry."""
-    lines = text.splitlines(keepends=True)
-    for i, line in enumerate(lines):
-        if line.split("#")[0].rstrip() in ("materials:", "materials: null", "materials: ~"):
-            comment = line.partition("#")
-            lines[i] = f"#{comment[2]}" if comment[1] else ""
-            break
-    return "".join(lines)
+    return kept + out.getvalue()
 
 
 def _block(entry: Mapping[str, Any]) -> Any:
@@ -160,9 +130,8 @@ def _block(entry: Mapping[str, Any]) -> Any:
     block = CommentedMap()
     for key, value in entry.items():
         if isinstance(value, Mapping):
-            inner = CommentedMap({part: _text(v) for part, v in value.items()})
-            inner.fa.set_flow_style()
-            block[key] = inner
+            block[key] = CommentedMap({part: _text(v) for part, v in value.items()})
+            block[key].fa.set_flow_style()
         else:
             block[key] = _text(value)
     return block
@@ -170,34 +139,25 @@ def _block(entry: Mapping[str, Any]) -> Any:
 
 def _text(value: Any) -> Any:
     """Return a text, in quotes where YAML 1.1 would not read it as text, such as 1.4301, yes or 1:30."""
-    if not isinstance(value, str):
-        return value
-    return DoubleQuotedScalarString(value) if needs_quotes(value) else value
+    return DoubleQuotedScalarString(value) if isinstance(value, str) and needs_quotes(value) else value
 
 
 def _write_at_once(path: Path, text: str) -> None:
     """Write a temporary file and rename it, so that a reader sees the whole old file or the whole new one."""
-    beside = None
+    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        mode = path.stat().st_mode & 0o777 if path.exists() else 0o666 & ~_umask()
-        handle, beside = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
+        with open(beside, "w", encoding="utf-8", newline="") as file:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(beside, mode)
+        if path.exists():
+            shutil.copymode(path, beside)
         os.replace(beside, path)
     except OSError as error:
         allowed = f"a file in a folder that can be written ({error.strerror})"
         remedy = "Give another path, or allow writing to this folder."
         raise InputError("materials file", str(path), allowed, remedy) from None
     finally:
-        if beside is not None and os.path.exists(beside):
-            os.unlink(beside)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+        with contextlib.suppress(OSError):
+            beside.unlink()

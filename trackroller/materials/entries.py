@@ -5,19 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.materials.material import Material
-from trackroller.materials.properties import (
-    ALTERNATIVES,
-    PROPERTIES,
-    REQUIRED,
-    FrictionValue,
-    Property,
-    Value,
-    check_number,
-)
+from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import complete_curve
-from trackroller.parameters import FRICTION_LEVELS
+from trackroller.parameters import FRICTION_LEVELS, PARAMETERS, Parameter
 
 TEXTS = ("family", "description", "like", "note")
 VALUE_KEYS = ("value", "unit", "source", "placeholder", "note")
@@ -26,7 +18,6 @@ UNITS = {
     "MPa": {"MPa": 1.0, "N/mm2": 1.0, "N/mm^2": 1.0, "N/mm²": 1.0, "GPa": 1e3, "kN/mm2": 1e3, "Pa": 1e-6},
     "-": {"-": 1.0, "1": 1.0, "": 1.0},
 }
-FRICTION = Property("friction_coefficient", "mu", "-", "friction coefficient", 0.0, 2.0, closed=True)
 
 
 def _scaled(number: Any, factor: float) -> Any:
@@ -60,12 +51,12 @@ class EntryParser:
         parts = text.split(", ")
         return "; ".join(self.sources[p] for p in parts) if all(p in self.sources for p in parts) else text
 
-    def value(self, prop: Property, entry: Any, where: str) -> Value:
+    def value(self, prop: Parameter, entry: Any, where: str) -> Value:
         """Return a checked value with its unit and source.
 
         Parameters
         ----------
-        prop : Property
+        prop : Parameter
             Unit and bounds of the value.
         entry : number or mapping
             The number, or a mapping with value, unit, source, placeholder and note.
@@ -86,10 +77,9 @@ class EntryParser:
         if not isinstance(entry, Mapping):
             entry = {"value": entry}
         for key in entry:
-            if key not in VALUE_KEYS:
-                if entry[key] is None:  # YAML reads {source: a, b} as a key b without a value.
-                    raise InputError(field, str(key), "a key with a value", "Put texts that contain a comma in quotes.")
-                raise unknown_name(f"{field}: key", str(key), VALUE_KEYS)
+            if key not in VALUE_KEYS and entry[key] is None:  # YAML reads {source: a, b} as a key b without a value.
+                raise InputError(field, str(key), "a key with a value", "Put texts that contain a comma in quotes.")
+        check_names(f"{field}: key", entry, VALUE_KEYS)
         if "value" not in entry:
             remedy = f"Write {{value: ..., unit: {prop.unit}}}."
             raise InputError(field, dict(entry), "it must hold a `value`", remedy)
@@ -104,9 +94,8 @@ class EntryParser:
         if UNITS[prop.unit][unit] != 1.0:
             number = _scaled(number, UNITS[prop.unit][unit])
         source = self.source(str(entry["source"])) if entry.get("source") else "not given"
-        return Value(
-            check_number(prop, number, where), prop.unit, source, placeholder, str(entry.get("note") or ""), self.origin
-        )
+        note = str(entry.get("note") or "")
+        return Value(check_number(prop, number, where), prop.unit, source, placeholder, note, self.origin)
 
     def material(self, name: Any, entry: Any, known: Mapping[str, Material]) -> Material:
         """Return the material of an entry.
@@ -132,89 +121,59 @@ class EntryParser:
             If a field is unknown, missing or wrong.
         """
         if not isinstance(name, str) or not name.strip():
-            raise InputError(
-                f"{self.file}: materials", name, "a material's name must be a text", f'Put it in quotes: "{name}".'
-            )
+            remedy = f'Put it in quotes: "{name}".'
+            raise InputError(f"{self.file}: materials", name, "a material's name must be a text", remedy)
         where = f"{self.file}: materials.{name}"
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, f"it must be a mapping with {', '.join(REQUIRED)}")
-        for key in entry:
-            if key not in NUMBERS and key not in TEXTS:
-                raise unknown_name(f"{where}: field", str(key), (*NUMBERS, *TEXTS))
+        check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 raise InputError(f"{where}.{key}", entry[key], "it must be a text", "Put it in quotes.")
-        base = self._base(entry, known.get(name), known, where)
+        if (like := entry.get("like")) is not None and like not in known:
+            raise unknown_name(f"{where}.like", like, known)
+        base = known.get(name if like is None else like)
         inherited = dict(base.records) if base else {}
         given = {
             key: self.value(prop, entry[key], where)
             for key, prop in NUMBERS.items()
-            if key in entry and not (entry[key] is None and prop.optional)
+            if key in entry and not (entry[key] is None and prop.allow_missing)
         }
         records = inherited | {key: value for key, value in given.items() if key in PROPERTIES}
         if ALTERNATIVES.keys() & given.keys():
             records |= complete_curve(given, inherited, where)
         missing = [key for key in REQUIRED if key not in records]
         if missing:
-            raise InputError(
-                where,
-                ", ".join(map(str, entry)) or "nothing",
-                f"it lacks {', '.join(missing)}",
-                "Give these values, or write `like: NAME` to take them from another material.",
-            )
-        return self._made(name, entry, base, records, where)
-
-    def _base(
-        self, entry: Mapping[str, Any], same: Material | None, known: Mapping[str, Material], where: str
-    ) -> Material | None:
-        like = entry.get("like")
-        if like is None:
-            return same
-        if like not in known:
-            raise unknown_name(f"{where}.like", like, known)
-        return known[like]
-
-    def _made(
-        self, name: str, entry: Mapping[str, Any], base: Material | None, records: dict[str, Value], where: str
-    ) -> Material:
-        family = entry.get("family") or (base.family if base else "")
-        description = entry.get("description") or (base.description if base and "like" not in entry else "")
+            remedy = "Give these values, or write `like: NAME` to take them from another material."
+            given_names = ", ".join(map(str, entry)) or "nothing"
+            raise InputError(where, given_names, f"it lacks {', '.join(missing)}", remedy)
+        fields: dict[str, Any] = {key: value.value for key, value in records.items()} | {
+            "name": name,
+            "records": records,
+            "family": entry.get("family") or (base.family if base else ""),
+            "description": entry.get("description") or (base.description if base and "like" not in entry else ""),
+        }
         try:
-            return Material(
-                name=name,
-                family=family,
-                description=description,
-                records=records,
-                **{key: record.value for key, record in records.items()},
-            )
+            return Material(**fields)
         except InputError as error:
             field = error.field.rpartition(".")[2]
             raise InputError(f"{where}.{field}", error.value, error.allowed, error.remedy) from None
 
-    def friction(self, entry: Any) -> tuple[frozenset[str], dict[str, FrictionValue]]:
+    def friction(self, entry: Any) -> tuple[frozenset[str], dict[str, Value]]:
         """Return the pair of names and the friction coefficients by level of one entry of the friction list."""
         where = f"{self.file}: friction"
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, "an entry must look like {pair: [metal, PA6], typical: 0.2}")
         pair = entry.get("pair")
         if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(p, str) and p for p in pair):
-            raise InputError(
-                f"{where}.pair",
-                pair,
-                "it must be a list of two families or material names",
-                "Write pair: [metal, PA6].",
-            )
+            allowed = "it must be a list of two families or material names"
+            raise InputError(f"{where}.pair", pair, allowed, "Write pair: [metal, PA6].")
         where = f"{where}.{'-'.join(pair)}"
-        levels = {}
-        for key, value in entry.items():
-            if key == "pair":
-                continue
-            if key not in FRICTION_LEVELS:
-                raise unknown_name(f"{where}: level", str(key), FRICTION_LEVELS)
-            record = self.value(FRICTION, value, f"{where}.{key}")
-            levels[key] = FrictionValue(
-                record.value, record.unit, record.source, record.placeholder, record.note, record.origin
-            )
+        given = {key: value for key, value in entry.items() if key != "pair"}
+        check_names(f"{where}: level", given, FRICTION_LEVELS)
+        levels = {
+            key: self.value(PARAMETERS["friction_coefficient"], value, f"{where}.{key}") for key, value in given.items()
+        }
         if not levels:
             raise InputError(where, dict(entry), f"it must give one of {', '.join(FRICTION_LEVELS)}")
         return frozenset(pair), levels

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
 from trackroller.materials.yaml_file import parse_yaml, read_text
@@ -17,7 +16,7 @@ BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
 ENVIRONMENT = "TRACKROLLER_MATERIALS"
 BUILTIN = "built-in"
-SECTIONS = ("sources", "materials", "friction")
+SECTIONS: dict[str, type] = {"sources": dict, "materials": dict, "friction": list}
 
 
 def find_user_file(argument: Path | str | None = None) -> Path | None:
@@ -45,12 +44,8 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
     path = Path(named).expanduser()
     if not path.is_file():
         field = "materials file" if argument is not None else ENVIRONMENT
-        raise InputError(
-            field,
-            str(named),
-            "the path of a YAML file that exists",
-            "Correct the path, or leave it out to use the built-in materials.",
-        )
+        remedy = "Correct the path, or leave it out to use the built-in materials."
+        raise InputError(field, str(named), "the path of a YAML file that exists", remedy)
     return path.resolve()
 
 
@@ -64,14 +59,10 @@ def read_database(user_file: Path | None) -> MaterialDatabase:
 
 @functools.lru_cache(maxsize=8)
 def _cached(user_file: str | None, modified: int, size: int) -> MaterialDatabase:
-    database = build_database(_builtin_text(), BUILTIN)
+    database = build_database(BUILTIN_FILE.read_text(encoding="utf-8"), BUILTIN)
     if user_file is None:
         return database
     return build_database(read_text(user_file, "materials file"), user_file, over=database)
-
-
-def _builtin_text() -> str:
-    return BUILTIN_FILE.read_text(encoding="utf-8")
 
 
 def build_database(text: str, file: str, over: MaterialDatabase | None = None) -> MaterialDatabase:
@@ -113,18 +104,14 @@ def _sections(text: str, file: str) -> dict[str, Any]:
     """Return the checked sections of a file; a missing section is empty."""
     data = parse_yaml(text, f"materials file {file}")
     data = {} if data is None else data
-    if not isinstance(data, Mapping):
+    if not isinstance(data, dict):
         allowed = f"its top level must be a mapping with {', '.join(SECTIONS)}"
         raise InputError("materials file", file, allowed)
-    for key in data:
-        if key not in SECTIONS:
-            raise unknown_name(f"{file}: section", str(key), SECTIONS)
+    check_names(f"{file}: section", data, SECTIONS)
     result: dict[str, Any] = {}
-    for section, kind in (("sources", Mapping), ("materials", Mapping), ("friction", list)):
-        value = data.get(section)
-        value = kind() if value is None and kind is list else {} if value is None else value
-        if not isinstance(value, kind):
+    for section, kind in SECTIONS.items():
+        result[section] = kind() if data.get(section) is None else data[section]
+        if not isinstance(result[section], kind):
             form = "a list of pairs" if kind is list else "a mapping from names"
-            raise InputError(f"{file}: {section}", value, f"it must be {form}")
-        result[section] = value
+            raise InputError(f"{file}: {section}", result[section], f"it must be {form}")
     return result

@@ -64,7 +64,7 @@ class Material:
         where = f"material '{self.name}'"
         for prop in PROPERTIES.values():
             value = getattr(self, prop.name)
-            if value is None and prop.optional:
+            if value is None and prop.allow_missing:
                 continue
             object.__setattr__(self, prop.name, check_number(prop, value, where))
         if not self.cycles_at_tensile_strength < self.cycles_at_fatigue_limit:

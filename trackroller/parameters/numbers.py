@@ -1,10 +1,10 @@
-"""The numbers that describe a case, in the units that a user writes: degrees, m/min and hours."""
+"""Declare the numbers that describe a case, in the units that a user writes: degrees, m/min and hours."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that describes a case.
+    """A number that describes a case or a material.
 
     Parameters
     ----------
@@ -20,19 +20,20 @@ class Parameter:
         Name in Python and in files, symbol of the publication, unit ("-" for none).
     default : float
         Value of a case that does not give it; NaN if there is none.
-    long_name, meaning : str
-        Name for figures and reports; explanation for the documentation.
+    meaning : str
+        Explanation for the documentation.
     lower, upper : float
         Bounds, which are allowed values themselves unless `open_lower` or `open_upper` is True.
     allow_infinite, allow_missing, nonzero : bool
         Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is refused.
+    label : str
+        Name for figures and reports, if it differs from `name`.
     """
 
     name: str
     symbol: str
     unit: str
     default: float
-    long_name: str
     meaning: str
     lower: float = -math.inf
     upper: float = math.inf
@@ -41,10 +42,16 @@ class Parameter:
     allow_infinite: bool = False
     allow_missing: bool = False
     nonzero: bool = False
+    label: str = ""
+
+    @property
+    def long_name(self) -> str:
+        """Return the name for figures and reports."""
+        return self.label or self.name.replace("_", " ")
 
     @property
     def units(self) -> str:
-        """Unit as the CF conventions write it."""
+        """Return the unit as the CF conventions write it."""
         return {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1"}.get(self.unit, self.unit)
 
     def allowed(self) -> str:
@@ -62,7 +69,7 @@ class Parameter:
 
     def accepts(self, value: np.ndarray | float) -> np.ndarray:
         """Return which values are allowed, elementwise, a bool array of the shape of `value`."""
-        import numpy as np  # noqa: PLC0415 - the help of the command line needs the names only
+        import numpy as np  # noqa: PLC0415 - the help of the command line needs no arrays and starts faster without
 
         v = np.asarray(value, dtype=float)
         good = ~np.isnan(v) if self.allow_infinite else np.isfinite(v)
@@ -74,33 +81,15 @@ class Parameter:
         return good | np.isnan(v) if self.allow_missing else good
 
 
+POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
 _ALL = (
-    Parameter(
-        "axis_distance",
-        "A_T",
-        "mm",
-        21.75,
-        "axis distance",
-        "roller axis to the centre of the guide contour",
-        0.0,
-        open_lower=True,
-    ),
-    Parameter(
-        "guide_profile_radius",
-        "r_C,G",
-        "mm",
-        6.0,
-        "guide profile radius",
-        "radius of the convex guide contour",
-        0.0,
-        open_lower=True,
-    ),
+    Parameter("axis_distance", "A_T", "mm", 21.75, "roller axis to the centre of the guide contour", **POSITIVE),
+    Parameter("guide_profile_radius", "r_C,G", "mm", 6.0, "radius of the convex guide contour", **POSITIVE),
     Parameter(
         "roller_profile_radius",
         "r_C,TR",
         "mm",
         -7.0,
-        "roller profile radius",
         "< 0 concave groove, > 0 convex, inf straight",
         allow_infinite=True,
         nonzero=True,
@@ -110,7 +99,6 @@ _ALL = (
         "r_Curve",
         "mm",
         220.0,
-        "guide curve radius",
         "curvature of the track: inf straight, > 0 convex towards the roller (outer wheel), < 0 concave (inner wheel)",
         allow_infinite=True,
         nonzero=True,
@@ -120,31 +108,19 @@ _ALL = (
         "alpha",
         "deg",
         30.0,
-        "contact angle",
         "inclination of the contact normals",
-        0.0,
-        90.0,
-        open_lower=True,
+        upper=90.0,
         open_upper=True,
+        **POSITIVE,
     ),
-    Parameter(
-        "radial_force",
-        "F_rad",
-        "N",
-        -200.0,
-        "radial force",
-        "< 0 presses the roller on the guide",
-        upper=0.0,
-        open_upper=True,
-    ),
-    Parameter("axial_force", "F_ax", "N", 30.0, "axial force", "along +x_R"),
-    Parameter("motor_force", "F_Motor", "N", -30.0, "motor force", "< 0 driving, 0 free rolling, > 0 braking"),
+    Parameter("radial_force", "F_rad", "N", -200.0, "< 0 presses the roller on the guide", upper=0.0, open_upper=True),
+    Parameter("axial_force", "F_ax", "N", 30.0, "along +x_R"),
+    Parameter("motor_force", "F_Motor", "N", -30.0, "< 0 driving, 0 free rolling, > 0 braking"),
     Parameter(
         "friction_coefficient",
         "mu",
         "-",
         0.3,
-        "friction coefficient",
         "Coulomb coefficient of both contacts, at rest; null: from the friction database; left out beside a "
         "friction_law of kind table: the first of the table",
         0.0,
@@ -156,21 +132,19 @@ _ALL = (
         "v",
         "m/min",
         60.0,
-        "mean travel speed",
-        "for friction power and life in hours only",
-        0.0,
-        open_lower=True,
+        "for friction power, life in hours and friction laws only",
+        label="mean travel speed",
+        **POSITIVE,
     ),
     Parameter(
         "guide_overrollings_per_hour",
         "n_G",
         "1/h",
         math.nan,
-        "overrollings of a guide point per hour",
         "decides the life of the guide in hours; not given: hours are NaN",
-        0.0,
-        open_lower=True,
         allow_missing=True,
+        label="overrollings of a guide point per hour",
+        **POSITIVE,
     ),
 )
 

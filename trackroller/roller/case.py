@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.fields import FIELDS, Default, mapping_text, number, own_friction, own_frictions
@@ -134,9 +134,7 @@ class Case:
         """
         if not isinstance(values, Mapping):
             raise InputError("case", values, "a case is a mapping of parameter names to values")
-        for key in values:
-            if key not in FIELDS:
-                raise unknown_name("case field", str(key), FIELDS)
+        check_names("case field", values, FIELDS)
         return cls(**{str(k): v for k, v in values.items()})
 
     def as_dict(self) -> dict[str, Any]:
@@ -164,9 +162,7 @@ def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
 def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
     n = design.sizes.get("case", 1)
     columns = {}
-    for name in design.data_vars:
-        if name not in FIELDS:
-            raise unknown_name("design variable", str(name), FIELDS)
+    check_names("design variable", design.data_vars, FIELDS)
     default = Case().as_dict()
     for name in FIELDS:
         if name in design.data_vars:

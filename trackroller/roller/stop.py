@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.numerics.expressions import Comparison, comparisons, condition, names
 from trackroller.parameters import PARAMETERS, REGIMES
 
@@ -65,15 +65,12 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
     """
     parts = comparisons(text, "stop_if")
     for part in parts:
-        if part.name not in (*BEFORE_STRESSES, PEAK):
-            raise unknown_name("stop_if: left side", part.name, (*BEFORE_STRESSES, PEAK))
+        check_names("stop_if: left side", [part.name], (*BEFORE_STRESSES, PEAK))
         if part.name == PEAK and part.symbol not in (">", ">="):
             allowed = "peak_stress > or >= a limit, because a lower bound of the peak decides"
             raise InputError("stop_if", text, allowed, "For example: peak_stress > R_m.")
         known = (*REGIMES,) if part.name == "regime" else (*PARAMETERS, *STRENGTHS)
-        for name in names(part.limit, "stop_if"):
-            if name not in known:
-                raise unknown_name("stop_if: right side", name, known)
+        check_names("stop_if: right side", names(part.limit, "stop_if"), known)
     return parts
 
 
