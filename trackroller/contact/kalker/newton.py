@@ -12,8 +12,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from trackroller.contact.influence import Influence, leading_rows
 from trackroller.contact.kalker.columns import column_ranges, column_slips
@@ -56,74 +58,140 @@ class Problem:
     rolling: bool = True
 
 
-@dataclass(frozen=True)
-class _State:
-    """Tractions, slips, and the largest component and the norm of the friction law's residual."""
+class Law(NamedTuple):
+    """The friction law on one patch; attributes as in `Problem`, `falls` if friction depends on the slip."""
 
-    traction: np.ndarray
-    slip: np.ndarray
-    largest: float
-    norm: float
+    height: np.ndarray
+    scale: float
+    knots: np.ndarray
+    factors: np.ndarray
+    falls: bool
+    rho: float
 
 
-class _Newton:
-    """Work space and steps of Newton's method for one patch."""
+class Work(NamedTuple):
+    """Work space of one patch: fields (ny, nx) of the iteration and what its linear systems need."""
 
-    def __init__(self, problem: Problem, krylov: int) -> None:
-        ny, nx = problem.height.shape
-        functions = problem.influence
-        self.problem, self.rho = problem, 1.0 / (functions.own if problem.rolling else functions.own_displacement)
-        if problem.rolling:
-            slips = column_slips(functions.column, functions.hy)
-        else:
-            slips = np.ascontiguousarray(np.repeat(functions.column[:, None, 1:-2], 2, axis=1))
-        self.columns = Columns(slips, *column_ranges(problem.height))
-        self.operator = Operator(functions.p, functions.q, leading_rows(problem.height), functions.hy, problem.rolling)
-        self.derivative = Derivative(np.empty((3, ny, nx)), np.empty((4, ny, nx)), problem.knots.size > 1, self.rho)
-        self.space = Space(
+    bound: np.ndarray
+    slope: np.ndarray
+    held: np.ndarray
+    mean: np.ndarray
+    value: np.ndarray
+    derivative: Derivative
+    columns: Columns
+    operator: Operator
+    space: Space
+
+
+@njit(cache=True, nogil=True)
+def _state(law, work, traction, slip):
+    """Compute bounds and residual at a traction and slip; return the residual's largest component and its norm."""
+    if law.falls:
+        row_means(reals(slip), work.columns.first, work.columns.loaded, work.mean)
+    law_of_slip(work.mean, law.height, law.scale, law.knots, law.factors, work.bound, work.slope)
+    return residual(reals(traction), reals(slip), work.bound, law.rho, reals(work.value))
+
+
+@njit(cache=True, nogil=True)
+def _step(law, work, traction, slip, tolerance, leap, step, change):
+    """Write Newton's step and the slip that it causes; return its products. A leap makes the slits stick."""
+    moved, d = reals(slip), work.derivative
+    jacobian(reals(traction), moved, work.mean, work.bound, work.slope, law.rho, d.projection, d.turn)
+    if leap:
+        hold(work.held, moved, law.rho, reals(work.value), d.projection, d.turn)
+    products = solve(work.value, d, work.columns, work.operator, tolerance, work.space, step)
+    multiply(step, work.operator, work.space.transforms, change)
+    return products + 1
+
+
+@njit(cache=True, nogil=True)
+def _move(start, step, length, out):
+    """Write start - length step into `out`."""
+    for i in range(out.shape[0]):
+        for j in range(out.shape[1]):
+            out[i, j] = start[i, j] - length * step[i, j]
+
+
+@njit(cache=True, nogil=True)
+def _search(law, work, at, norm, moves, new):
+    """Halve the step until the residual's norm falls, at most four times; return residual, norm and step length.
+
+    `at`, `moves` and `new` hold a traction and a slip (2, ny, nx); `new` is written.
+    """
+    length = 1.0
+    while True:
+        for k in range(2):
+            _move(at[k], moves[k], length, new[k])
+        largest, new_norm = _state(law, work, new[0], new[1])
+        if new_norm < (1.0 - 0.1 * length) * norm or length < 0.05 or math.isnan(new_norm):
+            return largest, new_norm, length
+        length *= 0.5
+
+
+@njit(cache=True, nogil=True)
+def _iterate(law, work, at, tolerance, limit):
+    """Iterate on the tractions and slips `at` (2, ny, nx); return residual, Newton steps and products."""
+    new, moves, before = np.empty_like(at), np.empty_like(at), np.empty_like(at)
+    largest, norm = _state(law, work, at[0], at[1])
+    norm_before, left, short = norm, 0, 0  # state before a leap; steps left to improve on it
+    products, iteration = 1, 0
+    while largest > tolerance and iteration < limit:
+        iteration += 1
+        # Far from the solution a rough linear solution is enough. Near it, a precise one gives quadratic convergence.
+        inner = max(0.3 * tolerance / largest, min(0.03, 0.1 * largest))
+        leap = short >= SHORT and left == 0
+        if leap:
+            leap = find_slits(reals(at[0]), reals(at[1]), work.bound, law.rho, work.held) > 0
+        products += _step(law, work, at[0], at[1], inner, leap, moves[0], moves[1])
+        if leap:
+            for k in range(2):
+                _move(at[k], moves[k], 1.0, new[k])
+            new_largest, new_norm = _state(law, work, new[0], new[1])
+            short = 0
+            if new_norm < RISE * norm:
+                norm_before, left, largest, norm = norm, TRIAL, new_largest, new_norm
+                before[:], at[:] = at, new
+            else:
+                largest, norm = _state(law, work, at[0], at[1])
+            continue
+        largest, norm, length = _search(law, work, at, norm, moves, new)
+        at[:] = new
+        short = short + 1 if length <= 0.5 else 0
+        if left > 0:
+            improved = norm < 0.9 * norm_before
+            left = 0 if improved else left - 1
+            if left == 0 and not improved:
+                at[:] = before
+                largest, norm = _state(law, work, at[0], at[1])
+                short = -TRIAL
+    return largest, iteration, products
+
+
+def _workspace(problem: Problem, krylov: int) -> tuple[Law, Work]:
+    ny, nx = problem.height.shape
+    functions, rolling = problem.influence, problem.rolling
+    rho = 1.0 / (functions.own if rolling else functions.own_displacement)
+    if rolling:
+        slips = column_slips(functions.column, functions.hy)
+    else:
+        slips = np.ascontiguousarray(np.repeat(functions.column[:, None, 1:-2], 2, axis=1))
+    falls = problem.knots.size > 1
+    work = Work(
+        np.empty((ny, nx)),
+        np.zeros((ny, nx)),
+        np.zeros((ny, nx), bool),
+        np.zeros((ny, nx, 2)),
+        np.empty((ny, nx), complex),
+        Derivative(np.empty((3, ny, nx)), np.empty((4, ny, nx)), falls, rho),
+        Columns(slips, *column_ranges(problem.height)),
+        Operator(functions.p, functions.q, leading_rows(problem.height), functions.hy, rolling),
+        Space(
             np.empty((nx, 2, ny, ny)),
             np.empty((krylov + 1, 2 * ny * nx)),
             np.empty((2, *functions.p.shape), complex),
-        )
-        self.bound, self.slope, self.held = np.empty((ny, nx)), np.zeros((ny, nx)), np.zeros((ny, nx), bool)
-        self.mean = np.zeros((ny, nx, 2))
-        self.value, self.product = np.empty((ny, nx), complex), np.empty((ny, nx), complex)
-
-    def multiply(self, field: np.ndarray) -> np.ndarray:
-        """Return B `field` in an array that the next call overwrites."""
-        multiply(field, self.operator, self.space.transforms, self.product)
-        return self.product
-
-    def state(self, traction: np.ndarray, slip: np.ndarray) -> _State:
-        """Return the state at a traction and slip, and keep its residual and its traction bounds."""
-        p = self.problem
-        if self.derivative.falls:
-            row_means(reals(slip), self.columns.first, self.columns.loaded, self.mean)
-        law_of_slip(self.mean, p.height, p.scale, p.knots, p.factors, self.bound, self.slope)
-        return _State(traction, slip, *residual(reals(traction), reals(slip), self.bound, self.rho, reals(self.value)))
-
-    def slits(self, at: _State) -> bool:
-        """Mark sliding elements in narrow gaps between sticking ones; return True if there are any."""
-        return find_slits(reals(at.traction), reals(at.slip), self.bound, self.rho, self.held) > 0
-
-    def step(self, at: _State, tolerance: float, leap: bool) -> tuple[np.ndarray, np.ndarray, int]:
-        """Return Newton's step, the slip that it causes and its number of products; a leap makes the slits stick."""
-        slip, d = reals(at.slip), self.derivative
-        jacobian(reals(at.traction), slip, self.mean, self.bound, self.slope, self.rho, d.projection, d.turn)
-        if leap:
-            hold(self.held, slip, self.rho, reals(self.value), d.projection, d.turn)
-        step = np.empty_like(self.value)
-        products = solve(self.value, d, self.columns, self.operator, tolerance, self.space, step)
-        return step, self.multiply(step), products + 1
-
-    def search(self, at: _State, step: np.ndarray, change: np.ndarray) -> tuple[_State, float]:
-        """Halve the step until the residual's norm falls, at most four times; return the state and the step length."""
-        length = 1.0
-        while True:
-            new = self.state(at.traction - length * step, at.slip - length * change)
-            if new.norm < (1.0 - 0.1 * length) * at.norm or length < 0.05 or math.isnan(new.norm):
-                return new, length
-            length *= 0.5
+        ),
+    )
+    return Law(problem.height, problem.scale, problem.knots, problem.factors, falls, rho), work
 
 
 def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int, krylov: int):
@@ -146,29 +214,10 @@ def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int,
         Tractions, slips and traction bounds at these slips, (ny, nx) each; largest component of the residual; number
         of Newton steps; number of products.
     """
-    work = _Newton(problem, krylov)
-    at = work.state(traction, problem.rigid + work.multiply(traction))
-    before, left, short = at, 0, 0  # state before a leap; steps left to improve on it
-    products, iteration = 1, 0
-    while at.largest > tolerance and iteration < limit:
-        iteration += 1
-        # Far from the solution a rough linear solution is enough. Near it, a precise one gives quadratic convergence.
-        inner = max(0.3 * tolerance / at.largest, min(0.03, 0.1 * at.largest))
-        leap = short >= SHORT and not left and work.slits(at)
-        step, change, used = work.step(at, inner, leap)
-        products += used
-        if leap:
-            new = work.state(at.traction - step, at.slip - change)
-            short = 0
-            if new.norm < RISE * at.norm:
-                before, left, at = at, TRIAL, new
-            else:
-                at = work.state(at.traction, at.slip)
-            continue
-        at, length = work.search(at, step, change)
-        short = short + 1 if length <= 0.5 else 0
-        if left:
-            left = 0 if at.norm < 0.9 * before.norm else left - 1
-            if not left and not at.norm < 0.9 * before.norm:
-                at, short = work.state(before.traction, before.slip), -TRIAL
-    return at.traction, at.slip, work.bound, at.largest, iteration, products
+    law, work = _workspace(problem, krylov)
+    at = np.empty((2, *traction.shape), complex)
+    at[0] = traction
+    multiply(at[0], work.operator, work.space.transforms, at[1])
+    at[1] += problem.rigid
+    found = _iterate(law, work, at, tolerance, limit)
+    return at[0], at[1], work.bound, *found
