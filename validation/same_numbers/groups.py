@@ -243,6 +243,7 @@ def groups() -> list[Group]:
         _sliding,
         lambda: _rolling("fastsim", {"preview": 12, "standard": 18, "reference": 4, 0.1: 6}),
         lambda: _rolling("kalker", {"preview": 40, "standard": 36, "reference": 2, 0.1: 6}),
+        lambda: _rolling("kalker_table", {"preview": 24}),
         _halfspace,
     )
     return [replace(g, options={"contact_model": "sliding"} | g.options) for maker in makers for g in maker()]

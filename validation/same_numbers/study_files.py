@@ -65,7 +65,7 @@ def small_studies(folder: Path) -> list[Study]:
         _study("central_composite", RANGES),
         _study("box_behnken", RANGES),
         _study("plackett_burman", RANGES),
-        _study("table", {}, table=str(folder / "rows.csv")),
+        _study("table", {}, table="rows.csv"),
     ]
 
 
