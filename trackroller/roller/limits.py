@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 POINTS, ROUNDS = 17, 7  # cases a round on each search, and rounds: the range shrinks by 16 each time
 _ROLLING, _FULL_SLIP, _LIFT_OFF, _FAILED = (REGIMES.index(name) for name in REGIMES)
 _LOCKED = validity_bit("jamming")
-_LARGEST_FRICTION = PARAMETERS["friction_coefficient"].upper
+_FRICTION = PARAMETERS["friction_coefficient"].upper
 
 
 @dataclass(frozen=True)
@@ -80,41 +80,51 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     model = contact_model if law_of(case.friction_law).is_constant else "sliding"
     span = 4.0 * (abs(case.radial_force) + abs(case.axial_force))
 
-    def states(cases: list[Case]) -> xr.Dataset:
-        return solve(cases, outputs="forces", contact_model=model, accuracy="preview", stop_if=None, database=database)
+    def holds(cases: list[Case]) -> dict[str, np.ndarray]:
+        return _conditions(solve(cases, "forces", contact_model=model, accuracy="preview", database=database))
 
-    def axial(values: np.ndarray) -> np.ndarray:
-        found = states([replace(nominal, axial_force=float(v)) for v in values])
-        return np.isin(found.regime.values, (_ROLLING, _FULL_SLIP))
-
-    def motor(values: np.ndarray) -> np.ndarray:
-        return states([replace(nominal, motor_force=float(v)) for v in values]).regime.values == _ROLLING
-
-    def loose(values: np.ndarray) -> np.ndarray:
-        found = states([replace(nominal, friction_coefficient=float(v)) for v in values])
-        return (found.validity.values & _LOCKED) == 0
-
-    start = 0.0 if not axial(np.array([case.axial_force]))[0] else case.axial_force
-    lifted = start != case.axial_force
-    slipping = lifted or not motor(np.array([0.0]))[0]
-    return Limits(
-        (_edge(axial, start, -span), _edge(axial, start, span)),
-        (math.nan, math.nan) if slipping else (_edge(motor, 0.0, -span), _edge(motor, 0.0, span)),
-        _edge(loose, 0.0, _LARGEST_FRICTION),
-    )
+    now, free = holds([nominal]), holds([replace(nominal, motor_force=0.0)])
+    lifted, rolls = not now["axial_force"][0], free["motor_force"][0]
+    start = 0.0 if lifted else case.axial_force
+    searches = [("axial_force", start, -span), ("axial_force", start, span), ("friction_coefficient", 0.0, _FRICTION)]
+    if rolls and not lifted:
+        searches += [("motor_force", 0.0, -span), ("motor_force", 0.0, span)]
+    lowest, highest, locking, *motor = _edges(holds, nominal, searches)
+    return Limits((lowest, highest), (motor[0], motor[1]) if motor else (math.nan, math.nan), locking)
 
 
-def _edge(holds: Callable[[np.ndarray], np.ndarray], start: float, end: float) -> float:
-    """Return the last value from `start` towards `end` at which a condition holds.
+def _conditions(found: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return for each searched field which cases lie on the near side of its limit."""
+    regime = found.regime.values
+    return {
+        "axial_force": np.isin(regime, (_ROLLING, _FULL_SLIP)),
+        "motor_force": regime == _ROLLING,
+        "friction_coefficient": (found.validity.values & _LOCKED) == 0,
+    }
 
-    NaN if it does not hold at `start`, and infinity with the sign of the direction if it holds as far as `end`.
+
+def _edges(
+    holds: Callable[[list[Case]], dict[str, np.ndarray]], case: Case, searches: Sequence[tuple[str, float, float]]
+) -> list[float]:
+    """Return for each search (field, start, end) the last value from the start at which the field's condition holds.
+
+    NaN if it does not hold at the start, and infinity with the sign of the direction if it holds as far as the end. A
+    round solves the cases of all searches in one batch.
     """
+    ranges = [(start, end) for _, start, end in searches]
+    found = [math.nan] * len(searches)
+    going = list(range(len(searches)))
     for _ in range(ROUNDS):
-        values = np.linspace(start, end, POINTS)
-        ends = np.flatnonzero(~holds(values))
-        if ends.size == 0:
-            return math.copysign(math.inf, end - start)
-        if ends[0] == 0:
-            return math.nan
-        start, end = float(values[ends[0] - 1]), float(values[ends[0]])
-    return start
+        values = {i: np.linspace(*ranges[i], POINTS) for i in going}
+        near = holds([replace(case, **{searches[i][0]: float(v)}) for i in going for v in values[i]])
+        for row, i in enumerate(tuple(going)):
+            far = np.flatnonzero(~near[searches[i][0]].reshape(-1, POINTS)[row])
+            if far.size and far[0]:
+                ranges[i] = (float(values[i][far[0] - 1]), float(values[i][far[0]]))
+                found[i] = ranges[i][0]
+            else:
+                going.remove(i)
+                found[i] = math.nan if far.size else math.copysign(math.inf, ranges[i][1] - ranges[i][0])
+        if not going:
+            break
+    return found
