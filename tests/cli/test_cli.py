@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from command_line import PROGRAM, trackroller, trackroller_process
 
 STUDY = """
 name: tiny
@@ -21,23 +22,10 @@ contact_model: sliding
 """
 
 
-def trackroller(*words, cwd, code=0):
-    done = subprocess.run(
-        [sys.executable, "-c", "from trackroller.cli.main import main; main()", *map(str, words)],
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert done.returncode == code, done.stderr
-    assert "Traceback" not in done.stderr
-    return done
-
-
 def test_solve_prints_json_and_writes_netcdf(tmp_path):
     (tmp_path / "case.yaml").write_text("motor_force: 0\noutputs: [forces]\ncontact_model: sliding\n")
     words = ("solve", "case.yaml", "--set", "friction_coefficient=0.1", "--json")
-    told = json.loads(trackroller(*words, cwd=tmp_path).stdout)
+    told = json.loads(trackroller_process(*words, cwd=tmp_path).stdout)
     assert told["normal_force"]["units"] == "N" and len(told["normal_force"]["value"]) == 2
     assert told["regime"]["meaning"] == "rolling"
     trackroller("solve", "case.yaml", "-o", "out.nc", cwd=tmp_path)
@@ -91,9 +79,12 @@ def test_bad_input_ends_with_exit_2_and_names_it(tmp_path, words, named):
     (tmp_path / "blocked.yaml").write_text(STUDY.replace("tiny", "blocked"))
     (tmp_path / "results").mkdir()
     (tmp_path / "results" / "blocked").write_text("a file")
-    done = trackroller(*words, cwd=tmp_path, code=2)
-    assert named in done.stderr
+    assert named in trackroller(*words, cwd=tmp_path, code=2).stderr
     assert not list(tmp_path.rglob("study.nc"))
+
+
+def test_a_process_that_is_refused_ends_with_exit_2(tmp_path):
+    assert "friction_coefficient" in trackroller_process("solve", "--set", "frction=0.1", cwd=tmp_path, code=2).stderr
 
 
 def test_materials_are_listed_shown_and_added(tmp_path):
@@ -117,14 +108,14 @@ def test_materials_are_listed_shown_and_added(tmp_path):
 def test_dask_workers_give_the_same_numbers(tmp_path):
     (tmp_path / "tiny.yaml").write_text(STUDY)
     trackroller("run", "tiny.yaml", "-q", cwd=tmp_path)
-    trackroller("run", "tiny.yaml", "-q", "--results", "dask", "--scheduler", "local", cwd=tmp_path)
+    trackroller_process("run", "tiny.yaml", "-q", "--results", "dask", "--scheduler", "local", cwd=tmp_path)
     sets = [xr.load_dataset(tmp_path / name / "tiny" / "study.nc") for name in ("results", "dask")]
     xr.testing.assert_identical(*(ds.drop_attrs() for ds in sets))
 
 
 def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
     """Scheduler and workers are processes of their own; one worker dies in mid-run, every case is there."""
-    study = STUDY.replace("[0, 20, 40]", "[" + ", ".join(f"{v / 10}" for v in range(600)) + "]")
+    study = STUDY.replace("[0, 20, 40]", "[" + ", ".join(f"{v / 10}" for v in range(300)) + "]")
     (tmp_path / "tiny.yaml").write_text(study.replace("outputs: [forces]", "outputs: [forces, peak_stress]"))
     dask = [sys.executable, "-m", "dask"]
     quiet = {"cwd": tmp_path, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -156,16 +147,7 @@ def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
         wait_until(lambda: (tmp_path / "s.json").is_file())
         address = json.loads((tmp_path / "s.json").read_text())["address"]
         run = subprocess.Popen(
-            [
-                sys.executable,
-                "-c",
-                "from trackroller.cli.main import main; main()",
-                "run",
-                "tiny.yaml",
-                "-q",
-                "--scheduler",
-                address,
-            ],
+            [*PROGRAM, "run", "tiny.yaml", "-q", "--scheduler", address],
             **quiet,
         )
         folder = tmp_path / "results" / "tiny"

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
-from cli.test_cli import trackroller
+from command_line import trackroller
 from reference_cases import solve_sliding
 
 import trackroller as tr

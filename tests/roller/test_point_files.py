@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from cli.test_cli import trackroller
+from command_line import trackroller
 
 import trackroller as tr
 from trackroller.roller.point_files import files_beside, read_points
