@@ -16,8 +16,10 @@ from synthetic_results import PAIRS, grid_study, sampled_study
 from trackroller.report.figures.study import draw_all
 from trackroller.report.findings import occurrence
 from trackroller.report.page import contents, models_used, write_report
+from trackroller.report.sheet.rows import Row
 from trackroller.report.tables import regime_table, validity_table
 from trackroller.report.view import StudyView
+from trackroller.roller.dataset import VALIDITY_BITS
 
 FACTORS = {
     "friction_coefficient": [0.05, 0.3, 0.4],
@@ -113,11 +115,10 @@ def test_events_of_all_designs_and_of_none():
 
 def test_validity_bits_are_counted_by_mask():
     ds = grid_study(FACTORS)
-    ds["validity"].attrs["comment"] = "half_space: a; b: c; static: peak above R_m; conformal: edge"
     view = StudyView.of(ds)
     rows = {row[0]: row for row in validity_table(view).rows}
     assert rows["conformal"][3] == int((((ds["validity"] & 8) > 0) & (ds["regime"] == 0)).sum()) > 0
-    assert rows["static"][2] == "peak above R_m" and view.flags["half_space"] == "a; b: c"
+    assert rows["static"][2] == VALIDITY_BITS["static"]
     assert "half space" not in rows  # no case carries it
 
 
@@ -152,8 +153,8 @@ def test_a_study_in_which_everything_failed_shows_the_reasons(tmp_path):
 
 def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
     found = contents(sampled_study(60))
-    row = next(f for f in found["factors"] if f["name"] == "Friction coefficient")
-    assert row["spec"] == "uniform 0.02, 0.4" and "…" in row["values"]
+    values, spec = next(row[2:4] for row in found["factors"].rows if row[0].startswith("Friction coefficient"))
+    assert spec == "uniform 0.02, 0.4" and "…" in values
     assert "design lhs" in found["facts"] and "60 cases" in found["facts"]
 
 
@@ -195,7 +196,7 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     ds = ds.assign_coords(friction_law=("case", law.astype(object)))
     ds["contact_model_used"] = ("case", np.arange(40) % 2 + 2, {"flag_meanings": "sliding fastsim kalker kalker_table"})
     ds["stopped"] = ("case", (np.arange(40) < 7).astype("i1"))
-    assert models_used(ds) == [("Contact model used", "kalker in 20, kalker_table in 20 of 40 cases")]
+    assert models_used(ds) == [Row("Contact model used", "kalker in 20, kalker_table in 20 of 40 cases")]
     told = contents(ds)
     valid = dict(told["summary"])["Valid designs"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)

@@ -17,8 +17,8 @@ from typer.testing import CliRunner
 import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.errors import InputError
+from trackroller.report.flags import flags_of
 from trackroller.report.sheet.facts import collect
-from trackroller.report.sheet.flags import flags_of
 from trackroller.report.sheet.page import render
 from trackroller.report.sheet.text import as_json
 

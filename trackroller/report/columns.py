@@ -40,18 +40,6 @@ PLAIN_RESULTS = (
 SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lying at the surface
 
 
-def flag_meanings(ds: xr.Dataset) -> dict[str, str]:
-    """Return the validity flags with their meanings, '' for a flag without one."""
-    if "validity" not in ds:
-        return {}
-    attrs = ds["validity"].attrs
-    names, comment = str(attrs.get("flag_meanings", "")).split(), str(attrs.get("comment", ""))
-    starts = sorted((at, n) for n in names if (at := f"; {comment}".find(f"; {n}: ")) >= 0)
-    ends = [*(at for at, _ in starts[1:]), len(comment) + 2]
-    found = {n: f"; {comment}"[at + len(n) + 4 : end] for (at, n), end in zip(starts, ends, strict=False)}
-    return {n: found.get(n, "") for n in names}
-
-
 def any_with(ds: xr.Dataset, dim: str) -> str:
     """Name a variable that has a dimension."""
     return next(str(n) for n, v in ds.variables.items() if dim in v.dims)

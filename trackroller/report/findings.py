@@ -9,22 +9,11 @@ import numpy as np
 
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.claims import FEW, Sentence
+from trackroller.report.flags import OF_BODY, of_body, words_of
 from trackroller.report.numbers import count, level_text, listing, long_name, number, quantity, setting, share
 from trackroller.report.view import BODIES, MOST_LEVELS, OUTSIDE, StudyView
 
 CONDITIONS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity", "guide_curve_radius")
-FLAG_WORDS = {
-    "half_space": "the patch is too large for a half-space",
-    "yield": "the contact pressure exceeds the yield limit",
-    "static": "the peak stress exceeds the tensile strength",
-    "conformal": "the patch reaches the edge of the groove or the middle of the guide",
-    "steep_friction": "friction falls too steeply with the slip",
-    "jamming": "friction carries the lateral load and the wedge may lock",
-    "large_slip": "the longitudinal slip exceeds 10 %",
-    "deep_life": "the peak stress is below the fatigue limit, so that life rests on the rule beyond the knee",
-    "split_pole": "the stress of full sliding is singular",
-}
-OF_BODY = ("yield", "static", "deep_life", "half_space")  # flags that may hold for one body alone
 
 
 def valid_designs(view: StudyView) -> Sentence:
@@ -66,10 +55,8 @@ def _outside(view: StudyView) -> list[tuple[str, str, np.ndarray]]:
 def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> str:
     said: dict[str, list[str]] = {}
     for flag, body, cases in reasons:
-        of = f"of the {body} " if body and flag == "static" else f"at the {body} " if body else ""
-        said.setdefault(flag, []).append(f"{of}({count(cases)})")
-    parts = [f"{FLAG_WORDS.get(flag, flag.replace('_', ' '))} {' or '.join(where)}" for flag, where in said.items()]
-    return listing(parts, "or")
+        said.setdefault(flag, []).append(f"{of_body(flag, body)} ({count(cases)})".lstrip())
+    return listing([f"{words_of(flag)} {' or '.join(where)}" for flag, where in said.items()], "or")
 
 
 def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:

@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
+_GREEK = {"alpha": "α", "mu": "μ", "nu": "ν", "sigma": "σ"}
 
 
 def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]) -> str:
@@ -25,7 +26,7 @@ def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]
     content : dict
         Variables of the template; a variable that is missing raises an error.
     **filters : callable
-        Filters of the template beside `marked`, by name.
+        Filters of the template beside `marked` and `symbols`, by name.
     """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trackroller.report", "templates"),
@@ -34,7 +35,7 @@ def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.filters |= {"marked": lambda text: Markup(inline(str(text)))} | filters
+    environment.filters |= {"marked": lambda text: Markup(inline(str(text))), "symbols": symbols} | filters
     return environment.get_template(template).render(content)
 
 
@@ -43,6 +44,14 @@ def inline(text: str) -> str:
     text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", html.escape(text, quote=False))
     text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
     return re.sub(r"\*([^*]+)\*", r"<em>\1</em>", text)
+
+
+def symbols(text: str) -> Markup:
+    """Return a text with Greek letters and subscripts where it holds symbols such as F_N, r_C,G or sigma_D."""
+    told = str(escape(text))
+    for name, letter in _GREEK.items():
+        told = re.sub(rf"\b{name}(?=\b|_)", letter, told)
+    return Markup(re.sub(r"\b(\w)_([A-Za-z]+(?:,[A-Z]+)?)", r"<i>\1</i><sub>\2</sub>", told))
 
 
 def data_uri(path: Path) -> str:

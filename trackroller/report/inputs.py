@@ -1,57 +1,37 @@
-"""What the report says of a study's inputs in tables: factors, what is the same in all cases, materials, record."""
+"""What the report says of a study's inputs: factors, what is the same in all cases, materials, record."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
-import numpy as np
-import xarray as xr
-
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.materials.properties import PROPERTIES, REQUIRED
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, unit_text
+from trackroller.report.sheet.rows import Row, input_row
+from trackroller.report.tables import Table
 from trackroller.report.view import StudyView
 
-Table = list[dict[str, Any]]
 
-
-def factor_table(view: StudyView) -> Table:
-    """List the factors: name, symbol, unit, values as set or as found, number of levels."""
-    found = view.study.get("factors", {})
-    given = found if isinstance(found, Mapping) else {}
+def factor_table(view: StudyView) -> Table | None:
+    """List the factors and what follows from them: symbol, unit, values as found and as set, number of levels."""
+    given = view.study.get("factors", {})
+    specs = {name: _spec(spec) for name, spec in given.items()} if isinstance(given, Mapping) else {}
+    follows = [n for n, spec in specs.items() if n not in view.factors and spec.startswith("=") and n in view.table]
     rows = []
-    for name in view.factors:
-        levels = view.levels(name)
-        if view.grid or len(levels) <= 12 or not view.numeric(name):
-            words = name in ("motor_force", "guide_curve_radius")
-            values = ", ".join(level_text(name, v, unit=words) for v in levels)
-        else:
-            values = _range(levels)
-        rows.append(_row(name, levels, values, given.get(name)))
-    for name, spec in given.items():  # parameters that follow from the factors, with their expression
-        if name not in view.factors and name in view.table and _spec(spec).startswith("=") and view.levels(name):
-            levels = view.levels(name)
-            values = _range(levels) if view.numeric(name) else ", ".join(map(str, levels[:6]))
-            rows.append(_row(name, levels, values, spec))
-    return rows
-
-
-def _row(name: str, levels: list[Any], values: str, spec: Any) -> dict[str, Any]:
-    p = PARAMETERS.get(name)
-    told = {"name": capital(long_name(name)), "symbol": _symbol(p.symbol) if p else ("", "")}
-    told |= {"unit": unit_text(p.unit) if p else "", "values": values}
-    return told | {"count": len(levels), "spec": _spec(spec)}
-
-
-def _range(levels: list[float]) -> str:
-    return " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
-
-
-def _symbol(symbol: str) -> tuple[str, str]:
-    """Letter and index: 'r_C,TR' as ('r', 'C,TR')."""
-    letter, _, index = {"alpha": "α", "mu": "μ"}.get(symbol, symbol).partition("_")
-    return letter, index
+    for name in (*view.factors, *follows):
+        levels, parameter = view.levels(name), PARAMETERS.get(name)
+        words = name in ("motor_force", "guide_curve_radius")
+        values = ", ".join(level_text(name, v, unit=words) for v in levels)
+        if view.numeric(name) and (name in follows or not view.grid) and len(levels) > 12:
+            values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
+        symbol, unit = (parameter.symbol, unit_text(parameter.unit)) if parameter else ("", "")
+        rows.append(
+            [f"{capital(long_name(name))} {symbol}", unit, values, specs.get(name) or "listed values", len(levels)]
+        )
+    return Table("factors", "Factors", ["Factor", "Unit", "Values", "Set as", "Number"], rows) if rows else None
 
 
 def _spec(spec: Any) -> str:
@@ -68,64 +48,36 @@ def _spec(spec: Any) -> str:
     return ""
 
 
-def correlation_row(view: StudyView) -> list[tuple[str, str]]:
+def correlation_row(view: StudyView) -> list[Row]:
     """Return the rank correlations of the study file as one row, if there are any."""
     said = [
         f"{long_name(one)} with {long_name(other)} {number(rho)}"
         for one, other, rho in view.study.get("rank_correlations", ())
     ]
-    return [("Rank correlations", "; ".join(said))] if said else []
+    return [Row("Rank correlations", "; ".join(said))] if said else []
 
 
-def base_table(view: StudyView, ds: xr.Dataset) -> Table:
-    """List the parameters that are the same in all cases."""
-    rows = []
-    for name, p in PARAMETERS.items():
-        if name in view.factors or name in view.table:
-            continue
-        value = view.base.get(name)
-        if isinstance(value, (int, float)) and not np.isnan(value):
-            rows.append(
-                {
-                    "name": capital(p.long_name),
-                    "symbol": _symbol(p.symbol),
-                    "value": number(float(value)),
-                    "unit": unit_text(p.unit),
-                }
-            )
-    if "material_pair" not in view.factors:
-        for name in ("roller_material", "guide_material"):
-            value = view.base.get(name)
-            if name not in view.factors and value is not None:
-                value = value.get("name", "inline") if isinstance(value, Mapping) else value
-                rows.append({"name": capital(plain(name)), "symbol": ("", ""), "value": str(value), "unit": ""})
-    for name in MAPPING_FIELDS:
-        if name not in view.table and view.base.get(name):
-            text = level_text(name, str(view.base[name]))
-            rows.append({"name": capital(plain(name)), "symbol": ("", ""), "value": text, "unit": ""})
-    return rows
+def base_rows(view: StudyView) -> list[Row]:
+    """List the inputs that are the same in all cases."""
+    names = [*PARAMETERS, *(MATERIAL_FIELDS if "material_pair" not in view.factors else ()), *MAPPING_FIELDS]
+    given = {name: view.base.get(name) for name in names if name not in (*view.factors, *view.table)}
+    rows = [input_row(name, value) for name, value in given.items() if value not in (None, "") and value == value]
+    return [replace(row, words=capital(row.words)) for row in rows]
 
 
-def materials_table(attrs: Mapping[str, Any]) -> Table:
+def materials_table(attrs: Mapping[str, Any]) -> Table | None:
     """List the values of the materials used, as stored in the result."""
     try:
         stored = json.loads(str(attrs.get("materials", "{}")))
     except ValueError:
-        return []
-    columns = (
-        ("youngs_modulus", 1),
-        ("poisson_ratio", 1),
-        ("tensile_strength", 1),
-        ("fatigue_strength_ratio", 1),
-        ("cycles_at_tensile_strength", 1),
-        ("cycles_at_fatigue_limit", 1),
-    )
-    rows = []
-    for name, values in stored.items() if isinstance(stored, Mapping) else ():
-        if isinstance(values, Mapping):
-            row = {key: number(float(values[key])) for key, _ in columns if _is_number(values.get(key))}
-            rows.append({"name": name, "source": material_source(values), **row})
-    return rows
+        return None
+    used = {n: v for n, v in stored.items() if isinstance(v, Mapping)} if isinstance(stored, Mapping) else {}
+    heads = ["Name", *(f"{PROPERTIES[n].symbol} [{unit_text(PROPERTIES[n].unit)}]" for n in REQUIRED), "Source"]
+    rows = [
+        [name, *(float(values[n]) if n in values else "–" for n in REQUIRED), material_source(values)]
+        for name, values in used.items()
+    ]
+    return Table("materials", "Materials", heads, rows) if rows else None
 
 
 def material_source(values: Mapping[str, Any]) -> str:
@@ -135,24 +87,15 @@ def material_source(values: Mapping[str, Any]) -> str:
     return f"{source}." + (f" Guesses without a source: {', '.join(map(plain, guesses))}." if guesses else "")
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def record_table(attrs: Mapping[str, Any], skip: set[str]) -> list[tuple[str, str]]:
-    """List the global attributes that are needed to repeat the result.
-
-    Mappings are taken apart.
-    """
+def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:
+    """List the global attributes that are needed to repeat the result; mappings are taken apart."""
     rows = []
     for key, value in attrs.items():
-        if key in skip:
-            continue
         text = str(value)
         if text.startswith("{"):
             try:
                 text = ", ".join(f"{k} {v}" for k, v in json.loads(text).items())
             except (ValueError, AttributeError):
                 pass
-        rows.append((capital(plain(str(key))), text))
+        rows += [Row(capital(plain(str(key))), text)] if key not in skip else []
     return rows

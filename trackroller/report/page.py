@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,10 +21,10 @@ from trackroller.report.comparison import report_section
 from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.inputs import base_table, correlation_row, factor_table, materials_table, record_table
+from trackroller.report.inputs import base_rows, correlation_row, factor_table, materials_table, record_rows
 from trackroller.report.known_errors import friction_error
 from trackroller.report.numbers import capital, count, long_name, percent, plain, rounded
-from trackroller.report.papers import conventions, papers
+from trackroller.report.sheet.rows import Row
 from trackroller.report.summary import in_short
 from trackroller.report.tables import Table, best_table, cell, reason_table, regime_table, validity_table
 from trackroller.report.view import StudyView
@@ -72,12 +73,8 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     pathlib.Path
         The path of the report.
     """
-    sens = None
-    if sensitivity_nc is not None and Path(sensitivity_nc).is_file():
-        with xr.open_dataset(sensitivity_nc) as opened:
-            sens = opened.load()
-    with xr.open_dataset(study_nc) as opened:
-        ds = opened.load()
+    ds = xr.load_dataset(study_nc)
+    sens = xr.load_dataset(sensitivity_nc) if sensitivity_nc is not None and sensitivity_nc.is_file() else None
     content = contents(ds, sens)
     content["figures"] = _placed(figures(Path(figures_dir)))
     content["explorer"] = _guarded(lambda: None, explorer, ds)
@@ -95,7 +92,7 @@ def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
     sens : analysis of the study, if there is one
     """
     view = StudyView.of(ds)
-    attrs, results, settings = dict(ds.attrs), set(map(str, ds.data_vars)), view.study
+    attrs, settings = dict(ds.attrs), view.study
     merged = {**{k: settings[k] for k in (*OPTIONS, "design") if k in settings}, **attrs}
     models = _guarded(dict, report_section, ds)
     return {
@@ -104,17 +101,17 @@ def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
         "facts": _facts(view, merged),
         "summary": in_short(view, sens, models.get("short", [])),
         **sections(ds, view, sens, models),
-        "models_said": [*models.get("overview", []), *models.get("details", [])],
+        "models_said": models.get("said", []),
         "factors": factor_table(view),
-        "base": base_table(view, ds),
-        "options": [(capital(long_name(k)), told) for k in OPTIONS if (told := _told(merged.get(k, "")))]
+        "base": base_rows(view),
+        "options": [Row(capital(long_name(k)), told) for k in OPTIONS if (told := _told(merged.get(k, "")))]
         + models_used(ds)
         + correlation_row(view),
         "materials": materials_table(attrs),
         "solution": solution_facts(ds, view),
-        "conventions": conventions(merged, results),
-        "papers": papers(merged, results),
-        "record": record_table(attrs, _TOLD),
+        "used": defaultdict(str, merged),
+        "results": set(map(str, ds.data_vars)),
+        "record": record_rows(attrs, _TOLD),
         "study_text": str(attrs.get("study", "")),
     }
 
@@ -139,18 +136,12 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
     elif sens is not None:
         why = [index_table(sens, error), *parts.tables(sens)]
         why += [measure_table(sens, name, error) for name in _leading_outputs(sens)]
-    compared = []
-    if models.get("rows"):
-        rows = [[name, *cells] for name, cells in models["rows"]]
-        compared = [
-            Table("contact_models", "Errors of the cheaper models", ["Model, quantity", *models["columns"]], rows)
-        ]
     return {
         "decide": [t for t in decide if t],
         "decide_said": said,
         "why": why,
         "ends": [t for t in (regime_table(view), validity_table(view), reason_table(ds)) if t],
-        "models": compared,
+        "models": models.get("tables", []),
     }
 
 
@@ -190,7 +181,7 @@ def _told(value: Any) -> str:
     return ", ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
 
 
-def models_used(ds: xr.Dataset) -> list[tuple[str, str]]:
+def models_used(ds: xr.Dataset) -> list[Row]:
     """Say how many cases each contact model solved, where several served the one that was asked for."""
     if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
@@ -198,15 +189,15 @@ def models_used(ds: xr.Dataset) -> list[tuple[str, str]]:
     used = ds["contact_model_used"].values.astype(float)
     counts = [(name, int((used == i).sum())) for i, name in enumerate(names)]
     said = ", ".join(f"{name} in {count}" for name, count in counts if count)
-    return [("Contact model used", f"{said} of {used.size} cases")] if said and len(set(used.ravel())) > 1 else []
+    return [Row("Contact model used", f"{said} of {used.size} cases")] if said and len(set(used.ravel())) > 1 else []
 
 
-def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:
+def solution_facts(ds: xr.Dataset, view: StudyView) -> list[Row]:
     """Say how well the cases are solved."""
     rows = []
     if "converged" in view.table:
         done = int((view.table["converged"] == 1).sum())
-        rows.append(("Converged cases", f"{count(done)} of {count(len(view.table))}"))
+        rows.append(Row("Converged cases", f"{count(done)} of {count(len(view.table))}"))
     for name, told in (
         ("residual", "Largest relative residual of the equilibrium"),
         ("error_estimate", "Largest estimated relative error of the peak stress"),
@@ -216,7 +207,7 @@ def solution_facts(ds: xr.Dataset, view: StudyView) -> list[tuple[str, str]]:
             text = rounded(float(good.max()), 2)
             if name == "error_estimate" and good.max() > 0.01:
                 text = f"{percent(float(good.max()))} (median {percent(float(np.median(good)))})"
-            rows.append((told, text))
+            rows.append(Row(told, text))
     return rows
 
 

@@ -10,9 +10,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.parameters import PARAMETERS, REGIME_LABELS
-from trackroller.report.findings import FLAG_WORDS, OF_BODY, occurrence, ranked
+from trackroller.report.findings import occurrence, ranked
+from trackroller.report.flags import OF_BODY, words_of
 from trackroller.report.numbers import capital, count, level_text, life, long_name, plain, rounded, share, unit_text
 from trackroller.report.view import BODIES, StudyView
+from trackroller.roller.dataset import VALIDITY_BITS
 
 BEST = 5  # designs in the table of the best
 _SPOKEN = ("motor_force", "guide_curve_radius")
@@ -103,15 +105,15 @@ def regime_table(view: StudyView) -> Table | None:
 def validity_table(view: StudyView) -> Table | None:
     """Count the rolling cases that carry each validity flag, by body where the data tell, and say where."""
     rows = []
-    for flag, meaning in view.flags.items():
+    for flag in view.flags:
         for body in BODIES if view.by_body and flag in OF_BODY else ("",):
             hit = view.flagged(flag, body) & view.rolling
             if not hit.any():
                 continue
             said = occurrence(view, hit, capital(f"{plain(flag)}{f' ({body})' if body else ''}"), view.rolling)
-            told = meaning or FLAG_WORDS.get(flag, "")
             cases, rolls = int(hit.sum()), int(view.rolling.sum())
-            rows.append([plain(flag), body or "either", told, cases, share(cases, rolls), said.text if said else ""])
+            meaning = VALIDITY_BITS.get(flag, words_of(flag))
+            rows.append([plain(flag), body or "either", meaning, cases, share(cases, rolls), said.text if said else ""])
     if not rows:
         return None
     heads = ["Flag", "Body", "Meaning", "Cases", "Share of the rolling", "Where"]

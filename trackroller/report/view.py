@@ -13,7 +13,7 @@ import xarray as xr
 
 from trackroller.analysis.limits import allowed_cases
 from trackroller.parameters import EXACTNESS, PARAMETERS
-from trackroller.report.columns import base_values, case_columns, factor_names, flag_meanings, study_dims
+from trackroller.report.columns import base_values, case_columns, factor_names, study_dims
 from trackroller.report.numbers import SPOKEN, setting
 from trackroller.study.outputs import read_study
 
@@ -40,7 +40,7 @@ class StudyView:
     base : values of the parameters that are no factors
     grid : whether every combination of levels is there
     attrs : attributes of the data set
-    flags : meaning of each validity flag; the order gives the bits of the columns `validity*`
+    flags : names of the validity flags in the order of the bits of the columns `validity*`
     derived : factors that other parameters follow from
     study : the study file with its defaults
     met : cases that meet the constraints of the study, shape (n,) bool; None without constraints
@@ -51,7 +51,7 @@ class StudyView:
     base: Mapping[str, Any]
     grid: bool
     attrs: Mapping[str, Any]
-    flags: Mapping[str, str] = field(default_factory=dict)
+    flags: tuple[str, ...] = ()
     derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     study: Mapping[str, Any] = field(default_factory=dict)
     met: np.ndarray | None = None
@@ -73,7 +73,8 @@ class StudyView:
             for p in PARAMETERS
             if p in ds.variables and p in table and p not in names and table[p].nunique() > 1
         }
-        found = dict(ds.attrs), flag_meanings(ds), derived, read_study(ds), allowed_cases(ds, tuple(dims), names)
+        flags = tuple(str(ds["validity"].attrs.get("flag_meanings", "")).split()) if "validity" in ds else ()
+        found = dict(ds.attrs), flags, derived, read_study(ds), allowed_cases(ds, tuple(dims), names)
         return cls(table, tuple(names), base, grid, *found)
 
     def levels(self, name: str, table: pd.DataFrame | None = None) -> list[Any]:
@@ -166,7 +167,7 @@ class StudyView:
         With `body` only where it holds for this body.
         """
         name = f"validity_{body}" if body else "validity"
-        bit = 1 << list(self.flags).index(flag)
+        bit = 1 << self.flags.index(flag)
         return (np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0
 
     @property

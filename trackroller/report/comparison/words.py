@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from trackroller.report.comparison.groups import (
 )
 from trackroller.report.comparison.pairs import pairs
 from trackroller.report.numbers import capital, percent
+from trackroller.report.tables import Table
 
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM"}
 MOST = 0.9  # share of the designs of a level that counts as the level
@@ -102,22 +104,20 @@ def report_section(ds: xr.Dataset) -> dict[str, Any]:
     paired = pairs(ds)
     if paired is None:
         return {}
-    rows: list[tuple[str, list[str]]] = []
+    rows = []
     if paired.sizes["design"]:
         found = errors(paired)
-        for model in map(str, found["contact_model"].values):
-            for q in measured(found):
-                e = _rolling(found[q.name].sel(contact_model=model))
-                if e.size:
-                    cells = [percent(float(np.mean(e <= GOOD))), *(percent(float(v)) for v in _spread(e)), str(e.size)]
-                    rows.append((f"{model}: {q.words}", cells))
-    columns = [f"designs within {percent(GOOD)}", "median error", "90 % below", "largest", "designs"]
+        for model, q in product(map(str, found["contact_model"].values), measured(found)):
+            e = _rolling(found[q.name].sel(contact_model=model))
+            if e.size:
+                cells = [percent(v) for v in (float(np.mean(e <= GOOD)), *_spread(e))]
+                rows.append([f"{model}: {q.words}", *cells, str(e.size)])
+    heads = ["Model, quantity", f"designs within {percent(GOOD)}", "median error", "90 % below", "largest", "designs"]
+    table = Table("contact_models", "Errors of the cheaper models", heads, rows)
     return {
         "short": short(paired),
-        "overview": [overview(paired)],
-        "details": details(paired),
-        "columns": columns,
-        "rows": rows,
+        "said": [overview(paired), *details(paired)],
+        "tables": [table] if rows else [],
     }
 
 

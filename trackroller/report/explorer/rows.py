@@ -12,8 +12,8 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.columns import study_dims
-from trackroller.report.findings import FLAG_WORDS
-from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, plain, unit_text
+from trackroller.report.flags import words_of
+from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, unit_text
 from trackroller.report.view import BODIES, StudyView
 from trackroller.study import goals
 from trackroller.study.outputs import Output, default_names, outputs, read_study
@@ -178,7 +178,7 @@ def _states(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
     for name in ("validity", *(f"validity_{body}" for body in BODIES)):
         if name in view.table and view.flags:
             masks = np.nan_to_num(view.column(name, 0.0)).astype(int)
-            said = [flag_text(int(mask), list(view.flags)) for mask in np.unique(masks)]
+            said = [flag_text(int(mask), view.flags) for mask in np.unique(masks)]
             body = name.partition("_")[2]
             found.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, said))
     if view.met is not None:
@@ -194,5 +194,5 @@ def _states(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
 
 def flag_text(mask: int, flags: Sequence[str]) -> str:
     """Write the validity flags of a bit mask in words, 'none' without a flag."""
-    said = [FLAG_WORDS.get(flag, plain(flag)) for i, flag in enumerate(flags) if mask & (1 << i)]
+    said = [words_of(flag) for i, flag in enumerate(flags) if mask & (1 << i)]
     return "; ".join(said) or "none"

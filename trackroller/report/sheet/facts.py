@@ -13,9 +13,9 @@ import numpy as np
 
 from trackroller.damage import fatigue
 from trackroller.parameters import REGIMES
+from trackroller.report.flags import Flag, flags_of
 from trackroller.report.inputs import material_source
 from trackroller.report.numbers import life, number, rounded
-from trackroller.report.sheet.flags import Flag, flags_of
 from trackroller.report.sheet.rows import (
     Row,
     input_row,

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import re
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from markupsafe import Markup, escape
 
 from trackroller.report import html
 from trackroller.report.numbers import life, number, rounded
@@ -22,7 +19,6 @@ if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
 
 SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress")  # figures of the sheet, as far as drawn
-GREEK = {"alpha": "α", "mu": "μ", "nu": "ν", "sigma": "σ"}
 FULL = 150.0  # percent of a limit at the right end of a bar
 
 
@@ -64,15 +60,7 @@ def render(ds: xr.Dataset, name: str = "", database: MaterialDatabase | None = N
         "figures": _figures(ds),
         "full": FULL,
     }
-    return html.render("sheet.html.j2", content, symbols=symbols, life=life, number=number, rounded=rounded, bar=bar)
-
-
-def symbols(text: str) -> Markup:
-    """Return a text with Greek letters and subscripts where it holds symbols such as F_N, r_C,G or sigma_D."""
-    told = str(escape(text))
-    for name, letter in GREEK.items():
-        told = re.sub(rf"\b{name}(?=\b|_)", letter, told)
-    return Markup(re.sub(r"\b(\w)_([A-Za-z]+(?:,[A-Z]+)?)", r"<i>\1</i><sub>\2</sub>", told))
+    return html.render("sheet.html.j2", content, life=life, number=number, rounded=rounded, bar=bar)
 
 
 def bar(share: float) -> float:

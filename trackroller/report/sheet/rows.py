@@ -39,15 +39,14 @@ def input_row(name: str, value: Any) -> Row:
     """Return an input with its unit; mark the default."""
     if name in PARAMETERS:
         parameter = PARAMETERS[name]
-        shown = "not given" if value is None else number(value) if isinstance(value, float) else str(value)
+        shown = "not given" if value is None else number(value) if isinstance(value, (int, float)) else str(value)
         words = f"{parameter.long_name} {parameter.symbol}"
         return Row(words, shown, unit_text(parameter.unit).replace("–", ""), is_default(name, value))
-    shown = level_text(name, json.dumps(value, sort_keys=True)) if name in MAPPING_FIELDS else _name_of(value)
+    if name in MAPPING_FIELDS:
+        shown = level_text(name, value if isinstance(value, str) else json.dumps(value, sort_keys=True))
+    else:
+        shown = str(value.get("name", "inline")) if isinstance(value, Mapping) else str(value)
     return Row(name.replace("_", " "), shown, "", is_default(name, value))
-
-
-def _name_of(material: Any) -> str:
-    return str(material.get("name", "inline")) if isinstance(material, Mapping) else str(material)
 
 
 def material_rows(values: Mapping[str, Any]) -> list[Row]:

@@ -8,8 +8,8 @@ import numpy as np
 
 from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.claims import Sentence
+from trackroller.report.flags import flags_of
 from trackroller.report.numbers import capital, life, listing, number, share, unit_text
-from trackroller.report.sheet.flags import flags_of
 from trackroller.report.sheet.rows import Row
 from trackroller.report.tables import Table
 from trackroller.study.spectrum.damage import BODIES

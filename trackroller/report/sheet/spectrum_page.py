@@ -13,7 +13,6 @@ from trackroller.report.figures.spectrum import damage_by_block
 from trackroller.report.figures.style import look, save
 from trackroller.report.numbers import capital
 from trackroller.report.sheet.facts import body_materials, versions
-from trackroller.report.sheet.page import symbols
 from trackroller.report.sheet.rows import input_row, is_told
 from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
 from trackroller.study.files import write_text
@@ -55,7 +54,7 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
         "command": f"trackroller spectrum {shlex.quote(file)} --report {shlex.quote(Path(path).name)}",
         "versions": ", ".join(f"{name} {version}" for name, version in versions().items()),
     }
-    write_text(Path(path), html.render("spectrum.html.j2", content, symbols=symbols))
+    write_text(Path(path), html.render("spectrum.html.j2", content))
     return Path(path)
 
 

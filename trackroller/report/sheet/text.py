@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.table import Table
 
 from trackroller.parameters import REGIMES
+from trackroller.report.flags import flags_of
 from trackroller.report.sheet.facts import Facts, collect
-from trackroller.report.sheet.flags import flags_of
 from trackroller.roller.record import inputs_of, is_default, materials_of
 from trackroller.study.provenance import versions
 
