@@ -6,7 +6,6 @@ import json
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 import xarray as xr
@@ -81,10 +80,6 @@ def test_bad_input_ends_with_exit_2_and_names_it(tmp_path, words, named):
     (tmp_path / "results" / "blocked").write_text("a file")
     assert named in trackroller(*words, cwd=tmp_path, code=2).stderr
     assert not list(tmp_path.rglob("study.nc"))
-
-
-def test_a_process_that_is_refused_ends_with_exit_2(tmp_path):
-    assert "friction_coefficient" in trackroller_process("solve", "--set", "frction=0.1", cwd=tmp_path, code=2).stderr
 
 
 def test_materials_are_listed_shown_and_added(tmp_path):
@@ -171,7 +166,19 @@ def wait_until(there, seconds=60):
     raise AssertionError("waited in vain")
 
 
-def test_version_and_help_are_quick_to_import():
-    code = "import sys, trackroller.cli.main; print({'numpy', 'xarray', 'numba', 'matplotlib'} & set(sys.modules))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=Path(__file__).parent)
-    assert done.stdout.strip() == "set()"
+@pytest.mark.parametrize(
+    ("words", "code", "heavy"),
+    [
+        (["--version"], 0, {"numpy"}),
+        (["--help"], 0, {"numpy"}),
+        (["solve", "--set", "frction=0.1"], 2, {"numba", "scipy"}),
+        (["solve", "--set", "accuracy=fine"], 2, {"dask"}),
+    ],
+)
+def test_an_answer_without_a_solution_loads_no_heavy_package(words, code, heavy, tmp_path):
+    program = f"import atexit, sys; from trackroller.cli.main import main; sys.argv[1:] = {words}; "
+    program += "atexit.register(lambda: print('loaded', *sys.modules)); main()"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
+    loaded = set(done.stdout.partition("loaded ")[2].split())
+    assert done.returncode == code and "typer" in loaded, done.stderr
+    assert not loaded & (heavy | {"xarray", "matplotlib"})

@@ -49,9 +49,12 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
 
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
     """Solve the case of a case file and --set words; `more` are further options of `solve`."""
-    from trackroller.roller.solver import solve
-
     case, options = case_of(path, words)
+    from trackroller.roller.options import Options  # heavy: numba
+
+    Options(**options)  # refuses wrong options before the solver is imported
+    from trackroller.roller.solver import solve  # heavy: xarray and dask
+
     return solve(case, **(options | more))
 
 
@@ -82,15 +85,15 @@ def solve_and_tell(
     case: Path | None, words: list[str], json: bool, out: Path | None, sheet: Path | None, **more: Any
 ) -> int:
     """Solve a case, write or print what was asked for, and return the exit code: 1 if the case failed."""
-    from trackroller.report.sheet.page import write_sheet  # heavy: rich and jinja2
-    from trackroller.report.sheet.text import as_json, print_facts
-
     target, page = (None if path is None else writable(path) for path in (out, sheet))
     if page is not None:
         more["outputs"] = SHEET_OUTPUTS
     dataset = solve_case(case, words, **more)
     if target is not None:
         write_result(dataset, target)
+    from trackroller.report.sheet.page import write_sheet  # heavy: rich and jinja2
+    from trackroller.report.sheet.text import as_json, print_facts
+
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
     if json:

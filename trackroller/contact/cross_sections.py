@@ -15,8 +15,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import CubicSpline, make_smoothing_spline
-from scipy.optimize import brentq
 
 STEEPEST = 0.999  # largest sine of the inclination to the tangent plane at which arcs are followed
 # Tangent of 25 degrees. ASSUME: a surface with a larger inclination to the contact plane takes no part in this contact;
@@ -153,6 +151,9 @@ def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossS
 
 def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
     """Return the spline of `drawn`."""
+    from scipy.interpolate import CubicSpline, make_smoothing_spline  # heavy, and for drawn profiles only
+    from scipy.optimize import brentq
+
     if noise == "auto":
         noise = noise_of(u, height)
     if noise == 0.0:

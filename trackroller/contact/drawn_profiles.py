@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, smoothed, with_edges
 from trackroller.contact.profiles import FEWEST
@@ -145,6 +144,8 @@ def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 def _touching_point(u, w, noise, body: str, alpha: float) -> float:
     """Return the u where the curve is parallel to the tangent plane, nearest to the apex of a fitted parabola."""
+    from scipy.optimize import brentq  # heavy, and for drawn profiles only
+
     if u.size < FEWEST:
         raise _nowhere_parallel(u, w, body, alpha)
     spline = smoothed(u, w, noise)

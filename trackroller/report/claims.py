@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.stats import binom
 
 from trackroller.report.view import MOST_LEVELS, StudyView
 
@@ -76,6 +75,8 @@ def median_interval(values: np.ndarray) -> tuple[float, float]:
     -----
     The order statistics k and n - k + 1 enclose the median with probability 1 - 2 P(B < k), B binomial (n, 1/2).
     """
+    from scipy.stats import binom  # heavy, and the sheet of one case does without
+
     values = np.sort(values)
     k = int(binom.ppf(0.025, len(values), 0.5))
     return float(values[max(k - 1, 0)]), float(values[min(len(values) - k, len(values) - 1)])

@@ -13,8 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from scipy.interpolate import make_interp_spline
-from scipy.ndimage import distance_transform_edt
 
 PARTS = 3  # points along each side of an element
 RIM = 0.2  # of the largest bound: the least that slips are divided by
@@ -23,6 +21,8 @@ RIM = 0.2  # of the largest bound: the least that slips are divided by
 @lru_cache(maxsize=16)
 def _spline(n: int, parts: int) -> np.ndarray:
     """Return the matrix (parts n, n) of the cubic spline through the centres, constant beyond the outer ones."""
+    from scipy.interpolate import make_interp_spline  # heavy: it doubles the start of a command without kalker
+
     points = np.clip((np.arange(parts * n) + 0.5) / parts - 0.5, 0.0, n - 1.0)
     matrix = np.ascontiguousarray(make_interp_spline(np.arange(n), np.eye(n), k=3)(points))
     matrix.setflags(write=False)
@@ -32,6 +32,8 @@ def _spline(n: int, parts: int) -> np.ndarray:
 def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Return fields z (n, 2, m, m) with the values of the nearest loaded element outside the patches."""
     if height.ndim == 2:
+        from scipy.ndimage import distance_transform_edt  # heavy
+
         row, column = distance_transform_edt(height <= 0.0, return_distances=False, return_indices=True)
         return z[:, :, row, column]
     out = np.empty_like(z)

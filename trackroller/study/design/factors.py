@@ -28,7 +28,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import stats
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.numerics import expressions
@@ -119,13 +118,15 @@ class Factor:
             return low * (high / low) ** unit
         if self.kind == "triangular":
             return _triangular(unit, *self.numbers)
+        from scipy.stats import norm, truncnorm  # heavy
+
         mean, deviation, *ends = self.numbers
         if self.kind == "normal":
             cut = max(tail, 1e-9)
-            return stats.norm.ppf(np.clip(unit, cut, 1 - cut), mean, deviation)
+            return norm.ppf(np.clip(unit, cut, 1 - cut), mean, deviation)
         low, high = ends
         cut_low, cut_high = (low - mean) / deviation, (high - mean) / deviation
-        return np.clip(stats.truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high)
+        return np.clip(truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high)
 
 
 def column(values: list[Any], numeric: bool) -> np.ndarray:
