@@ -53,7 +53,7 @@ def test_forces_near_the_exact_theory(creep, tolerance):
 def test_mirror_and_bound():
     slip = Slip(np.array([0.5, -0.5]), np.full(2, 0.866), np.full(2, 6.0), np.full(2, 16.5), np.full(2, -0.06))
     ellipse = patch([0.3, 0.3], [0.18, 0.18], [700.0, 700.0])
-    f = values(fastsim.resultants(ellipse, slip, 0.3, STEEL))
+    f = values(fastsim.solve_patch(ellipse, Creepage.of_slip(slip), 0.3, STEEL).resultants)
     np.testing.assert_allclose(f[1], f[0] * [-1, 1, -1], rtol=1e-9)
     t = fastsim.tractions(ellipse, slip, 0.3, STEEL)
     size = np.hypot(t.shear_lateral, t.shear_rolling)
@@ -115,7 +115,8 @@ def test_falling_friction_lowers_the_forces():
         Creepage(-0.0035, 0.0, 0.03),
         0.3,
         STEEL,
-        FastsimSettings(law=exponential_falling(30.0, 0.4), travel_speed=2000.0),
+        FastsimSettings(law=exponential_falling(30.0, 0.4)),
+        2000.0,
     )
     assert s.friction_change[0] < 0.02
     constant = fastsim.solve_patch(patch(), Creepage(-0.0035, 0.0, 0.03), 0.3, STEEL)

@@ -329,7 +329,7 @@ def test_profile_and_curve_in_the_slip_agree_with_contact(name, profile, curve):
         record["rolling_radius_shift"] * pair,
     )
     if curve:
-        slip = slip.detailed(turning=turning_of(curve * pair, 6.0 * pair, np.cos(alpha) * pair))
+        slip = dataclasses.replace(slip, turning=turning_of(curve * pair, 6.0 * pair, np.cos(alpha) * pair))
     creep = Creepage.of_slip(slip, bool(profile))
     found = values(solve_patch(ellipse, creep, 0.3, STEEL, KalkerSettings(tolerance=1e-8)))
     np.testing.assert_allclose(found[:, 0], record["lateral_force"], rtol=1.5e-2)

@@ -8,7 +8,7 @@ import xarray as xr
 from reference_cases import DATA, solve_sliding
 
 import trackroller as tr
-from trackroller.contact.common import DetailedSlip, Slip
+from trackroller.contact.common import Slip
 from trackroller.contact.cross_sections import arcs
 from trackroller.contact.slip import contour_over_tangent, rolling_slip, turning_of
 from trackroller.errors import InputError
@@ -147,7 +147,7 @@ def test_contour_of_a_drawn_circle_is_eq_20(degrees):
     drawn = contour_over_tangent(arcs([6.0], []), alpha)
     for sign in (1.0, -1.0):
         plain = (sign * np.sin(alpha) * one, np.cos(alpha) * one, 6.0 * one, 16.0 * one, -0.06 * one)
-        slip, own = Slip(*plain), DetailedSlip(*plain, 0.0 * one, np.array([drawn], dtype=object))
+        slip, own = Slip(*plain), Slip(*plain, contour=np.array([drawn], dtype=object))
         expected = [rolling_slip(v, sign * np.sin(alpha), np.cos(alpha), 6.0, -0.06) / 16.0 for v in x]
         whole = slip.longitudinal[:, None] + slip.spin[:, None] * x + slip.beyond_tangent(x[None, :])
         np.testing.assert_allclose(whole[0], expected, atol=1e-15)

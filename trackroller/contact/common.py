@@ -8,7 +8,6 @@ the body considered. Kalker and CONTACT use x for the rolling direction instead.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -21,9 +20,9 @@ class _Rows:
     """Row selection for dataclasses whose fields are arrays along one axis."""
 
     def take(self, index) -> Any:
-        """Return the entries `index` (integer or boolean array) of every field."""
-        values = (getattr(self, field.name)[index] for field in dataclasses.fields(self))  # type: ignore[arg-type]
-        return type(self)(*values)
+        """Return the entries `index` (integer or boolean array) of every field; a field that is None stays None."""
+        values = (getattr(self, field.name) for field in dataclasses.fields(self))  # type: ignore[arg-type]
+        return type(self)(*(None if value is None else value[index] for value in values))
 
 
 @dataclass(frozen=True)
@@ -71,12 +70,21 @@ class Ellipse(_Rows):
 class Slip(_Rows):
     """Kinematics of n patches, from which the rigid slip follows.
 
-    Attributes
+    Parameters
     ----------
-    sine, cosine : of the signed contact angle, +alpha in contact 1 and -alpha in contact 2 [1]
-    guide_profile_radius : r_C,G [mm]
-    rolling_radius : r_A [mm]
-    shift : rolling radius shift r_Delta0 [mm]
+    sine, cosine : ndarray, shape (n,)
+        Of the signed contact angle, +alpha in contact 1 and -alpha in contact 2 [1].
+    guide_profile_radius : ndarray, shape (n,)
+        r_C,G [mm].
+    rolling_radius : ndarray, shape (n,)
+        r_A [mm].
+    shift : ndarray, shape (n,)
+        Rolling radius shift r_Delta0 [mm].
+    turning : ndarray, shape (n,), optional
+        Angle by which the roller turns with the guide's curve per distance travelled [1/mm], see `slip.turning_of`. It
+        adds to the spin creepage.
+    contour : ndarray of callables, shape (n,), optional
+        Shape of a drawn guide, see `slip.contour_over_tangent`; None stands for the circle.
     """
 
     sine: np.ndarray
@@ -84,6 +92,8 @@ class Slip(_Rows):
     guide_profile_radius: np.ndarray
     rolling_radius: np.ndarray
     shift: np.ndarray
+    turning: np.ndarray | None = None
+    contour: np.ndarray | None = None
 
     @property
     def longitudinal(self) -> np.ndarray:
@@ -92,8 +102,10 @@ class Slip(_Rows):
 
     @property
     def spin(self) -> np.ndarray:
-        """Return the spin creepage phi = -sin(alpha) / r_A [1/mm], of opposite sign in the two contacts."""
-        return -self.sine / self.rolling_radius
+        """Return the spin creepage phi = -sin(alpha) (1/r_A + turning) [1/mm], of opposite sign in the two contacts."""
+        if self.turning is None:
+            return -self.sine / self.rolling_radius
+        return -self.sine * (1.0 / self.rolling_radius + self.turning)
 
     @property
     def pole_lateral(self) -> np.ndarray:
@@ -101,76 +113,27 @@ class Slip(_Rows):
         return pole_lateral(self.shift, self.sine)
 
     def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
-        """Return the rolling slip of the circular guide profile, eq. (20), less that of its tangent [1].
+        """Return the rolling slip of the guide's circle, eq. (20), or contour, less that of its tangent.
 
-        The rolling slip of the tangent is xi + phi x. ASSUME: beyond the equator of the guide's contour the slip
-        keeps the value that it has at the equator.
+        The rolling slip of the tangent is xi + phi x. ASSUME: beyond the equator of the guide's circle the slip keeps
+        the value that it has at the equator.
 
         Parameters
         ----------
-        x : (n, m) array of lateral positions [mm]
+        x : ndarray, shape (n, m)
+            Lateral positions [mm].
 
         Returns
         -------
-        (n, m) array [1]
+        ndarray, shape (n, m)
+            Slip per travel speed [1].
         """
         sine, cosine, radius = self.sine[:, None], self.cosine[:, None], self.guide_profile_radius[:, None]
-        return (x * sine + profile_slip(x, sine, cosine, radius)) / self.rolling_radius[:, None]
-
-    def detailed(self, turning: np.ndarray | None = None, contour: np.ndarray | None = None) -> DetailedSlip:
-        """Return the same kinematics with turning and contour; an argument that is not given keeps its value.
-
-        Parameters
-        ----------
-        turning, contour : (n,) arrays, see `DetailedSlip`
-        """
-        n = len(self.sine)
-        return DetailedSlip(
-            self.sine,
-            self.cosine,
-            self.guide_profile_radius,
-            self.rolling_radius,
-            self.shift,
-            np.zeros(n) if turning is None else turning,
-            np.full(n, None) if contour is None else contour,
-        )
-
-
-@dataclass(frozen=True)
-class DetailedSlip(Slip):
-    """Kinematics with two terms that the rigid slip leaves out by default, see docs/theory.md ("Slip field").
-
-    Attributes
-    ----------
-    turning : 1/(r_Curve + r_C,G cos(alpha)) [1/mm], the angle by which the roller turns with the guide's curve per
-        distance travelled. It adds to the spin creepage; 0 leaves it out.
-    contour : the guide's own shape: callables that map lateral positions (m,) [mm], counted outward, to the height
-        over the tangent along the radial direction [mm]. None stands for the circle.
-    """
-
-    turning: np.ndarray
-    contour: np.ndarray
-
-    @property
-    def spin(self) -> np.ndarray:
-        """Return the spin creepage phi = -sin(alpha) (1/r_A + turning) [1/mm]."""
-        return -self.sine * (1.0 / self.rolling_radius + self.turning)
-
-    def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
-        """Return the rolling slip of the guide's circle or contour less that of its tangent [1]; x (n, m) [mm]."""
-        out = super().beyond_tangent(x)
-        height: Callable[[np.ndarray], np.ndarray] | None
-        for i, height in enumerate(self.contour):
+        out = (x * sine + profile_slip(x, sine, cosine, radius)) / self.rolling_radius[:, None]
+        for i, height in enumerate(() if self.contour is None else self.contour):
             if height is not None:
-                outward = 1.0 if self.sine[i] > 0 else -1.0
-                out[i] = height(outward * x[i]) / self.rolling_radius[i]
+                out[i] = height(np.sign(self.sine[i]) * x[i]) / self.rolling_radius[i]  # x counts outward in a contour
         return out
-
-    def detailed(self, turning: np.ndarray | None = None, contour: np.ndarray | None = None) -> DetailedSlip:
-        """Return the same kinematics with another turning or contour, (n,) arrays."""
-        return super().detailed(
-            self.turning if turning is None else turning, self.contour if contour is None else contour
-        )
 
 
 @dataclass(frozen=True)

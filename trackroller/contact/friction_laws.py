@@ -108,21 +108,22 @@ def _refuse(part: str, value: object, allowed: str, remedy: str = "") -> NoRetur
     raise InputError(f"friction_law.{part}" if part else "friction_law", value, allowed, remedy)
 
 
-def _number(part: str, value: object, allowed: str) -> float:
+def _number(part: str, value: object, allowed: str, lower: float = -np.inf, upper: float = np.inf) -> float:
+    """Return a number between two bounds, which are allowed values themselves."""
     try:
-        return read_number(value)
+        number = read_number(value)
     except ValueError:
+        number = np.nan
+    if not lower <= number <= upper:
         _refuse(part, value, allowed)
+    return number
 
 
-def _checked(speed: object, lowest: object) -> tuple[float, float]:
-    told = "a slip speed > 0 in mm/s", "the share of friction left at high speed, in [0, 1]"
-    fall, share = _number("speed", speed, told[0]), _number("lowest", lowest, told[1])
-    if not (fall > 0.0 and np.isfinite(fall)):
-        _refuse("speed", speed, told[0])
-    if not 0.0 <= share <= 1.0:
-        _refuse("lowest", lowest, told[1])
-    return fall, share
+def _fall(speed: object, lowest: object) -> dict[str, float]:
+    return {
+        "speed": _number("speed", speed, "a slip speed > 0 in mm/s", np.nextafter(0.0, 1.0), np.finfo(float).max),
+        "lowest": _number("lowest", lowest, "the share of friction left at high speed, in [0, 1]", 0.0, 1.0),
+    }
 
 
 def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
@@ -145,9 +146,8 @@ def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
     InputError
         If a value is out of range.
     """
-    speed, lowest = _checked(speed, lowest)
-    form = {"kind": "linear", "speed": speed, "lowest": lowest}
-    return FrictionLaw(np.array([0.0, speed]), np.array([1.0, lowest]), form)
+    form = _fall(speed, lowest)
+    return FrictionLaw(np.array([0.0, form["speed"]]), np.array([1.0, form["lowest"]]), {"kind": "linear", **form})
 
 
 def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
@@ -170,10 +170,10 @@ def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
     InputError
         If a value is out of range.
     """
-    speed, lowest = _checked(speed, lowest)
+    form = _fall(speed, lowest)
     part = np.linspace(0.0, 1.0, KNOTS) ** 1.5 * 12.0
-    form = {"kind": "exponential", "speed": speed, "lowest": lowest}
-    return FrictionLaw(part * speed, lowest + (1.0 - lowest) * np.exp(-part), form)
+    factor = form["lowest"] + (1.0 - form["lowest"]) * np.exp(-part)
+    return FrictionLaw(part * form["speed"], factor, {"kind": "exponential", **form})
 
 
 def table(speed, friction) -> FrictionLaw:
@@ -199,12 +199,8 @@ def table(speed, friction) -> FrictionLaw:
     speeds = _list("speed", speed, "slip speeds in mm/s")
     values = _list("friction", friction, "friction coefficients")
     if speeds.size != values.size:
-        _refuse(
-            "friction",
-            values.tolist(),
-            f"as many friction coefficients as slip speeds: {values.size} beside the {speeds.size} of speed",
-            "Give one friction coefficient for each slip speed.",
-        )
+        allowed = f"as many friction coefficients as slip speeds: {values.size} beside the {speeds.size} of speed"
+        _refuse("friction", values.tolist(), allowed, "Give one friction coefficient for each slip speed.")
     if speeds[0] != 0.0 or np.any(np.diff(speeds) <= 0) or not np.all(np.isfinite(speeds)):
         _refuse("speed", speeds.tolist(), "slip speeds in mm/s that rise from 0")
     if not (values[0] > 0 and np.all(values >= 0) and np.all(np.isfinite(values))):
@@ -239,16 +235,16 @@ def at_rest(law: Any) -> float | None:
 
 def _fields(mapping: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of a mapping with defaults; refuse unknown kinds, and unknown or missing fields."""
-    kind = mapping.get("kind")
-    if not isinstance(kind, str) or kind not in DEFAULTS:
-        close = nearest(str(kind), tuple(DEFAULTS))
-        _refuse("kind", kind, f"one of {', '.join(DEFAULTS)}", f"Did you mean {close!r}?" if close else "")
-    known = DEFAULTS[str(kind)]
-    for name in mapping:
-        if name != "kind" and name not in known:
-            _refuse(str(name), mapping[name], f"a {kind} law has the fields {', '.join(('kind', *known))}")
-    values = {**known, **{k: v for k, v in mapping.items() if k != "kind"}}
+    kind = str(mapping.get("kind"))
+    if kind not in DEFAULTS:
+        close = nearest(kind, tuple(DEFAULTS))
+        _refuse(
+            "kind", mapping.get("kind"), f"one of {', '.join(DEFAULTS)}", f"Did you mean {close!r}?" if close else ""
+        )
+    values = DEFAULTS[kind] | {k: v for k, v in mapping.items() if k != "kind"}
     for name, value in values.items():
+        if name not in DEFAULTS[kind]:
+            _refuse(str(name), value, f"a {kind} law has the fields {', '.join(('kind', *DEFAULTS[kind]))}")
         if value is None:
             _refuse(name, value, f"a {kind} law needs {name}")
     return values

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.sliding_kernels import Patches, Rule, Sums, integrate
 from trackroller.contact.slip import (
@@ -63,7 +63,7 @@ def integrals(
     nodes : int
         Gauss points per smooth piece.
     law : FrictionLaw, optional
-        Friction over its value at rest by slip speed; constant if not given.
+        Friction over its value at rest as a function of the slip speed; constant if not given.
     travel_speed : ndarray, shape (n,), or float
         omega r_A [mm/s]; only a law that is not constant depends on it.
 
@@ -78,7 +78,7 @@ def integrals(
     1e-5 at 12 nodes under smooth laws and laws with few knots (tests/contact/test_friction_laws.py).
     """
     n = np.size(friction)
-    law = constant() if law is None or law.is_constant else law  # a fall to 1.0 is none
+    law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
     given = (
         ellipse.semi_axis_lateral,
         ellipse.semi_axis_rolling,
@@ -100,15 +100,11 @@ def resultants(
     ellipse: Ellipse,
     slip: Slip,
     friction: np.ndarray,
-    elastic: Elastic | None = None,
     *,
     spin_model: str = "skewed",
     nodes: int = 16,
 ) -> Resultants:
-    """Return friction forces [N] and spin moment [N mm] on the roller under constant friction; see `integrals`.
-
-    `elastic` is not used: full sliding does not depend on the elasticity.
-    """
+    """Return friction forces [N] and spin moment [N mm] on the roller under constant friction; see `integrals`."""
     return integrals(ellipse, slip, friction, spin_model=spin_model, nodes=nodes).resultants
 
 
@@ -152,7 +148,6 @@ def tractions(
     ellipse: Ellipse,
     slip: Slip,
     friction: np.ndarray,
-    elastic: Elastic | None = None,
     *,
     spin_model: str = "skewed",
     points: int = 41,
@@ -165,8 +160,6 @@ def tractions(
     ----------
     ellipse, slip, friction, spin_model, travel_speed
         See `integrals`.
-    elastic : Elastic, optional
-        Not used.
     points : int
         Points from edge to edge along each axis; under a `law` the centres of as many elements.
     law : FrictionLaw, optional

@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-from trackroller.contact.fastsim.patch import (
-    FastsimSettings,
-    FastsimSolution,
-    flexibilities,
-    resultants,
-    solve_patch,
-    tractions,
-)
+from trackroller.contact.fastsim.patch import solve_patch, tractions
+from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution
 
-__all__ = ["FastsimSettings", "FastsimSolution", "flexibilities", "resultants", "solve_patch", "tractions"]
+__all__ = ["FastsimSettings", "FastsimSolution", "solve_patch", "tractions"]

@@ -13,14 +13,15 @@ each strip. For axis ratios beyond 50, the flexibilities of 50 are used.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractions
-from trackroller.contact.fastsim.patch import FastsimSettings, FastsimSolution, flexibilities
-from trackroller.contact.fastsim.point import Totals, extrapolated
-from trackroller.contact.fastsim.strips import Strips, strip_chords, strip_fields, strip_sums
-from trackroller.contact.friction_laws import Knots, constant
+from trackroller.contact.common import Elastic, Slip, SurfaceTractions
+from trackroller.contact.fastsim.patch import flexibilities
+from trackroller.contact.fastsim.point import Strips
+from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution, extrapolated, surface
+from trackroller.contact.fastsim.strips import Loaded, strip_chords, strip_fields, strip_sums
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.linear import LARGEST_RATIO
 from trackroller.contact.slip import Creepage
@@ -99,15 +100,14 @@ def equivalent_ellipses(patch: GridPatch) -> Islands:
 
 
 def _problem(
-    patch: GridPatch, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings, travel_speed
-) -> tuple[Strips, np.ndarray]:
-    """Return the strips for the kernels, and the loaded area of each patch [mm^2]."""
+    patch: GridPatch, slip: Slip, friction, elastic: Elastic, profile: bool, travel_speed
+) -> tuple[Loaded, Strips, np.ndarray]:
+    """Return pressures and strips for the kernels, and the loaded area of each patch [mm^2]."""
     n, rows, columns = patch.pressure.shape
     parts, x = equivalent_ellipses(patch), np.ascontiguousarray(patch.x)
-    creep = Creepage.of_slip(slip, settings.profile_slip)
+    creep = Creepage.of_slip(slip, profile)
     mu, speed, spin = (
-        np.array(np.broadcast_to(np.asarray(v, float), n), order="C")
-        for v in (friction, settings.travel_speed if travel_speed is None else travel_speed, creep.spin)
+        np.array(np.broadcast_to(np.asarray(v, float), n), order="C") for v in (friction, travel_speed, creep.spin)
     )
     own, flexible = parts.patch, np.full((2, n, columns), np.nan)
     if own.size:
@@ -117,17 +117,9 @@ def _problem(
         flexible = np.stack([found.x[parts.of_strip], found.y[parts.of_strip]])
     a, b = patch.semi_axis_lateral, np.array(patch.semi_axis_rolling)
     hx, hy = 2 * a / columns, 2 * b / rows
-    pressure = np.ascontiguousarray(np.nan_to_num(patch.pressure))
-    strips = Strips(pressure, x, hx, hy, b, creep.along(x), spin, flexible[0], flexible[1], mu, speed)
-    return strips, parts.chords.sum(axis=1) * hx * hy
-
-
-def _totals(strips: Strips, steps: int, law: Knots) -> Totals[np.ndarray]:
-    """Return the totals of all patches with `steps` steps along each loaded interval."""
-    n = len(strips.hx)
-    totals = Totals(*(np.zeros(n) for _ in Totals._fields))
-    share_rows(lambda first, last: strip_sums(first, last, strips, steps, law, totals), n, 4)
-    return totals
+    loaded = Loaded(np.ascontiguousarray(np.nan_to_num(patch.pressure)), hx, hy, b, mu)
+    strips = Strips(x, np.zeros(n), spin, creep.along(x), flexible[0], flexible[1], speed)
+    return loaded, strips, parts.chords.sum(axis=1) * hx * hy
 
 
 def solve_grid(
@@ -136,7 +128,7 @@ def solve_grid(
     friction,
     elastic: Elastic,
     settings: FastsimSettings | None = None,
-    travel_speed=None,
+    travel_speed=1.0,
 ) -> FastsimSolution:
     """Solve n patches with the rigid slip w = (-phi y, xi + phi x) by the simplified theory.
 
@@ -146,14 +138,8 @@ def solve_grid(
         The n patches.
     slip : Slip
         Kinematics of the patches, arrays (n,).
-    friction : array_like, shape (n,) or ()
-        Friction coefficient mu [1].
-    elastic : Elastic
-        Combined constants, arrays (n,). The coupling constant is not used.
-    settings : FastsimSettings, optional
-        The number of steps in each loaded interval and the friction law are used; the strips are those of the grid.
-    travel_speed : array_like, shape (n,) or (), optional
-        Travel speed for friction laws [mm/s]; default: that of the settings.
+    friction, elastic, settings, travel_speed
+        See `fastsim.solve_patch`; the strips are the columns of the grid.
 
     Returns
     -------
@@ -167,15 +153,9 @@ def solve_grid(
     `tests/contact` compares both, and compares this function with the exact theory on the same patches.
     """
     settings = settings or FastsimSettings()
-    law = (settings.law or constant()).knots
-    strips, area = _problem(patch, slip, friction, elastic, settings, travel_speed)
-    coarse, fine = (_totals(strips, steps, law) for steps in (settings.steps, 2 * settings.steps))
-    best = extrapolated(coarse, fine)
-    f_t, f_a, m_r, work = (np.where(np.isfinite(patch.normal_force), part, np.nan) for part in best[:4])
-    limit = strips.friction * patch.normal_force
-    with np.errstate(divide="ignore", invalid="ignore"):
-        stick, lack = fine.adhesion / area, np.where(limit > 0, fine.lack / limit, 0.0)
-    return FastsimSolution(Resultants(f_t, f_a, m_r), work, stick, lack)
+    loaded, strips, area = _problem(patch, slip, friction, elastic, settings.profile_slip, travel_speed)
+    kernel = partial(strip_sums, loaded, strips, settings.law.knots)
+    return extrapolated(kernel, settings.steps, area, loaded.friction * patch.normal_force)
 
 
 def tractions(
@@ -184,15 +164,13 @@ def tractions(
     friction,
     elastic: Elastic,
     settings: FastsimSettings | None = None,
-    travel_speed=None,
+    travel_speed=1.0,
 ) -> SurfaceTractions:
     """Return pressure and shear of each element, and the slip at its centre per travel speed; see `solve_grid`."""
     settings = settings or FastsimSettings()
-    law = (settings.law or constant()).knots
-    strips, _ = _problem(patch, slip, friction, elastic, settings, travel_speed)
+    loaded, strips, _ = _problem(patch, slip, friction, elastic, settings.profile_slip, travel_speed)
     n, rows, columns = patch.pressure.shape
     share, moved = (np.zeros((n, 2, rows, columns)) for _ in range(2))
-    share_rows(lambda first, last: strip_fields(first, last, strips, law, share, moved), n, 4)
-    shear = share * (strips.friction[:, None, None] * patch.pressure)[:, None]
-    stick = (patch.pressure > 0) & (moved[:, 0] == 0.0) & (moved[:, 1] == 0.0)
-    return SurfaceTractions(patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], moved[:, 0], moved[:, 1], stick)
+    share_rows(partial(strip_fields, loaded, strips, settings.law.knots, share, moved), n, 4)
+    bound = loaded.friction[:, None, None] * patch.pressure
+    return surface(patch.x, patch.y, patch.pressure, share * bound[:, None], moved)

@@ -1,152 +1,94 @@
-"""Kalker's simplified theory (FASTSIM, 1982): each point deforms alone, so that strips are independent.
+"""Kalker's simplified theory (FASTSIM, 1982) on elliptical patches.
 
-The displacement is u_i = L_i tau_i with a flexibility for either direction. While little slides they reproduce the
-linear theory of the elliptical patch: L_y = 8 b/(3 G C11), and L_x = 8 b/(3 G C22) under lateral creepage,
-pi b sqrt(b/a)/(4 G C23) under spin, b the semi-axis in the rolling direction. Kalker (1982) divides the creepages by
-flexibilities of their own instead, and with that moves the pole of the rigid slip: sliding tractions turn the wrong
-way, and the work of the slip is not that of the creepages. Here the rigid slip stays what it is.
-Where all slides the flexibilities are those of `linear.sliding_flexibility`, exact with the pole of the slip far away
-(flexibility that depends on sliding: Spiryagin et al. 2013).
-ASSUME: the traction bound is mu p with Hertz's pressure, not the paraboloid of the original algorithm: with large
-spin nearly everything slides, and the spin moment then follows the true pressure (Sichani et al. 2016 on the same
-choice in FaStrip).
+Each point deforms alone, u_i = L_i tau_i, so that the strips along the rolling direction are independent. While little
+of the patch slides, the flexibilities L_i reproduce the linear theory of the ellipse: L_y = 8 b/(3 G C11), and
+L_x = 8 b/(3 G C22) under lateral creepage or pi b sqrt(b/a)/(4 G C23) under spin, with b the semi-axis in the rolling
+direction. Where all points slide, they are those of `linear.sliding_flexibility`, which are exact for a distant spin
+pole. Spiryagin et al. (2013) also let the flexibility depend on sliding.
+
+Kalker (1982) divides the creepages by flexibilities instead. This moves the pole of the rigid slip: sliding tractions
+turn the wrong way, and the work of the slip is not that of the creepages. Here the rigid slip stays unchanged.
+
+ASSUME: the traction bound is mu p with Hertz's pressure, not the paraboloid of the original algorithm. With large spin
+nearly all points slide, and the spin moment then follows the true pressure (Sichani et al. 2016 on the same choice in
+FaStrip).
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
-from trackroller.contact.fastsim.point import Totals, add, enter, extrapolated, step, write
-from trackroller.contact.friction_laws import FrictionLaw, Knots, constant
+from trackroller.contact.common import Elastic, Ellipse, Slip, SurfaceTractions
+from trackroller.contact.fastsim.point import Strips, Totals, advance, enter, march, one_strip, write
+from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution, extrapolated, surface
+from trackroller.contact.friction_laws import Knots
 from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
 from trackroller.contact.slip import Creepage
 from trackroller.numerics.threads import share_rows
 
-# Between linear theory and full sliding the flexibilities change with the creepages; fitted to the exact theory.
+# The flexibilities change from linear theory to full sliding with the creepages. Both numbers are fitted to the exact
+# theory.
 SLIDING_FORCE = 2.5  # forces of the linear theory over mu F_N at which half of the change is done
 POLE_INSIDE = 0.9  # flexibility of sliding about the middle of the patch over that with the pole far away
-SUBSTEPS = 4  # between the points of a grid of tractions
+SUBSTEPS = 4  # steps between the points of a grid of tractions
 
 
-@dataclass(frozen=True)
-class FastsimSettings:
-    """strips across the patch, steps along each (a second pass with twice as many serves extrapolation),
-
-    points of a traction grid, `parabolic` for the traction bound of the original algorithm, friction law and the
-    travel speed [mm/s] where a call does not give its own; profile_slip as in `kalker.KalkerSettings`.
-    """
-
-    strips: int = 32
-    steps: int = 48
-    points: int = 40
-    parabolic: bool = False
-    law: FrictionLaw | None = None
-    travel_speed: float = 1.0
-    profile_slip: bool = False
-
-
-@njit(cache=True)
-def _bound(x, y, parabolic):
-    square = max(1.0 - x * x - y * y, 0.0)
-    return 4.0 / 3.0 * square if parabolic else math.sqrt(square)
-
-
-class Strips(NamedTuple):
-    """Ellipses and their strips, arrays (n,) unless stated, or one ellipse.
-
-    a, b [mm]; bound : mu p_max [MPa]; along (n, m) : rolling part of the rigid slip in each strip; lateral, spin : its
-    lateral part is lateral - spin y; flexible_x, flexible_y : flexibilities [mm/MPa]; speed : travel speed [mm/s];
-    parabolic : traction bound of the original algorithm.
-    """
+class Ellipses(NamedTuple):
+    """Semi-axes a, b [mm] and largest traction bound mu p_max [MPa] of n ellipses, arrays (n,)."""
 
     a: np.ndarray
     b: np.ndarray
     bound: np.ndarray
-    along: np.ndarray
-    lateral: np.ndarray
-    spin: np.ndarray
-    flexible_x: np.ndarray
-    flexible_y: np.ndarray
-    speed: np.ndarray
-    parabolic: bool
-
-
-@njit(cache=True)
-def _one(strips, i):
-    """Return ellipse i of a batch."""
-    a, b, bound, along, lateral, spin, flexible_x, flexible_y, speed, parabolic = strips
-    return Strips(
-        a[i], b[i], bound[i], along[i], lateral[i], spin[i], flexible_x[i], flexible_y[i], speed[i], parabolic
-    )
-
-
-@njit(cache=True)
-def _sums(e, steps, nodes, weights, law):
-    """Add up the totals of one ellipse from its strips at `nodes` over a."""
-    total = Totals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    for i in range(nodes.size):
-        u = nodes[i]
-        length = math.sqrt(1.0 - u * u)
-        x, h, wy = e.a * u, 2.0 * e.b * length / steps, e.along[i]
-        state = enter(e.lateral - e.spin * e.b * length, wy, law)
-        for j in range(steps):
-            y = e.b * length * (1.0 - 2.0 * (j + 1.0) / steps)
-            g, middle = e.bound * _bound(u, y / e.b, e.parabolic), y + 0.5 * h
-            new = step(e.lateral - e.spin * middle, wy, h, e.flexible_x, e.flexible_y, g, law, state)
-            total = add(total, state, new, x, middle, weights[i] * e.a * h, g)
-            state = new
-    return total
 
 
 @njit(cache=True, nogil=True)
-def _all_sums(first, last, strips, steps, nodes, weights, law, totals):
+def _all_sums(ellipses, strips, rule, law, steps, totals, first, last):
+    """Write the totals of the ellipses first..last; rule = strips over a and their weights."""
+    nodes, weights = rule
+    middles, bounds = np.empty(steps), np.empty(steps)
     for i in range(first, last):
-        e = _one(strips, i)
-        write(totals, i, _sums(e, steps, nodes, weights, Knots(law.speed / e.speed, law.factor)))
+        a, b, bound = ellipses.a[i], ellipses.b[i], ellipses.bound[i]
+        knots, total = Knots(law.speed / strips.speed[i], law.factor), Totals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        for k in range(nodes.size):
+            edge = b * math.sqrt(1.0 - nodes[k] * nodes[k])
+            h = 2.0 * edge / steps
+            for j in range(steps):
+                y = edge * (1.0 - 2.0 * (j + 1.0) / steps)
+                middles[j] = y + 0.5 * h
+                bounds[j] = bound * math.sqrt(max(1.0 - nodes[k] * nodes[k] - (y / b) * (y / b), 0.0))
+            strip = one_strip(strips, i, k)
+            total = march(total, strip, edge, h, weights[k] * a * h, middles, bounds, knots)
+        write(totals, i, total)
 
 
 @njit(cache=True, nogil=True)
-def _all_fields(first, last, strips, law, shear, slip):
+def _all_fields(ellipses, strips, law, shear, slip, first, last):
     """March from the leading edge; write tractions and slip (n, 2, points, points) at element centres."""
     points = shear.shape[2]
+    middles, bounds = np.empty(SUBSTEPS), np.empty(SUBSTEPS)
     for i in range(first, last):
-        e = _one(strips, i)
-        knots = Knots(law.speed / e.speed, law.factor)
+        b, knots = ellipses.b[i], Knots(law.speed / strips.speed[i], law.factor)
         for k in range(points):
-            u = (2.0 * k + 1.0) / points - 1.0
-            y, wy = e.b * math.sqrt(1.0 - u * u), e.along[k]
-            state = enter(e.lateral - e.spin * y, wy, knots)
+            strip, u = one_strip(strips, i, k), (2.0 * k + 1.0) / points - 1.0
+            y = b * math.sqrt(1.0 - u * u)
+            state = enter(strip, y, knots)
             for j in range(points - 1, -1, -1):
-                target = e.b * ((2.0 * j + 1.0) / points - 1.0)
-                if target >= y or 1.0 - u * u <= (target / e.b) ** 2:
+                target = b * ((2.0 * j + 1.0) / points - 1.0)
+                if target >= y or 1.0 - u * u <= (target / b) ** 2:
                     continue
                 h = (y - target) / SUBSTEPS
-                for _ in range(SUBSTEPS):
+                for m in range(SUBSTEPS):
                     y -= h
-                    g = e.bound * _bound(u, y / e.b, e.parabolic)
-                    wx = e.lateral - e.spin * (y + 0.5 * h)
-                    state = step(wx, wy, h, e.flexible_x, e.flexible_y, g, knots, state)
+                    middles[m] = y + 0.5 * h
+                    bounds[m] = ellipses.bound[i] * math.sqrt(max(1.0 - u * u - (y / b) * (y / b), 0.0))
+                state = advance(strip, h, middles, bounds, knots, state)
                 shear[i, 0, j, k], shear[i, 1, j, k] = state.shear_x, state.shear_y
                 slip[i, 0, j, k], slip[i, 1, j, k] = state.slip_x, state.slip_y
-
-
-@dataclass(frozen=True)
-class FastsimSolution:
-    """Arrays (n,): resultants on the roller, friction_energy_per_distance [N], stick_fraction and friction_change.
-
-    friction_change : how far the friction of a falling law is from that of the local slip, mean over the bound [-]
-    """
-
-    resultants: Resultants
-    friction_energy_per_distance: np.ndarray
-    stick_fraction: np.ndarray
-    friction_change: np.ndarray
 
 
 class Flexibilities(NamedTuple):
@@ -194,8 +136,8 @@ def flexibilities(a, b, limit, creep: Creepage, shear_modulus, poisson_ratio) ->
     return Flexibilities(l_x + share * (far[:, 0] - l_x), l_1 + share * (far[:, 1] - l_1), l_x / l_2)
 
 
-def _strips(ellipse, creep: Creepage, friction, elastic: Elastic, settings, travel_speed, places) -> Strips:
-    """Return the strips of n ellipses at `places` (m,) over a."""
+def _problem(ellipse, creep: Creepage, friction, elastic: Elastic, travel_speed, places) -> tuple[Ellipses, Strips]:
+    """Return n ellipses and their strips at `places` (m,) over a."""
     a, b, p, xi, eta, phi, mu, g, nu, speed = (
         np.array(v, float, order="C")
         for v in np.broadcast_arrays(
@@ -208,21 +150,14 @@ def _strips(ellipse, creep: Creepage, friction, elastic: Elastic, settings, trav
             friction,
             elastic.shear_modulus,
             elastic.poisson_ratio,
-            settings.travel_speed if travel_speed is None else travel_speed,
+            travel_speed,
         )
     )
-    whole = Creepage(xi, eta, phi, creep.profile)
+    whole, x = Creepage(xi, eta, phi, creep.profile), a[:, None] * places
     flexible = flexibilities(a, b, 2.0 / 3.0 * np.pi * a * b * mu * p, whole, g, nu)
-    along, lateral = np.ascontiguousarray(whole.along(a[:, None] * places)), eta * flexible.over_lateral
-    return Strips(a, b, mu * p, along, lateral, phi, flexible.x, flexible.y, speed, settings.parabolic)
-
-
-def _totals(strips: Strips, steps: int, nodes: np.ndarray, weights: np.ndarray, law: Knots) -> Totals[np.ndarray]:
-    """Return the totals of all ellipses with `steps` steps along each strip."""
-    n = strips.a.size
-    totals = Totals(*(np.empty(n) for _ in Totals._fields))
-    share_rows(lambda first, last: _all_sums(first, last, strips, steps, nodes, weights, law, totals), n, 8)
-    return totals
+    flexible_x, flexible_y = (np.repeat(v[:, None], places.size, axis=1) for v in (flexible.x, flexible.y))
+    along, lateral = np.ascontiguousarray(whole.along(x)), eta * flexible.over_lateral
+    return Ellipses(a, b, mu * p), Strips(x, lateral, phi, along, flexible_x, flexible_y, speed)
 
 
 def solve_patch(
@@ -231,7 +166,7 @@ def solve_patch(
     friction,
     elastic: Elastic,
     settings: FastsimSettings | None = None,
-    travel_speed=None,
+    travel_speed=1.0,
 ) -> FastsimSolution:
     """Solve n elliptical patches in steady rolling by the simplified theory.
 
@@ -246,9 +181,9 @@ def solve_patch(
     elastic : Elastic
         Combined elastic constants, arrays (n,). The coupling constant is not used.
     settings : FastsimSettings, optional
-        Numbers of strips and steps, friction law and travel speed.
-    travel_speed : array_like, shape (n,) or (), optional
-        Travel speed for friction laws [mm/s]; default: that of the settings.
+        Numbers of strips and steps, and the friction law.
+    travel_speed : array_like, shape (n,) or ()
+        Travel speed for friction laws that are not constant [mm/s].
 
     Returns
     -------
@@ -267,26 +202,10 @@ def solve_patch(
     1-13.
     """
     settings = settings or FastsimSettings()
-    law = (settings.law or constant()).knots
-    nodes, weights = np.polynomial.legendre.leggauss(settings.strips)
-    strips = _strips(ellipse, creep, friction, elastic, settings, travel_speed, nodes)
-    coarse, fine = (_totals(strips, steps, nodes, weights, law) for steps in (settings.steps, 2 * settings.steps))
-    best = extrapolated(coarse, fine)
-    force = 2.0 / 3.0 * np.pi * strips.a * strips.b * strips.bound
-    return FastsimSolution(
-        Resultants(best.lateral, best.driving, best.moment),
-        best.dissipation,
-        fine.adhesion / (np.pi * strips.a * strips.b),
-        fine.lack / np.where(force > 0, force, 1.0),
-    )
-
-
-def resultants(
-    ellipse: Ellipse, slip: Slip, friction, elastic: Elastic, settings: FastsimSettings | None = None
-) -> Resultants:
-    """Friction forces [N] and spin moment [N mm] on the roller, shape (n,); see `solve_patch`."""
-    settings = settings or FastsimSettings()
-    return solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings).resultants
+    rule, law = np.polynomial.legendre.leggauss(settings.strips), settings.law.knots
+    ellipses, strips = _problem(ellipse, creep, friction, elastic, travel_speed, rule[0])
+    area, kernel = np.pi * ellipses.a * ellipses.b, partial(_all_sums, ellipses, strips, rule, law)
+    return extrapolated(kernel, settings.steps, area, 2.0 / 3.0 * area * ellipses.bound)
 
 
 def tractions(
@@ -295,20 +214,19 @@ def tractions(
     friction,
     elastic: Elastic,
     settings: FastsimSettings | None = None,
-    travel_speed=None,
+    travel_speed=1.0,
 ) -> SurfaceTractions:
-    """Pressure (of Hertz), shear and slip at points x points element centres; 0 outside the ellipse."""
+    """Return Hertz's pressure, shear and slip at points x points element centres, 0 outside the ellipse.
+
+    Parameters are those of `solve_patch`; `slip` has the kinematics of the patches, arrays (n,).
+    """
     settings = settings or FastsimSettings()
-    law, points = (settings.law or constant()).knots, settings.points
+    law, points = settings.law.knots, settings.points
     u = (2.0 * np.arange(points) + 1.0) / points - 1.0
     creep = Creepage.of_slip(slip, settings.profile_slip)
-    strips = _strips(ellipse, creep, friction, elastic, settings, travel_speed, u)
-    a, b = strips.a, strips.b
-    shear, moved = (np.zeros((a.size, 2, points, points)) for _ in range(2))
-    share_rows(lambda first, last: _all_fields(first, last, strips, law, shear, moved), a.size, 4)
+    ellipses, strips = _problem(ellipse, creep, friction, elastic, travel_speed, u)
+    shear, moved = (np.zeros((len(strips.x), 2, points, points)) for _ in range(2))
+    share_rows(partial(_all_fields, ellipses, strips, law, shear, moved), len(strips.x), 4)
     root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - u[:, None] ** 2, 0.0))
-    pressure = np.broadcast_to(ellipse.max_pressure, a.shape)[:, None, None] * root
-    stick = (root > 0) & (moved[:, 0] == 0.0) & (moved[:, 1] == 0.0)
-    return SurfaceTractions(
-        a[:, None] * u, b[:, None] * u, pressure, shear[:, 0], shear[:, 1], moved[:, 0], moved[:, 1], stick
-    )
+    pressure = np.broadcast_to(ellipse.max_pressure, len(strips.x))[:, None, None] * root
+    return surface(strips.x, ellipses.b[:, None] * u, pressure, shear, moved)

@@ -1,4 +1,4 @@
-"""One point of the simplified theory: what a step along a strip does to its traction; compiled.
+"""The simplified theory along one strip, step by step against the rolling direction; compiled.
 
 The strips of ellipses (`fastsim.patch`) and of solved patches (`fastsim.strips`) share these functions.
 """
@@ -15,6 +15,22 @@ from trackroller.numerics.knots import polyline
 
 T = TypeVar("T", float, np.ndarray)  # one patch, or arrays over the patches
 NEWTON = 30  # limit of Newton's method for the root of one point; three or four steps are usual
+
+
+class Strips(NamedTuple):
+    """Strips of n patches along the rolling direction, or one strip of one patch.
+
+    x (n, m) : place of the strips [mm]; lateral (n,), spin (n,) [1/mm], along (n, m) : rigid slip
+    (lateral - spin y, along); flexible_x, flexible_y (n, m) : flexibilities [mm/MPa]; speed (n,) : travel speed [mm/s].
+    """
+
+    x: np.ndarray
+    lateral: np.ndarray
+    spin: np.ndarray
+    along: np.ndarray
+    flexible_x: np.ndarray
+    flexible_y: np.ndarray
+    speed: np.ndarray
 
 
 class State(NamedTuple):
@@ -40,6 +56,13 @@ class Totals(NamedTuple, Generic[T]):
     dissipation: T
     adhesion: T
     lack: T
+
+
+@njit(cache=True)
+def one_strip(strips, i, j):
+    """Return strip j of patch i."""
+    x, lateral, spin, along, flexible_x, flexible_y, speed = strips
+    return Strips(x[i, j], lateral[i], spin[i], along[i, j], flexible_x[i, j], flexible_y[i, j], speed[i])
 
 
 @njit(cache=True)
@@ -77,12 +100,10 @@ def _relaxed(friction, speed, h, stiffness, law):
 
 
 @njit(cache=True)
-def step(wx, wy, h, l_x, l_y, bound, law, old):
-    """Return the state one step h further against the rolling direction, with rigid slip (wx, wy) on the way.
-
-    l_x, l_y : flexibilities [mm/MPa]; bound : mu p at the new point [MPa]; old : state before the step.
-    """
-    zx, zy = old.shear_x - h * wx / l_x, old.shear_y - h * wy / l_y
+def _step(strip, middle, h, bound, law, old):
+    """Return the state after a step h about the place `middle` [mm]; `bound` is mu p at the end of the step [MPa]."""
+    l_x, l_y = strip.flexible_x, strip.flexible_y
+    zx, zy = old.shear_x - h * (strip.lateral - strip.spin * middle) / l_x, old.shear_y - h * strip.along / l_y
     g = bound * old.friction
     if zx * zx + zy * zy <= g * g:
         tx, ty, sx, sy = zx, zy, 0.0, 0.0
@@ -98,24 +119,39 @@ def step(wx, wy, h, l_x, l_y, bound, law, old):
 
 
 @njit(cache=True)
-def enter(wx, wy, law):
-    """Return the state at the leading edge: no traction, and the friction of the rigid slip."""
-    return State(0.0, 0.0, 0.0, 0.0, polyline(math.hypot(wx, wy), law.speed, law.factor)[0], 0.0)
+def enter(strip, y, law):
+    """Return the state at the leading edge y [mm]: no traction, and the friction of the rigid slip."""
+    speed = math.hypot(strip.lateral - strip.spin * y, strip.along)
+    return State(0.0, 0.0, 0.0, 0.0, polyline(speed, law.speed, law.factor)[0], 0.0)
 
 
 @njit(cache=True)
-def add(total, old, new, x, y, area, bound):
-    """Return the totals with one step from `old` to `new` about the point (x, y), over an area [mm^2]."""
-    mean_x, mean_y = 0.5 * (old.shear_x + new.shear_x), 0.5 * (old.shear_y + new.shear_y)
-    sticks = new.slip_x == 0.0 and new.slip_y == 0.0
-    return Totals(
-        total.lateral + area * mean_x,
-        total.driving + area * mean_y,
-        total.moment + area * (x * mean_y - y * mean_x),
-        total.dissipation - area * (mean_x * new.slip_x + mean_y * new.slip_y),
-        total.adhesion + (area if sticks else 0.0),
-        total.lack + area * bound * new.lack,
-    )
+def advance(strip, h, middles, bounds, law, state):
+    """Return the state after steps h about the places `middles` [mm], with mu p at the end of each step [MPa]."""
+    for j in range(bounds.size):
+        state = _step(strip, middles[j], h, bounds[j], law, state)
+    return state
+
+
+@njit(cache=True)
+def march(total, strip, edge, h, area, middles, bounds, law):
+    """Return the totals with those of a strip from its leading edge [mm]; `area` is that of a step [mm^2]."""
+    old = enter(strip, edge, law)
+    for j in range(bounds.size):
+        middle, bound = middles[j], bounds[j]
+        new = _step(strip, middle, h, bound, law, old)
+        mean_x, mean_y = 0.5 * (old.shear_x + new.shear_x), 0.5 * (old.shear_y + new.shear_y)
+        sticks = new.slip_x == 0.0 and new.slip_y == 0.0
+        total = Totals(
+            total.lateral + area * mean_x,
+            total.driving + area * mean_y,
+            total.moment + area * (strip.x * mean_y - middle * mean_x),
+            total.dissipation - area * (mean_x * new.slip_x + mean_y * new.slip_y),
+            total.adhesion + (area if sticks else 0.0),
+            total.lack + area * bound * new.lack,
+        )
+        old = new
+    return total
 
 
 @njit(cache=True)
@@ -123,8 +159,3 @@ def write(totals, i, found):
     """Store the totals of patch i in arrays."""
     totals.lateral[i], totals.driving[i], totals.moment[i] = found.lateral, found.driving, found.moment
     totals.dissipation[i], totals.adhesion[i], totals.lack[i] = found.dissipation, found.adhesion, found.lack
-
-
-def extrapolated(coarse: Totals, fine: Totals) -> Totals:
-    """Return the limit of infinitely many steps from n and 2 n steps; the steps are of first order."""
-    return Totals(*(2.0 * f - c for c, f in zip(coarse, fine, strict=True)))

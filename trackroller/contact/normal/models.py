@@ -73,7 +73,7 @@ class GridModel(ContactModel):
             return slip
         contour = np.full(len(rows), None)
         contour[:] = [self.patches.contour(row, sine) for row, sine in zip(rows.tolist(), slip.sine, strict=True)]
-        return slip.detailed(contour=contour)
+        return replace(slip, contour=contour)
 
     def _remember(self, patch: GridPatch, slip: Slip, rows: np.ndarray) -> None:
         for row, sine, residual in zip(rows.tolist(), slip.sine, patch.residual, strict=True):

@@ -43,7 +43,7 @@ class Scene:
 
     def kinematics(self, slip: Slip, rows: np.ndarray) -> Slip:
         """Return the slip with the turning of the rollers `rows`, if the turning counts."""
-        return slip if self.turning is None else slip.detailed(turning=self.turning[rows])
+        return slip if self.turning is None else replace(slip, turning=self.turning[rows])
 
     def contacts(self, balance: eq.Equilibrium) -> tuple[Patch, Slip]:
         """Return the ellipses and the slip of both contacts in an equilibrium, arrays (2 n,)."""
