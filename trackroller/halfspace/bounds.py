@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import NO_FIELD, near_parts, refinement, unit_rule
+from trackroller.halfspace.ellipse import fields_of, near_parts, refinement, unit_rule
 from trackroller.halfspace.peak_climb import lengths
 from trackroller.halfspace.stress import FRICTION_SIGNS, body_stress, von_mises
 
@@ -39,7 +39,7 @@ def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndar
     out = np.empty((len(patches), 2))
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
-        chosen = np.zeros((group.size, *NO_FIELD.shape)) if fields is None else np.ascontiguousarray(fields[group])
+        chosen = fields_of(fields, group)
         rows = np.repeat(np.arange(group.size), points.shape[1])
         rule = unit_rule(int(_ORDER * factor))
         parts = near_parts(np.ascontiguousarray(patches[group]), chosen, rows, points[group].reshape(-1, 3), rule, rule)

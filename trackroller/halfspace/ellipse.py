@@ -45,7 +45,8 @@ from trackroller.halfspace.vectors import FAST, inner
 from trackroller.numerics.quadrature import clustered_rule
 from trackroller.numerics.threads import share_rows
 
-NO_FIELD = np.zeros((2, 1, 1))  # stands for a traction field in full sliding
+FIELD = np.float32  # of traction fields: gathering their values takes most of the time of a point
+NO_FIELD = np.zeros((2, 1, 1), FIELD)  # stands for a traction field in full sliding
 
 
 class Points(NamedTuple):
@@ -131,6 +132,13 @@ def refinement(patches: np.ndarray) -> np.ndarray:
     return np.clip(np.rint(np.sqrt(long / short / 2.0)), 1, 6).astype(int)
 
 
+def fields_of(fields: np.ndarray | None, group: np.ndarray) -> np.ndarray:
+    """Return the traction fields (m, 2, ny, nx) of the patches `group` as kernels take them; `NO_FIELD` for None."""
+    if fields is None:
+        return np.zeros((group.size, *NO_FIELD.shape), FIELD)
+    return np.ascontiguousarray(fields[group], dtype=FIELD)
+
+
 def near_parts(patches, fields, rows, points, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
     """Compute stress parts at points in or near their patches, on the calling thread.
 
@@ -173,7 +181,7 @@ def stress_parts(
     InputError : more quadrature points than the kernels hold
     """
     points = np.ascontiguousarray(points, dtype=float)
-    patches, fields = np.atleast_1d(patch), np.ascontiguousarray(field, dtype=float)[None]
+    patches, fields = np.atleast_1d(patch), np.ascontiguousarray(field, dtype=FIELD)[None]
     waves_rule, rule = unit_rule(waves), unit_rule(nodes)
     out = np.zeros((len(points), 4, 6))
     far = np.sum(points * points, axis=1) > 9.0 * max(patch["a"], patch["b"]) ** 2

@@ -13,11 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import NO_FIELD, refinement, unit_rule
+from trackroller.halfspace.ellipse import FIELD, fields_of, refinement, unit_rule
 from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Patches, lengths
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
+ROUGH = 48  # elements along each axis of the tractions below which the first climbs take place
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
 
 
@@ -84,7 +85,8 @@ class Peak:
 def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: float) -> Peak:
     """Return the peaks of both bodies of each patch, in normalised coordinates."""
     n, slender = len(patches.rows), patches.slender
-    climbs = _seeded(patches, rules, settings)
+    climbs = _seeded(dataclasses.replace(patches, fields=_rough(patches.fields)), rules, settings)
+    # Tractions on a grid are less smooth than sliding ones, so that a finer rule gains little in the first sweep.
     # the scan is rough: climbs that fall behind with better quadrature are given up, and sooner with every sweep
     finalists = settings.finalists + 2 * slender
     most = max(finalists, 2)
@@ -92,7 +94,9 @@ def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: fl
         if k == 1:
             climbs.step[:] = 0.08 * PROPORTIONS
         rows = climbs.standing(max(1.0 - gap * most, 1e-9), 0.15 if k > 0 else 0.0, most)
-        climbs.sweep(rows, rules.climb, rules.climb, 0.06, k > 1)
+        rule = rules.scan if k == 0 and patches.gridded else rules.climb
+        climbs.sweep(rows, rule, rule, 0.06, k > 1)
+    climbs.patches = patches
     rows = climbs.standing(0.97, 0.1, finalists)
     climbs.f[rows] = climbs.values(rows, climbs.u[rows], rules.waves, rules.polish)
     climbs.step[:] = max(3.0 * smallest, 0.01) * PROPORTIONS
@@ -118,24 +122,33 @@ def _seeded(patches: Patches, rules: Rules, settings: PeakSettings) -> Climbs:
     steps, along = 0.12 * PROPORTIONS * np.ones((m, 3)), along_turn(patches.rows[of], u)
     climbs = Climbs(patches, of, body, u, np.full(m, -1.0), np.zeros(m), steps, along)
     rows = np.flatnonzero(chosen >= 0)
-    climbs.f[rows] = climbs.values(rows, u[rows], rules.climb, rules.climb)
+    if patches.gridded:  # the first sweep takes the rule of the scan, see `_search`
+        climbs.f[rows] = values[of, chosen, body][rows]
+    else:
+        climbs.f[rows] = climbs.values(rows, u[rows], rules.climb, rules.climb)
     return climbs
+
+
+def _rough(fields: np.ndarray) -> np.ndarray:
+    """Return fields with at most ROUGH elements along each axis for the first climbs: these stay in the fast caches."""
+    while min(fields.shape[-2:]) > ROUGH and not (fields.shape[-1] % 2 or fields.shape[-2] % 2):
+        fields = np.ascontiguousarray(_merged(fields), FIELD)
+    return fields
 
 
 def _merged(fields: np.ndarray) -> np.ndarray:
     """Return the mean tractions of elements of twice the size; the fields themselves for odd numbers of elements."""
-    n, _, ny, nx = fields.shape
-    if ny % 2 or nx % 2:
+    if fields.shape[-1] % 2 or fields.shape[-2] % 2:
         return fields
-    blocks = fields.reshape(n, 2, ny // 2, 2, nx // 2, 2)
-    inside = np.any(blocks != 0.0, axis=1, keepdims=True).sum(axis=(3, 5))
-    return blocks.sum(axis=(3, 5)) / np.maximum(inside, 1)
+    blocks = [fields[..., j::2, i::2] for j in (0, 1) for i in (0, 1)]
+    inside = sum(np.any(block, axis=1, keepdims=True).astype(FIELD) for block in blocks)
+    return sum(blocks) / np.maximum(inside, 1)
 
 
 def _change_by_elements(patches: Patches, found: Peak, rule: np.ndarray, fields: np.ndarray) -> np.ndarray:
     """Return the relative change of the peaks (n, 2) with the tractions `fields` of a coarser grid."""
     n = len(patches.rows)
-    coarse = dataclasses.replace(patches, fields=np.ascontiguousarray(fields))
+    coarse = dataclasses.replace(patches, fields=np.ascontiguousarray(fields, dtype=FIELD))
     of, body = (index.ravel() for index in np.indices((n, 2)))
     places = np.stack([found.x, found.y, found.z], axis=2).reshape(2 * n, 3)
     return np.abs(coarse.stress(of, body, places, rule, rule).reshape(n, 2) / found.stress - 1.0)
@@ -174,7 +187,7 @@ def find_peaks(
         group = np.flatnonzero(finer == factor)
         orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
         rules = Rules(*(unit_rule(int(order * factor)) for order in orders))
-        chosen = np.zeros((group.size, *NO_FIELD.shape)) if fields is None else np.ascontiguousarray(fields[group])
+        chosen = fields_of(fields, group)
         ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
         some = Patches(patches[group], chosen, ratios, bool(factor > 1))
         found = _search(some, rules, settings, settings.step / factor)

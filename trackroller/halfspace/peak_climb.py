@@ -5,12 +5,13 @@ Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
 
 from trackroller.halfspace.ellipse import near_parts
-from trackroller.halfspace.stress import FRICTION_SIGNS, body_stress, von_mises
+from trackroller.halfspace.stress import FRICTION_SIGNS, von_mises_of_parts
 from trackroller.numerics.threads import share_rows
 
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
@@ -32,19 +33,28 @@ class Patches:
     poisson_ratio: np.ndarray
     slender: bool
 
+    @property
+    def gridded(self) -> bool:
+        """Are there traction fields?"""
+        return self.fields.shape[-1] > 1
+
+    @functools.cached_property
+    def sizes(self) -> np.ndarray:
+        """Return the `lengths` of the patches."""
+        return lengths(self.rows)
+
     def parts(self, of: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
         """Return stress parts (m, 4, 6) of patches `of` at normalised points u (m, 3)."""
-        points = u * lengths(self.rows)[of]
+        points = u * self.sizes[of]
         return near_parts(self.rows, self.fields, of, points, waves, rule)
 
     def stress(self, of: np.ndarray, body: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray):
         """Return the von Mises stress (m,) in `body` of patches `of` at normalised points u (m, 3), on all threads."""
-        out = np.empty(len(u))
+        out, nu, signs = np.empty(len(u)), self.poisson_ratio[of, body], 1.0 - 2.0 * body
 
         def work(first: int, last: int) -> None:
             some = slice(first, last)
-            parts, nu = self.parts(of[some], u[some], waves, rule), self.poisson_ratio[of[some], body[some]]
-            out[some] = von_mises(body_stress(parts, nu, 1.0 - 2.0 * body[some]))
+            von_mises_of_parts(self.parts(of[some], u[some], waves, rule), nu[some], signs[some], out[some])
 
         share_rows(work, len(u), 64, 1024)
         return out
@@ -52,17 +62,18 @@ class Patches:
     def scan(self, u: np.ndarray, rule: np.ndarray) -> np.ndarray:
         """Return the von Mises stress (n, m, 2) in both bodies at normalised points u (n, m, 3), on all threads."""
         n, m = u.shape[:2]
-        out = np.empty((n * m, 2))
+        out = np.empty((2, n * m))
         of, flat = np.repeat(np.arange(n), m), u.reshape(n * m, 3)
+        nu, signs = np.ascontiguousarray(self.poisson_ratio[of].T), np.repeat(FRICTION_SIGNS, n * m).reshape(2, n * m)
 
         def work(first: int, last: int) -> None:
             some = slice(first, last)
             parts = self.parts(of[some], flat[some], rule, rule)
-            for body, sign in enumerate(FRICTION_SIGNS):
-                out[some, body] = von_mises(body_stress(parts, self.poisson_ratio[of[some], body], sign))
+            for body in (0, 1):
+                von_mises_of_parts(parts, nu[body, some], signs[body, some], out[body, some])
 
         share_rows(work, n * m, 64, 1024)
-        return out.reshape(n, m, 2)
+        return np.moveaxis(out.reshape(2, n, m), 0, 2)
 
 
 def lengths(rows: np.ndarray) -> np.ndarray:

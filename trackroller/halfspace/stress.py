@@ -9,11 +9,13 @@ Stresses have a last axis of six in the order of COMPONENTS. They do not depend 
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from trackroller.errors import InputError
 from trackroller.halfspace import influence
+from trackroller.halfspace.vectors import FAST, inner
 from trackroller.numerics.threads import share_rows
 
 Array = NDArray[np.float64]
@@ -239,9 +241,26 @@ def von_mises(stress: ArrayLike) -> Array:
     >>> float(von_mises([-300.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
     300.0
     """
-    sx, sy, sz, txy, tyz, txz = np.moveaxis(np.asarray(stress, dtype=float), -1, 0)
+    return _equivalent.py_func(*np.moveaxis(np.asarray(stress, dtype=float), -1, 0))
+
+
+@inner
+def _equivalent(sx, sy, sz, txy, tyz, txz):
+    """Return sqrt(3 J2) of the components of stresses: numbers, or arrays of one shape."""
     normal = (sx - sy) ** 2 + (sz - sx) ** 2 + (sy - sz) ** 2
     return np.sqrt(0.5 * normal + 3.0 * (txy**2 + tyz**2 + txz**2))
+
+
+@njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")
+def von_mises_of_parts(parts, poisson_ratio, signs, out):
+    """Write the von Mises stress of `body_stress` into `out` (m,), from parts (m, 4, 6), nu (m,) and signs (m,)."""
+    stress = np.empty(6)
+    for i in range(out.size):
+        nu, sign = poisson_ratio[i], signs[i]
+        for k in range(6):
+            p = parts[i, :, k]
+            stress[k] = p[0] + nu * p[1] + sign * (p[2] + nu * p[3])
+        out[i] = _equivalent(stress[0], stress[1], stress[2], stress[3], stress[4], stress[5])
 
 
 def principal_stresses(stress: ArrayLike) -> Array:

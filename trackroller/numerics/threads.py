@@ -29,9 +29,9 @@ def share_rows(work: Callable[[int, int], object], rows: int, smallest: int, lar
         Limits of the number of rows in a piece; default: no upper limit.
     """
     threads = thread_count()
-    size = max(smallest, -(-rows // (8 * threads)))
+    size = max(smallest, -(-rows // (8 * threads))) if threads > 1 else rows
     size = size if largest is None else min(size, largest)
-    pieces = [(i, min(i + size, rows)) for i in range(0, rows, size)]
+    pieces = [(i, min(i + size, rows)) for i in range(0, rows, max(size, 1))]
     if threads == 1 or len(pieces) < 2:
         for first, last in pieces:
             work(first, last)
