@@ -121,7 +121,12 @@ def test_the_recorded_cases_cover_what_can_be_chosen():
     def chosen(option, default):
         return {json.dumps(group.options.get(option, default)) for group in found}
 
-    assert {json.loads(text) for text in chosen("contact_model", "sliding")} == {"sliding", "fastsim", "kalker", "kalker_table"}
+    assert {json.loads(text) for text in chosen("contact_model", "sliding")} == {
+        "sliding",
+        "fastsim",
+        "kalker",
+        "kalker_table",
+    }
     assert {json.loads(text) for text in chosen("normal", "hertz")} == {"hertz", "halfspace"}
     assert {json.loads(text) for text in chosen("life_rule", "elementary")} == {"elementary", "haibach", "unlimited"}
     assert len(chosen("slip_terms", [])) == 4 and len(chosen("spin_model", "skewed")) == 3

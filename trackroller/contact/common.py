@@ -158,9 +158,11 @@ class Works(_Rows):
 
     Attributes
     ----------
-    dissipated : energy that friction dissipates
-    by_pressure : part of that energy that the pressures supply. On unlike materials shear moves the surfaces along
-        the normal, and the pressures do work on this motion.
+    dissipated : numpy.ndarray, shape (n,)
+        Energy that friction dissipates.
+    by_pressure : numpy.ndarray, shape (n,)
+        Part of this energy that the pressures supply. On unlike materials shear moves the surfaces along the normal,
+        and the pressures do work on this motion.
     """
 
     dissipated: np.ndarray
@@ -200,10 +202,14 @@ class SurfaceTractions:
 
     Attributes
     ----------
-    x, y : coordinates of the grid, (n, nx) and (n, ny) [mm]
-    pressure, shear_lateral, shear_rolling : (n, ny, nx) [MPa]
-    slip_lateral, slip_rolling : slip velocity of the roller relative to the guide per travel speed, (n, ny, nx) [1]
-    stick : True where the surfaces stick, (n, ny, nx)
+    x, y : numpy.ndarray, shape (n, nx) and (n, ny)
+        Coordinates of the grid [mm].
+    pressure, shear_lateral, shear_rolling : numpy.ndarray, shape (n, ny, nx)
+        Tractions [MPa].
+    slip_lateral, slip_rolling : numpy.ndarray, shape (n, ny, nx)
+        Slip velocity of the roller relative to the guide per travel speed [1].
+    stick : numpy.ndarray of bool, shape (n, ny, nx)
+        True where the surfaces stick.
     """
 
     x: np.ndarray

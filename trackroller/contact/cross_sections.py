@@ -32,11 +32,14 @@ class CrossSection:
 
     Attributes
     ----------
-    height, slope : functions of u (any shape) [mm], [1]
-    inner, outer : ends of the drawn shape, inner < 0 < outer [mm]; infinite without an edge
-    chamfer : radius of the rounding beyond these ends [mm], 0 for a sharp edge
-    parabolic : True for Hertz's approximation, in which the inclination does not change the curvature in the rolling
-        direction
+    height, slope : callable
+        Functions of u (any shape) [mm], [1].
+    inner, outer : float
+        Ends of the drawn shape, inner < 0 < outer [mm]; infinite without an edge.
+    chamfer : float
+        Radius of the rounding beyond these ends [mm], 0 for a sharp edge.
+    parabolic : bool
+        True for Hertz's approximation, in which the inclination does not change the curvature in the rolling direction.
     """
 
     height: Curve
@@ -82,8 +85,10 @@ def arcs(radii: Sequence[float], ends: Sequence[float]) -> CrossSection:
 
     Parameters
     ----------
-    radii : of each arc, > 0 convex, < 0 concave, inf straight [mm]
-    ends : u at the end of each arc except the last, increasing [mm]
+    radii : sequence of float
+        Radius of each arc, > 0 convex, < 0 concave, inf straight [mm].
+    ends : sequence of float
+        u at the end of each arc except the last, increasing [mm].
 
     Notes
     -----
@@ -139,10 +144,12 @@ def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossS
 
     Parameters
     ----------
-    u, height : points, u strictly increasing, at least 5 [mm]
-    noise : standard deviation of the measuring noise of the heights [mm]. The result is the smoothest natural cubic
-        spline with this deviation from the points (Reinsch 1967). 'auto' uses the noise that `noise_of` finds; 0 gives
-        the spline through every point, so that scatter counts as shape
+    u, height : numpy.ndarray, shape (n,)
+        At least 5 points, u strictly increasing [mm].
+    noise : float or str
+        Standard deviation of the measuring noise of the heights [mm]. The result is the smoothest natural cubic spline
+        with this deviation from the points (Reinsch 1967). 'auto' uses the noise that `noise_of` finds. With 0 the
+        spline passes through every point, so that scatter counts as shape.
     """
     spline = smoothed(u, height, noise)
     slope, zero = spline.derivative(), float(spline(0.0))
@@ -180,7 +187,8 @@ def noise_of(u: np.ndarray, height: np.ndarray) -> float:
 
     Parameters
     ----------
-    u, height : points, (n,) [mm]
+    u, height : numpy.ndarray, shape (n,)
+        Points [mm].
     """
     count = u.size - 4
     near = np.stack([u[k : k + count] for k in range(5)])
@@ -212,9 +220,12 @@ class Gap:
 
     Attributes
     ----------
-    guide, roller : cross-sections
-    alpha : contact angle [rad]
-    rolling_radius, guide_curve_radius : r_A and r_Curve of the nominal point [mm]
+    guide, roller : CrossSection
+        Cross-sections of the two bodies.
+    alpha : float
+        Contact angle [rad].
+    rolling_radius, guide_curve_radius : float
+        r_A and r_Curve of the nominal point [mm].
     """
 
     guide: CrossSection

@@ -16,21 +16,28 @@ SLIGHT = 5e-3  # share of the largest pressure below which an element does not c
 
 @dataclass(frozen=True)
 class GridPatch(_Rows):
-    """n patches on grids of N x M elements over the boxes that they fill; M is a multiple of N.
-
-    It offers everything that `protocol.Patch` asks for.
+    """n patches with the interface `protocol.Patch`, on grids of N x M elements over their boxes; M is a multiple of N.
 
     Attributes
     ----------
-    semi_axis_lateral, semi_axis_rolling : half the sides of the box along x_C and y_C, (n,) [mm]
-    max_pressure : largest pressure, (n,) [MPa]
-    normal_force : F_N, (n,) [N]
-    centre : x_C of the middle of the box, (n,) [mm]
-    pressure : mean pressure of each element, (n, N, M) [MPa]
-    approach : approach of the two bodies, (n,) [mm]
-    area : area of the patch, (n,) [mm^2]
-    reaches_edge : True where the patch ends at an edge of the material, (n,)
-    residual : residual of the normal problem, (n,), see `normal.pressure.NormalSolution`
+    semi_axis_lateral, semi_axis_rolling : numpy.ndarray, shape (n,)
+        Half the sides of the box along x_C and y_C [mm].
+    max_pressure : numpy.ndarray, shape (n,)
+        Largest pressure [MPa].
+    normal_force : numpy.ndarray, shape (n,)
+        F_N [N].
+    centre : numpy.ndarray, shape (n,)
+        x_C of the middle of the box [mm].
+    pressure : numpy.ndarray, shape (n, N, M)
+        Mean pressure of each element [MPa].
+    approach : numpy.ndarray, shape (n,)
+        Approach of the two bodies [mm].
+    area : numpy.ndarray, shape (n,)
+        Area of the patch [mm^2].
+    reaches_edge : numpy.ndarray of bool, shape (n,)
+        True where the patch ends at an edge of the material.
+    residual : numpy.ndarray, shape (n,)
+        Residual of the normal problem, see `normal.pressure.NormalSolution`.
     """
 
     semi_axis_lateral: np.ndarray
@@ -87,15 +94,18 @@ class GridPatch(_Rows):
 
         Parameters
         ----------
-        elements : number of cells along each axis, a divisor of N
+        elements : int
+            Number of cells along each axis, a divisor of N.
 
         Returns
         -------
-        (n, elements, elements) array [1]
+        numpy.ndarray, shape (n, elements, elements)
+            Relative pressures [1].
 
         Raises
         ------
-        ValueError : `elements` does not divide the numbers of elements
+        ValueError
+            If `elements` does not divide the numbers of elements.
         """
         rows, columns = self.shape
         if rows % elements or columns % elements:
@@ -111,7 +121,8 @@ class GridPatch(_Rows):
 
         Parameters
         ----------
-        along, across : number of new elements per element along the rolling direction and across it
+        along, across : int
+            Number of new elements per element along the rolling direction and across it.
         """
         fine = self.pressure
         for axis, times in ((1, along), (2, across)):
@@ -179,11 +190,13 @@ def rim_means(pressure: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    pressure : (ny, nx) array of solved pressures
+    pressure : numpy.ndarray, shape (ny, nx)
+        Solved pressures.
 
     Returns
     -------
-    (ny, nx) array with the same sum
+    numpy.ndarray, shape (ny, nx)
+        Pressures with the same sum.
     """
     ny, nx = pressure.shape
     known = np.pad(pressure > 0, 1)

@@ -80,7 +80,8 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    curvature_ratio : smaller over larger relative curvature, in (0, 1], shape (n,)
+    curvature_ratio : numpy.ndarray, shape (n,)
+        Smaller over larger relative curvature, in (0, 1].
 
     Notes
     -----
@@ -103,7 +104,7 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
         slope = (mismatch(x + step) - mismatch(x - step)) / (2 * step)
         new = x - f / slope
         new = np.where((new > low) & (new < high), new, np.where(f == 0, x, (low + high) / 2))
-        new = np.where(done, x, new)  # a ratio that is found stays: its last digit must not depend on other rows
+        new = np.where(done, x, new)  # the last digit of a solved ratio must not depend on the other rows
         done |= np.abs(new - x) <= 2e-15 * np.maximum(1.0, np.abs(x))
         x = new
         if done.all():
@@ -124,8 +125,15 @@ def exact_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> HertzS
 
     Parameters
     ----------
-    k_x, k_y : relative curvatures in the lateral and the rolling plane, > 0, (n,) [1/mm]
-    modulus : contact modulus E*, (n,) [MPa]
+    k_x, k_y : numpy.ndarray, shape (n,)
+        Relative curvatures in the lateral and the rolling plane, > 0 [1/mm].
+    modulus : numpy.ndarray, shape (n,)
+        Contact modulus E* [MPa].
+
+    Returns
+    -------
+    HertzShape
+        Semi-axes and largest pressure for a unit normal force.
 
     Examples
     --------
@@ -156,7 +164,13 @@ def published_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> He
 
     Parameters
     ----------
-    k_x, k_y, modulus : as in `exact_shape`
+    k_x, k_y, modulus : numpy.ndarray, shape (n,)
+        See `exact_shape`.
+
+    Returns
+    -------
+    HertzShape
+        Semi-axes and largest pressure for a unit normal force.
 
     Notes
     -----

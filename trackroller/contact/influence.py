@@ -44,15 +44,19 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
 
     Parameters
     ----------
-    hx, hy : element sides
-    poisson : combined Poisson's ratio [1]
-    ny, nx : numbers of elements
-    below, above : additional rows at both ends
+    hx, hy : float
+        Element sides.
+    poisson : float
+        Combined Poisson's ratio [1].
+    ny, nx : int
+        Numbers of elements.
+    below, above : int
+        Additional rows at both ends.
 
     Returns
     -------
-    (3, 2 ny - 1 + below + above, 2 nx - 1) array: xx, yy, xy for j = -(ny-1)-below to ny-1+above and i = -(nx-1) to
-    nx-1
+    numpy.ndarray, shape (3, 2 ny - 1 + below + above, 2 nx - 1)
+        Components xx, yy, xy for j from -(ny-1)-below to ny-1+above and i from -(nx-1) to nx-1.
     """
     rows, columns = 2 * ny - 1 + below + above, 2 * nx - 1
     corner = np.empty((3, rows + 1, columns + 1))
@@ -141,10 +145,14 @@ class Influence:
 
     Attributes
     ----------
-    hy : element size in the rolling direction
-    p, q : spectra W = P Z + Q conj(Z(-k)) of displacements W and tractions Z, (ly, lx)
-    own : mean slip that an element's unit traction causes at itself
-    column : displacements xx and yy that it causes in its own column, (2, 2 ny - 1 + HALO)
+    hy : float
+        Element size in the rolling direction.
+    p, q : numpy.ndarray, shape (ly, lx)
+        Spectra in W = P Z + Q conj(Z(-k)) of displacements W and tractions Z.
+    own : float
+        Mean slip that an element's unit traction causes at itself.
+    column : numpy.ndarray, shape (2, 2 ny - 1 + HALO)
+        Displacements xx and yy that an element's unit traction causes in its own column.
     """
 
     hy: float

@@ -1,7 +1,7 @@
 """The rigid slip, eqs (20)-(25): formulas, creepages, and what a curved guide or a drawn contour adds to it.
 
 The formulas stand in `trackroller.halfspace.rigid_slip`, because the stress kernels of the room below need them too.
-This module is their public face: kernels and models import them from here.
+Kernels and models of this room import them from this module.
 
 Frame: x_C lateral, y_C in the rolling direction (Kalker and CONTACT use x for rolling).
 """
@@ -77,10 +77,14 @@ class Creepage:
 
     Attributes
     ----------
-    longitudinal : xi, creepage along y_C [1], (n,)
-    lateral : eta, creepage along x_C [1], (n,)
-    spin : phi, spin creepage about z_C [1/mm], (n,)
-    profile : kinematics whose `beyond_tangent` is added to w_y, or None
+    longitudinal : numpy.ndarray, shape (n,)
+        xi, creepage along y_C [1].
+    lateral : numpy.ndarray, shape (n,)
+        eta, creepage along x_C [1].
+    spin : numpy.ndarray, shape (n,)
+        phi, spin creepage about z_C [1/mm].
+    profile : Slip, optional
+        Kinematics whose `beyond_tangent` is added to w_y.
     """
 
     longitudinal: np.ndarray

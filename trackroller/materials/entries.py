@@ -21,7 +21,7 @@ UNITS = {
 
 
 def _scaled(number: Any, factor: float) -> Any:
-    """Return the number in the unit of the property; anything else unchanged, because the later check names it."""
+    """Return the number in the unit of the property; any other value unchanged, because a later check refuses it."""
     try:
         return number if isinstance(number, bool) else float(number) * factor
     except (TypeError, ValueError):

@@ -17,23 +17,12 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.numerics.syntax_checks import check_angles, check_depth
+from trackroller.numerics.syntax_checks import check_tree
 
-MAX_LENGTH = 500  # a longer expression is a program: it belongs in a script
+MAX_LENGTH = 500  # characters; a longer calculation belongs in a script
 
-FUNCTIONS: dict[str, tuple[Any, int]] = {
-    "abs": (np.abs, 1),
-    "sqrt": (np.sqrt, 1),
-    "exp": (np.exp, 1),
-    "log": (np.log, 1),
-    "log10": (np.log10, 1),
-    "sin": (np.sin, 1),
-    "cos": (np.cos, 1),
-    "tan": (np.tan, 1),
-    "radians": (np.radians, 1),
-    "degrees": (np.degrees, 1),
-    "sign": (np.sign, 1),
-    "round": (np.round, 1),
+_ONE_ARGUMENT = "abs sqrt exp log log10 sin cos tan radians degrees sign round".split()
+FUNCTIONS: dict[str, tuple[Any, int]] = {name: (getattr(np, name), 1) for name in _ONE_ARGUMENT} | {
     "min": (np.minimum, 2),
     "max": (np.maximum, 2),
     "where": (np.where, 3),
@@ -64,9 +53,12 @@ class Comparison:
 
     Parameters
     ----------
-    name : quantity on the left side
-    symbol : one of ``< <= > >= == !=``
-    limit : expression on the right side
+    name : str
+        Quantity on the left side.
+    symbol : str
+        One of ``< <= > >= == !=``.
+    limit : str
+        Expression on the right side.
     """
 
     name: str
@@ -75,7 +67,7 @@ class Comparison:
 
     @property
     def text(self) -> str:
-        """The comparison as an expression."""
+        """Return the comparison as an expression."""
         return f"{self.name} {self.symbol} {self.limit}"
 
 
@@ -84,16 +76,20 @@ def names(text: str, field: str = "expression") -> set[str]:
 
     Parameters
     ----------
-    text : the expression
-    field : name of the study key, for error messages
+    text : str
+        The expression.
+    field : str
+        Name of the study key, for error messages.
 
     Returns
     -------
-    Names; the part of a variable is one name, such as ``peak_stress[1,roller]``.
+    set of str
+        Names; the part of a variable is one name, such as ``peak_stress[1,roller]``.
 
     Raises
     ------
-    InputError : the text is not an expression; the message states the position
+    InputError
+        If the text is not an expression; the message states the position.
     """
     return _names(_parse(text, field))
 
@@ -103,17 +99,22 @@ def evaluate(text: str, values: Mapping[str, Any], field: str = "expression") ->
 
     Parameters
     ----------
-    text : arithmetic over the names in `values`
-    values : numbers or columns, shape (n,); texts can only be compared
-    field : name of the study key, for error messages
+    text : str
+        Arithmetic over the names in `values`.
+    values : mapping of str to number or array_like
+        Numbers or columns, shape (n,). Texts can only be compared.
+    field : str
+        Name of the study key, for error messages.
 
     Returns
     -------
-    numpy.ndarray of float, shape (n,), or () if all values are numbers
+    numpy.ndarray of float, shape (n,) or ()
+        Value of the expression; a single number if all values are numbers.
 
     Raises
     ------
-    InputError : a node that is not allowed, an unknown name, or a result that is not a number
+    InputError
+        For a node that is not allowed, an unknown name, or a result that is not a number.
 
     Examples
     --------
@@ -132,17 +133,22 @@ def condition(text: str, values: Mapping[str, Any], field: str = "constraints") 
 
     Parameters
     ----------
-    text : comparisons, which `and`, `or` and `not` may join
-    values : numbers or columns of any shapes that broadcast; texts can only be compared
-    field : name of the study key, for error messages
+    text : str
+        Comparisons, which `and`, `or` and `not` may join.
+    values : mapping of str to number or array_like
+        Numbers or columns of any shapes that broadcast. Texts can only be compared.
+    field : str
+        Name of the study key, for error messages.
 
     Returns
     -------
-    numpy.ndarray of bool. False wherever a value of the condition is NaN, also for ``!=``.
+    numpy.ndarray of bool
+        True where the condition holds; False where a value of the condition is NaN, also for ``!=``.
 
     Raises
     ------
-    InputError : as `evaluate`, or the text is not a comparison
+    InputError
+        As in `evaluate`, or if the text is not a comparison.
     """
     tree = _parse(text, field)
     result = np.asarray(_Evaluation(text, field, values).value(tree))
@@ -160,16 +166,20 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
 
     Parameters
     ----------
-    text : such as ``slip > 0.1 or regime == full_slip``; each left side is one name
-    field : name of the study key, for error messages
+    text : str
+        Condition such as ``slip > 0.1 or regime == full_slip``; each left side is one name.
+    field : str
+        Name of the study key, for error messages.
 
     Returns
     -------
-    The comparisons in the order of the text.
+    tuple of Comparison
+        The comparisons in the order of the text.
 
     Raises
     ------
-    InputError : the text is not such a condition
+    InputError
+        If the text is not such a condition.
     """
     tree = _parse(text, field)
     parts = tree.values if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.Or) else [tree]
@@ -195,8 +205,7 @@ def _tree(text: str, field: str) -> ast.expr:
         raise InputError(field, text[:40] + "...", f"an expression has at most {MAX_LENGTH} characters")
     try:
         tree = ast.parse(text.strip(), mode="eval").body
-        check_depth(tree, text, field)
-        check_angles(tree, text, field)
+        check_tree(tree, text, field)
         return tree
     except InputError:
         raise
@@ -222,10 +231,6 @@ def _names(node: ast.AST) -> set[str]:
         return {name} - set(CONSTANTS)
     children = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
     return set().union(*map(_names, children))
-
-
-def _is_text(value: np.ndarray) -> bool:
-    return value.dtype.kind in "OSU"
 
 
 @dataclass(frozen=True)
@@ -292,7 +297,8 @@ class _Evaluation:
             raise self.refused(node, "arithmetic with a text") from None
 
     def compared(self, op: ast.cmpop, one: np.ndarray, other: np.ndarray, node: ast.AST) -> np.ndarray:
-        if _is_text(one) != _is_text(other) or (_is_text(one) and not isinstance(op, (ast.Eq, ast.NotEq))):
+        texts = {side.dtype.kind in "OSU" for side in (one, other)}
+        if len(texts) > 1 or (True in texts and not isinstance(op, (ast.Eq, ast.NotEq))):
             raise self.refused(node, "ordering a text, or comparing it with a number,")
         return np.asarray(_COMPARE[type(op)][1](one, other), dtype=bool)
 

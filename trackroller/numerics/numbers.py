@@ -1,4 +1,4 @@
-"""Read a number that a user wrote, and nothing that only looks like one; compare the values of a column."""
+"""Read numbers that a user wrote, and compare the values of a column."""
 
 from __future__ import annotations
 
@@ -12,20 +12,25 @@ MAX_LENGTH = 400  # characters of a number
 
 
 def read_number(value: Any) -> float:
-    """Return a number, or a text that is one in the digits 0 to 9, as a float.
+    """Return a number, or a text that is a number in the digits 0 to 9, as a float.
 
     Parameters
     ----------
     value : int, float or str
         What the user wrote.
 
+    Returns
+    -------
+    float
+        The number.
+
     Raises
     ------
     ValueError
-        If it is no number: true and false, `3_0`, digits of other scripts, `nan`, and numbers too long to mean.
+        If the value is no number, such as true, `3_0`, digits of other scripts, `nan` and texts over 400 characters.
     """
     if isinstance(value, bool):
-        raise ValueError("true and false are no numbers")
+        raise ValueError("true and false are not numbers")
     if isinstance(value, str):
         text = value.strip()
         if len(text) > MAX_LENGTH or not _TEXT.fullmatch(text):

@@ -12,8 +12,8 @@ TRIGONOMETRIC = ("sin", "cos", "tan")
 DEGREES = frozenset(name for name, parameter in PARAMETERS.items() if parameter.unit == "deg")
 
 
-def check_depth(tree: ast.expr, text: str, field: str) -> None:
-    """Refuse an expression whose evaluation would nest too deeply.
+def check_tree(tree: ast.expr, text: str, field: str) -> None:
+    """Refuse an expression that nests too deeply, or that takes the sine, cosine or tangent of an angle in degrees.
 
     Parameters
     ----------
@@ -25,31 +25,13 @@ def check_depth(tree: ast.expr, text: str, field: str) -> None:
     Raises
     ------
     InputError
-        If the tree has more than `MAX_DEPTH` levels.
+        If the tree has more than `MAX_DEPTH` levels, or `radians` does not convert an angle in degrees.
     """
     level: list[ast.AST] = [tree]
     for _ in range(MAX_DEPTH):
         level = [child for node in level for child in ast.iter_child_nodes(node)]
-        if not level:
-            return
-    raise InputError(field, text[:40] + "...", f"an expression of at most {MAX_DEPTH} levels", "Shorten it.")
-
-
-def check_angles(tree: ast.expr, text: str, field: str) -> None:
-    """Refuse the sine, cosine or tangent of an angle in degrees.
-
-    Parameters
-    ----------
-    tree : ast.expr
-        Syntax tree of the expression.
-    text, field : str
-        The expression and the name of its field, for the message.
-
-    Raises
-    ------
-    InputError
-        If `radians` does not convert the angle.
-    """
+    if level:
+        raise InputError(field, text[:40] + "...", f"an expression of at most {MAX_DEPTH} levels", "Shorten it.")
     for call in ast.walk(tree):
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in TRIGONOMETRIC:
             degrees = _unconverted(call.args[0]) if call.args else None

@@ -1,4 +1,4 @@
-"""The options of the solver: what `trackroller.solve` takes beside the cases."""
+"""Declare the options of the solver, which `trackroller.solve` takes beside the cases."""
 
 from __future__ import annotations
 

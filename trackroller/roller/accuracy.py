@@ -1,8 +1,9 @@
-"""What an accuracy setting means for each stage, and what error it leaves.
+"""Choose the settings of each stage for an accuracy, and state the error that remains.
 
-The settings are rungs of measured ladders (`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff`).
-There is one ladder for the quadrature of forces, one for the search of the peak stress, and one for the elements of
-each rolling contact model. A preset or a tolerance takes from each ladder the cheapest rung that keeps its promise.
+The settings come from ladders of measured settings (`roller/accuracy.json`, written by
+`python -m validation.adopt.tradeoff`). There is one ladder for the quadrature of forces, one for the search of the peak
+stress, and one for the elements of each rolling contact model. A preset or a tolerance takes from each ladder the
+cheapest setting whose measured error is small enough.
 """
 
 from __future__ import annotations
@@ -24,13 +25,13 @@ from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
 
 FORCE_QUANTITIES = ("normal_force", "friction_force", "spin_moment")
 PEAK_OUTPUTS = frozenset(("peak_stress", "life", "subsurface"))
-FORCE_SHARE = 0.1  # of the tolerance that the forces of full sliding may take: they are cheap
-PEAK_SHARE = 0.2  # of the tolerance that the search for the peak may take where elements take the rest
+FORCE_SHARE = 0.1  # share of the tolerance for the forces of full sliding, whose cost is low
+PEAK_SHARE = 0.2  # share of the tolerance for the search of the peak, beside that for the elements
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Measured relative errors over the design sample: percentiles, and `bound`, which 99 % of all cases keep."""
+    """Measured relative errors over the sample of designs: percentiles, and `bound`, which 99 % of all cases keep."""
 
     median: float
     p95: float
@@ -40,14 +41,14 @@ class Levels:
 
 @dataclass(frozen=True)
 class Rung:
-    """One measured setting of a ladder: its cost [s of CPU time a case] and its errors by quantity."""
+    """One measured setting of a ladder: its cost [s of processor time a case] and its errors by quantity."""
 
     settings: Mapping[str, Any]
     cost: float
     errors: Mapping[str, Levels]
 
     def keeps(self, tolerance: float, quantities: Iterable[str], level: str = "bound") -> bool:
-        """Does it keep all quantities that it was measured for within the tolerance, by this level of error?"""
+        """Return True if the measured errors of these quantities, at this level, are within the tolerance."""
         return all(getattr(self.errors[q], level) <= tolerance for q in quantities if q in self.errors)
 
 
@@ -56,13 +57,13 @@ Ladders = Mapping[str, tuple[Rung, ...]]
 
 @functools.cache
 def ladders() -> Ladders:
-    """The measured ladders `forces`, `peak`, `fastsim`, `kalker`, each from cheap to dear."""
+    """Return the measured ladders `forces`, `peak`, `fastsim`, `kalker`, each sorted by rising cost."""
     text = resources.files("trackroller.roller").joinpath("accuracy.json").read_text(encoding="utf-8")
     return read_ladders(json.loads(text)["ladders"])
 
 
 def read_ladders(records: Mapping[str, Iterable[Mapping[str, Any]]]) -> Ladders:
-    """Ladders from the records that the measurement writes."""
+    """Return ladders from the records that the measurement writes."""
     return {name: tuple(sorted((_rung(r) for r in rungs), key=lambda r: r.cost)) for name, rungs in records.items()}
 
 
@@ -97,8 +98,8 @@ def _composed(name: str, tolerance: float, forces: Rung, peak: Rung, elements: i
     )
 
 
-# What a preset keeps in 99 % of the designs measured: error of the peak and of the forces in full sliding, which are
-# cheap; and in 95 %, as fewer designs were measured, of the forces of `kalker`. None: twice the elements of `standard`.
+# Errors that a preset keeps: of the peak and of the forces in full sliding in 99 % of the measured designs, and of the
+# forces of `kalker` in 95 %, because fewer designs were measured. None: twice the elements of `standard`.
 PROMISES: dict[str, tuple[float, float, float | None]] = {
     "preview": (2e-2, 5e-3, 2e-2),
     "standard": (4e-3, 2e-5, 8e-3),
@@ -109,7 +110,7 @@ GRID_ELEMENTS = {"preview": 20, "standard": 40, "reference": 80}
 
 
 def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung | None]:
-    """Cheapest rungs for forces, peak and elements that keep what a preset promises; the finest where none does."""
+    """Return the cheapest rungs for forces, peak and elements that keep a preset's errors, otherwise the finest."""
     peak_error, force_error, element_error = PROMISES[name]
     forces, peak, rolling = measured["forces"], measured["peak"], measured["kalker"]
     return (
@@ -133,17 +134,33 @@ PRESETS = {name: _preset(name) for name in ACCURACIES}
 def accuracy_settings(
     accuracy: str | float | Accuracy, contact_model: str, outputs: Iterable[str] = DEFAULT_OUTPUTS
 ) -> Accuracy:
-    """Settings of a preset, or the cheapest measured setting that meets a relative tolerance.
+    """Return the settings of a preset, or the cheapest measured settings that meet a relative tolerance.
 
     Parameters
     ----------
-    accuracy : preset; or relative tolerance, in (0, 1), of what is asked for: F_N relative to itself, F_T and F_A to
-        mu F_N, M_R to mu F_N sqrt(a b), friction work and peak stress to themselves. Measured to hold in 99 % of the
-        cases; life errs by the exponent k of the S-N curve times the peak. `Accuracy` objects pass.
-    contact_model : the ladder to choose from; the error of discretisation is meant, not that of the model
-    outputs : groups of results that have to meet it
+    accuracy : str, float or Accuracy
+        Preset, or relative tolerance in (0, 1). An `Accuracy` is returned as it is.
+    contact_model : str
+        Contact model, which chooses the ladder.
+    outputs : iterable of str
+        Groups of results that have to meet the tolerance.
 
-    Raises `InputError` for unknown names, numbers outside (0, 1) and tolerances below what the model reaches.
+    Returns
+    -------
+    Accuracy
+        The settings.
+
+    Raises
+    ------
+    InputError
+        For unknown names, numbers outside (0, 1) and tolerances that the finest settings do not reach.
+
+    Notes
+    -----
+    The tolerance limits the error of discretisation, not that of the model, in 99 % of the measured cases. It is
+    relative to F_N for F_N, to mu F_N for F_T and F_A, to mu F_N sqrt(a b) for M_R, and to the value itself for
+    friction work and peak stress. The relative error of the life is that of the peak times the exponent k of the S-N
+    curve.
     """
     if isinstance(accuracy, Accuracy):
         return accuracy
@@ -194,7 +211,7 @@ def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]
 
 
 def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: Iterable[str]) -> InputError:
-    """The refusal, with the tolerance that the finest rungs of the ladders reach with their shares of it."""
+    """Return the error for a tolerance that is too small; it states the smallest tolerance of the finest rungs."""
     bounds: dict[str, float] = {}
     for ladder, share in shares.items():
         known = [q for q in wanted if q in ladders()[ladder][0].errors]
@@ -207,12 +224,12 @@ def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: I
         "accuracy",
         tolerance,
         f"the finest tolerance that {model} reaches here is {reached:g}, by its {worst.replace('_', ' ')}",
-        "Use 'reference' for the best there is, or a larger tolerance, or ask only for outputs that are needed.",
+        "Use 'reference' for the finest settings, a larger tolerance, or only the outputs that you need.",
     )
 
 
 def rounded_up(value: float) -> float:
-    """The next larger number with two figures."""
+    """Return a number > 0 rounded up to two figures."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{math.ceil(value / unit - 1e-9) * unit:.3g}")
 
@@ -241,9 +258,9 @@ _RELATIVE_TO = {
 
 
 def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]:
-    """Measured errors by quantity for settings that are made of rungs; those of stages add up.
+    """Return the measured errors of settings by quantity; the errors of the stages are added.
 
-    Quantities without a measurement (settings of one's own) are missing.
+    Quantities whose settings were not measured are missing.
     """
     if contact_model == "kalker_table":  # measured for the creep forces of a patch only
         return dict.fromkeys(("friction_force", "spin_moment"), table_errors())
@@ -277,7 +294,7 @@ def _sum(one: Levels, other: Levels) -> Levels:
 
 
 def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
-    """Attributes that tell the expected errors of discretisation `levels`, by result variable."""
+    """Return attributes with the expected errors of discretisation, by result variable."""
     return {
         variable: {
             "expected_relative_error": rounded_up(max(levels[q].median, 1e-16)),

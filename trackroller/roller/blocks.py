@@ -1,4 +1,4 @@
-"""Plain results of a run of cases: taken, joined and finished without knowing where they came from."""
+"""Results of a block of cases as plain arrays, which can be selected by row and joined."""
 
 from __future__ import annotations
 
@@ -12,7 +12,19 @@ _PLAIN = ("regime", "converged", "bits", "model", "stopped")  # fields with one 
 
 @dataclass
 class Block:
-    """Values by name, first axis the case (n,); `model` is the number of the contact model in `CONTACT_MODELS`."""
+    """Results of n cases; the first axis of every array is the case.
+
+    Attributes
+    ----------
+    values : dict of str to numpy.ndarray
+        Arrays by their names in `dataset.VARIABLES`.
+    regime, converged, bits, stopped : numpy.ndarray, shape (n,)
+        Flags as in `dataset.FLAGS`; `bits` are the validity flags.
+    model : numpy.ndarray of int, shape (n,)
+        Number of the contact model in `CONTACT_MODELS`.
+    bodies : numpy.ndarray of int, shape (n, 2), optional
+        Validity flags of each body.
+    """
 
     values: dict[str, np.ndarray]
     regime: np.ndarray
@@ -26,14 +38,14 @@ class Block:
         return len(self.regime)
 
     def take(self, rows: np.ndarray) -> Block:
-        """The cases `rows`; a row may be taken more than once."""
+        """Return the cases `rows`; a row may occur more than once."""
         values = {name: array[rows] for name, array in self.values.items()}
         plain = {name: getattr(self, name)[rows] for name in _PLAIN}
         return Block(values, **plain, bodies=None if self.bodies is None else self.bodies[rows])
 
 
 def join(parts: Sequence[Block]) -> Block:
-    """Blocks one after another; fields of different grids, and those that a block lacks, are filled up with NaN."""
+    """Return blocks joined along the case; NaN fills missing values and the ends of shorter grids."""
     if len(parts) == 1:
         return parts[0]
     names = dict.fromkeys(name for part in parts for name in part.values)

@@ -1,4 +1,4 @@
-"""Why a case has no solution, or misses its tolerance, and what to do about it, in words."""
+"""State why a case has no solution, or misses its tolerance, and what the user can do."""
 
 from __future__ import annotations
 
@@ -86,13 +86,13 @@ def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -
 
 
 def _beyond_the_axis(case: CaseTable) -> bool:
-    """Whether the contacts lie beyond the axis of a concave guide, so that no turning of the roller is defined."""
+    """Return True if the contacts lie beyond the axis of a concave guide, where the turning is not defined."""
     cosine = np.cos(contact_geometry(vars(case)).contact_angle)
     return bool(np.isnan(turning_of(case.guide_curve_radius, case.guide_profile_radius, cosine)[0]))
 
 
 def _is_slender(case: CaseTable) -> bool:
-    """Whether the ellipse is more slender than the coefficients of fastsim reach."""
+    """Return True if the ellipse is too slender for the creepage coefficients of fastsim."""
     geometry = contact_geometry(vars(case))
     ellipse = shape(geometry.curvature_lateral, geometry.curvature_rolling, np.ones(1))
     ratio = float(ellipse.lateral[0] / ellipse.rolling[0])
@@ -101,6 +101,6 @@ def _is_slender(case: CaseTable) -> bool:
 
 @lru_cache(maxsize=256)
 def _goes_through_points(text: str) -> bool:
-    """Whether a profile is given by points and not smoothed."""
+    """Return True if a profile is given by points without smoothing."""
     told = json.loads(text) if text else {}
     return "points" in told and not told.get("smooth")

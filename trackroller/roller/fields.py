@@ -1,4 +1,4 @@
-"""Fields of a case: their names, and what a single value becomes."""
+"""Name the fields of a case and convert single values of them."""
 
 from __future__ import annotations
 
@@ -54,11 +54,24 @@ def mapping_text(name: str, value: Any) -> str:
 
 
 def number(name: str, value: Any) -> float:
-    """Return a number of a case as a float, NaN if it may be missing and is; raises `InputError` if it is none."""
+    """Return a number of a case as a float; NaN if the user left it out and the parameter allows this.
+
+    Parameters
+    ----------
+    name : str
+        Name in `PARAMETERS`.
+    value : object
+        What the user gave.
+
+    Raises
+    ------
+    InputError
+        If the value is no number.
+    """
     parameter = PARAMETERS[name]
     if value is None and parameter.allow_missing:
         return math.nan
-    if isinstance(value, float) and math.isnan(value):  # the caller knows whether it may be missing
+    if isinstance(value, float) and math.isnan(value):  # the caller checks whether the parameter may be left out
         return math.nan
     try:
         return read_number(value)
@@ -67,16 +80,16 @@ def number(name: str, value: Any) -> float:
 
 
 class Default(float):
-    """The value of a number that was not given."""
+    """A default that `Case` can distinguish from a number that the user gave."""
 
 
 def own_friction(law: Any) -> float:
-    """Friction at rest of a case that gives none: the first value of a table, otherwise the default."""
+    """Return the friction at rest of a case without friction coefficient: that of its law's table, or the default."""
     own = friction_laws.at_rest(law) if law else None
     return PARAMETERS["friction_coefficient"].default if own is None else own
 
 
 def own_frictions(laws: np.ndarray) -> np.ndarray:
-    """Return the friction coefficients [1] of cases that give none, from their friction laws, both of shape (n,)."""
+    """Return `own_friction` of the friction laws of n cases, shape (n,) [1]."""
     known = {repr(law): own_friction(law) for law in np.ravel(laws)}
     return np.array([known[repr(law)] for law in np.ravel(laws)]).reshape(np.shape(laws))

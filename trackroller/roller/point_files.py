@@ -36,16 +36,20 @@ def read_points(name: Any, field: str) -> list[list[float]]:
 
     Parameters
     ----------
-    name : relative path of the file
-    field : `guide_profile.file` or `roller_profile.file`, for error messages
+    name : str
+        Relative path of the file.
+    field : str
+        `guide_profile.file` or `roller_profile.file`, for error messages.
 
     Returns
     -------
-    list of [x, z] [mm]
+    list of list of float
+        Points [x, z] [mm].
 
     Raises
     ------
-    InputError : a path that is not allowed, no such file, or a line without two numbers
+    InputError
+        If the path is not allowed, the file does not exist, or a line does not hold two numbers.
     """
     path = find_beside(name, field)
     rows: list[list[float]] = []

@@ -1,4 +1,4 @@
-"""Record the inputs of one solved case in its data set, so that a sheet or a JSON text can tell all of it."""
+"""Record the inputs of one solved case in its data set, from which the sheet and the JSON text are made."""
 
 from __future__ import annotations
 
@@ -27,9 +27,14 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     ds : xarray.Dataset
         The result, without a case dimension.
     case : Case
-        Its inputs.
+        Inputs of this result.
     database : MaterialDatabase
-        The materials it was solved with.
+        Materials with which the case was solved.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same result with two more attributes.
     """
     values = plain_inputs(case)
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
@@ -38,7 +43,7 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
 
 
 def plain_inputs(case: Case) -> dict[str, Any]:
-    """Return the inputs of a case as JSON can write them."""
+    """Return the inputs of a case as values that JSON can hold."""
     return {key: _plain(value) for key, value in case.as_dict().items()}
 
 

@@ -1,6 +1,6 @@
-"""What a scene requires: which of its cases differ in their mechanics, and which symmetries spare work.
+"""Find cases with the same mechanics and mirror-symmetric rollers, so that each contact is solved only once.
 
-Nothing here changes a number beyond rounding; `solve(..., shortcuts=False)` does without all of it.
+These shortcuts change no number beyond rounding; `solve(..., shortcuts=False)` switches them off.
 """
 
 from __future__ import annotations
@@ -17,26 +17,35 @@ from trackroller.roller.case import CaseTable
 if TYPE_CHECKING:
     from trackroller.roller.equilibrium import ContactLaw
 
-# they turn forces and stresses into power, cycles and hours, and nothing else
+# these parameters only convert forces and stresses to power, cycles and hours
 AFTERWARDS = ("velocity", "guide_overrollings_per_hour")
 
 
 def is_mirror_symmetric(table: CaseTable) -> np.ndarray:
-    """Without an axial force, and with one cross-section for both sides, contact 2 mirrors contact 1; shape (n,)."""
+    """Return True for rollers whose contact 2 is the mirror image of contact 1, (n,).
+
+    They have no axial force and the same cross-section on both sides.
+    """
     drawn = (table.guide_profile != "") | (table.roller_profile != "")
     return (table.axial_force == 0.0) & ~drawn
 
 
 def is_frictionless(table: CaseTable) -> np.ndarray:
-    """No friction, no tractions: every contact model gives the same; shape (n,)."""
+    """Return True for cases without friction, in which all contact models agree, (n,)."""
     return table.friction_coefficient == 0.0
 
 
 def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
-    """Cases that differ in forces or stresses, and which of them stands for each case.
+    """Group cases whose forces, tractions and stresses are equal.
 
-    Cases that differ in travel speed (with a constant friction law), overrollings per hour or strength alone share
-    their forces, tractions and stresses. Returns the rows (m,) of the first of each kind, and its number (n,).
+    Travel speed (under constant friction), overrollings per hour and strength do not change forces and stresses.
+
+    Returns
+    -------
+    rows : numpy.ndarray of int, shape (m,)
+        First case of each group.
+    number : numpy.ndarray of int, shape (n,)
+        Number of the group of each case.
     """
     columns = [getattr(table, name) for name in PARAMETERS if name not in AFTERWARDS]
     columns += [m.youngs_modulus for m in (table.roller, table.guide)]
@@ -50,8 +59,16 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
 
 
 def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First row of each kind (m,), in the order they come, and the number of its kind for each row (n,); by bits."""
-    rows = np.ascontiguousarray(values + 0.0)  # -0.0 is 0.0
+    """Group equal rows of an array (n, k).
+
+    Returns
+    -------
+    first : numpy.ndarray of int, shape (m,)
+        First row of each group, rising.
+    number : numpy.ndarray of int, shape (n,)
+        Number of the group of each row.
+    """
+    rows = np.ascontiguousarray(values + 0.0)  # turns -0.0 into 0.0, because the rows are compared by their bytes
     keys = rows.view(np.dtype((np.void, rows.shape[1] * rows.itemsize))).reshape(-1)
     _, first, number = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first)
@@ -61,18 +78,22 @@ def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return patches with one traction direction, or without friction, by their ellipticity alone, and their length.
+    """Scale patches with one traction direction, or without friction, to the semi-axis a = 1.
 
-    Their stresses over p_max depend on b/a, mu and the direction only. The other patches stay as they are, with
-    length 1. The ratio is rounded to 13 digits, so that patches of different loads have the same one.
+    Their stresses over p_max depend on b/a, mu and the direction only. The ratio b/a is rounded to 13 digits, so that
+    patches under different loads become equal. The other patches stay unchanged.
 
     Parameters
     ----------
-    patches : records of `ellipse.patch_rows`, (n,)
+    patches : numpy.ndarray, shape (n,)
+        Records of `ellipse.patch_rows`.
 
     Returns
     -------
-    Records (n,) and lengths (n,) [mm]
+    scaled : numpy.ndarray, shape (n,)
+        Records.
+    length : numpy.ndarray, shape (n,)
+        Length that stands for 1 [mm]; 1 for unchanged patches.
     """
     plain = (patches["friction"] == 0.0) | (patches["fixed"] != 0.0)
     length = np.where(plain, patches["a"], 1.0)
@@ -90,15 +111,20 @@ def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 @dataclass(frozen=True)
 class Mirror:
-    """Rollers whose contact 2 is contact 1 seen in a mirror; `symmetric` (n,). All False: nothing is spared.
+    """Mark rollers whose two contacts are mirror images, so that only contact 1 is solved.
 
     Arrays over patches have contact 1 of all rollers first, then contact 2.
+
+    Parameters
+    ----------
+    symmetric : numpy.ndarray of bool, shape (n,)
+        True for these rollers.
     """
 
     symmetric: np.ndarray
 
     def law(self, law: ContactLaw) -> ContactLaw:
-        """The contact law, asked for one contact of symmetric rollers only."""
+        """Return a contact law that solves contact 1 of symmetric rollers and copies it to contact 2."""
         if not self.symmetric.any():
             return law
 
@@ -120,7 +146,7 @@ class Mirror:
         return one_sided
 
     def asked(self, good: np.ndarray) -> np.ndarray:
-        """Which of the existing patches `good` (2 n,) have to be solved, shape (2 n,)."""
+        """Return True for the patches among `good` (2 n,) that have to be solved, (2 n,)."""
         return good & ~np.concatenate([np.zeros_like(self.symmetric), self.symmetric])
 
     def source(self, flat: np.ndarray) -> np.ndarray:
@@ -129,7 +155,7 @@ class Mirror:
         return np.where((flat >= n) & self.symmetric[flat % n], flat % n, flat)
 
     def _copies(self, good: np.ndarray, found: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values (2 n, ...) of the solved patches, with those of contact 1 in contact 2; and which are copies."""
+        """Return the values (2 n, ...) with contact 1 copied to contact 2 of symmetric rollers, and mark the copies."""
         full = np.full((good.size, *found.shape[1:]), np.nan, dtype=found.dtype if found.dtype != bool else float)
         full[patches] = found
         half = good.size // 2
@@ -138,14 +164,14 @@ class Mirror:
         return full, twin
 
     def spread(self, good: np.ndarray, found: np.ndarray, sign: float = 1.0) -> np.ndarray:
-        """Values of the patches `asked(good)` for all of `good`; `sign` -1 for what changes sign in the mirror."""
+        """Return values of all patches `good` from those of `asked(good)`; `sign` is -1 if the mirror changes it."""
         full, twin = self._copies(good, found, self.asked(good))
         if sign < 0:
             full[twin] = -full[twin] + 0.0
         return full[good]
 
     def spread_surface(self, good: np.ndarray, found: SurfaceTractions) -> SurfaceTractions:
-        """Tractions of the patches `asked(good)` for all of `good`, x running from -a to a in each."""
+        """Return tractions of all patches `good` from those of `asked(good)`; x rises in each patch."""
 
         def mirrored(values: np.ndarray, sign: float, flip: bool = True) -> np.ndarray:
             full, twin = self._copies(good, values, self.asked(good))

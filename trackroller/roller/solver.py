@@ -1,4 +1,4 @@
-"""`solve`: from cases to a labelled data set, running only the stages that the outputs need."""
+"""Solve cases: turn them into a labelled data set and run only the stages that the outputs need."""
 
 from __future__ import annotations
 
@@ -248,7 +248,7 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
 
 
 def _tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
-    """Add the measured errors of discretisation as attributes, where the cases were solved as it was measured."""
+    """Add the measured errors of discretisation as attributes, if they were measured for these options."""
     constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
     tabled = np.any(ds.contact_model_used.values == CONTACT_MODELS.index("kalker_table"))
     model = "kalker_table" if tabled else options.contact_model

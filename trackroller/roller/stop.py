@@ -79,14 +79,17 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
 
     Parameters
     ----------
-    comparison : part of a condition
-    value : values of its left side, shape (n,), (n, 2) contacts or (n, 2, 2) contacts and bodies; a comparison
-        never holds for NaN or an infinite value
-    table : `CaseTable` of the n cases
+    comparison : Comparison
+        Part of a condition.
+    value : numpy.ndarray, shape (n,), (n, 2) or (n, 2, 2)
+        Values of the left side, by contact and body. The comparison never holds for NaN or an infinite value.
+    table : CaseTable
+        The n cases.
 
     Returns
     -------
-    Mask, shape (n,).
+    numpy.ndarray of bool, shape (n,)
+        True where the comparison holds.
     """
     n = len(table)
     known: Mapping[str, Any]

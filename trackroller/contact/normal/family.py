@@ -20,7 +20,7 @@ from trackroller.contact.normal.pressure import NormalSolution, displacement, so
 
 LATTICE = 1.6  # ratio of neighbouring lattice loads
 FINER = 4  # factor on the elements across for gaps with a rounded edge
-KEPT = 8  # number of solutions between lattice loads that are remembered
+KEPT = 8  # number of solutions between lattice loads that are kept in memory
 OVERLAP = 1e-3  # overlap over the approach that counts as contact outside the box
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
 BOX_TOLERANCE = 3e-3  # relative change of the sides of the box at which it counts as found
@@ -34,13 +34,20 @@ class Node:
 
     Attributes
     ----------
-    box : rectangle around the patch
-    shares : share of the load that each element carries, (N, M), sum 1
-    approach : of the bodies [mm]
-    largest : largest pressure over E* [1]
-    area : of the patch [mm^2]
-    reaches : True if the patch ends at an edge of the material
-    residual : of `solve_normal`
+    box : Box
+        Rectangle around the patch.
+    shares : numpy.ndarray, shape (N, M)
+        Share of the load that each element carries, with the sum 1.
+    largest : float
+        Largest pressure over E* [1].
+    approach : float
+        Approach of the bodies [mm].
+    area : float
+        Area of the patch [mm^2].
+    reaches : bool
+        True if the patch ends at an edge of the material.
+    residual : float
+        Residual of `solve_normal`.
     """
 
     box: Box
@@ -57,9 +64,11 @@ class Family:
 
     Parameters
     ----------
-    gap : of the undeformed bodies
-    elements : number of elements along each side of the box; rounded edges, which are narrow, get FINER times as many
-        across
+    gap : Gap
+        Gap of the undeformed bodies.
+    elements : int
+        Number of elements along each side of the box. A gap with a rounded edge, which is narrow, has FINER times as
+        many elements across.
     """
 
     def __init__(self, gap: Gap, elements: int) -> None:

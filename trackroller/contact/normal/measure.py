@@ -49,7 +49,10 @@ def patch_box(pressure: np.ndarray, box: Box) -> Box:
 
     Parameters
     ----------
-    pressure : (ny, nx) array of element pressures on `box`
+    pressure : numpy.ndarray, shape (ny, nx)
+        Element pressures on `box`.
+    box : Box
+        Box of the elements.
     """
     across, along = pressure.sum(axis=0), pressure.sum(axis=1)
     hx, hy = (box.high - box.low) / across.size, 2 * box.half / along.size
@@ -63,8 +66,10 @@ def patch_area(pressure: np.ndarray, hx: float, hy: float) -> float:
 
     Parameters
     ----------
-    pressure : (ny, nx) array of element pressures
-    hx, hy : element sides [mm]
+    pressure : numpy.ndarray, shape (ny, nx)
+        Element pressures.
+    hx, hy : float
+        Element sides [mm].
     """
     total = 0.0
     for column in (pressure**2).T:

@@ -38,8 +38,10 @@ class GridModel(ContactModel):
 
     Parameters
     ----------
-    patches : solves the normal problem of the rollers
-    profile_slip : True if the rigid slip follows the profile of the guide instead of its tangent
+    patches : Patches
+        Solver of the normal problem of the rollers.
+    profile_slip : bool
+        True if the rigid slip follows the profile of the guide instead of its tangent.
     """
 
     refines = True
@@ -215,17 +217,30 @@ def grid_model(
 
     Parameters
     ----------
-    name : 'sliding', 'fastsim' or 'kalker'
-    patches : solves the normal problem of n rollers
-    elastic : combined elastic constants of the rollers, arrays (n,)
-    spin_model : 'concentric', 'edge' or 'skewed', for sliding only
-    law : friction as a function of the slip speed
-    travel_speed : of the rollers, (n,) [mm/s]
-    profile_slip : True if the rigid slip follows the profile of the guide; sliding always does so
+    name : str
+        'sliding', 'fastsim' or 'kalker'.
+    patches : Patches
+        Solver of the normal problem of n rollers.
+    elastic : Elastic
+        Combined elastic constants of the rollers, arrays (n,).
+    spin_model : str
+        'concentric', 'edge' or 'skewed', for sliding only.
+    law : FrictionLaw
+        Friction as a function of the slip speed.
+    travel_speed : numpy.ndarray, shape (n,)
+        Travel speed of the rollers [mm/s].
+    profile_slip : bool
+        True if the rigid slip follows the profile of the guide; sliding always does so.
+
+    Returns
+    -------
+    GridModel
+        The model.
 
     Raises
     ------
-    InputError : unknown name
+    InputError
+        For an unknown name.
     """
     if name == "sliding":
         return GridSlidingModel(patches, spin_model, law, travel_speed)

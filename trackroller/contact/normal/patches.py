@@ -34,9 +34,12 @@ class Pressing:
 
     Attributes
     ----------
-    place : number of each patch among the m patches, -1 for the other patches, (n,)
-    per_stress : K/G of the m patches, (m,) [1/MPa]
-    shear : tractions on the m patches, once known
+    place : numpy.ndarray of int, shape (n,)
+        Number of each patch among the m patches, -1 for the other patches.
+    per_stress : numpy.ndarray, shape (m,)
+        K/G of the m patches [1/MPa].
+    shear : SurfaceTractions, optional
+        Tractions on the m patches; None before they are solved.
     """
 
     place: np.ndarray
@@ -61,14 +64,18 @@ class Patches:
 
     Parameters
     ----------
-    gaps : function of roller `row` and contact `side` (1 or 2) that returns a key, which equal gaps share, and a
-        function that makes the gap
-    modulus : contact modulus E* of the rollers, (n,) [MPa]
-    elements : number of elements along the rolling direction of the box around a patch
+    gaps : callable
+        Function of roller `row` and contact `side` (1 or 2). It returns a key, which equal gaps share, and a function
+        that makes the gap.
+    modulus : numpy.ndarray, shape (n,)
+        Contact modulus E* of the rollers [MPa].
+    elements : int
+        Number of elements along the rolling direction of the box around a patch.
 
     Raises
     ------
-    ShapeError : if no roller has both gaps. A single roller without a gap has patches of NaN.
+    ShapeError
+        If no roller has both gaps. If some rollers have both gaps, the patches of the other rollers are NaN.
     """
 
     def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int) -> None:
@@ -95,11 +102,21 @@ class Patches:
 
         Parameters
         ----------
-        load : normal forces, (m,) [N]; NaN and values <= 0 give patches of NaN
-        sine : > 0 for contact 1, < 0 for contact 2, (m,)
-        rows : numbers of the rollers, (m,)
-        fine : False interpolates between solved loads
-        pressing : patches whose pressures shear changes
+        load : numpy.ndarray, shape (m,)
+            Normal forces [N]; NaN and values <= 0 give patches of NaN.
+        sine : numpy.ndarray, shape (m,)
+            Values > 0 for contact 1, < 0 for contact 2.
+        rows : numpy.ndarray of int, shape (m,)
+            Numbers of the rollers.
+        fine : bool
+            False interpolates between solved loads.
+        pressing : Pressing, optional
+            Patches whose pressures shear changes.
+
+        Returns
+        -------
+        GridPatch
+            The m patches.
         """
         n = len(load)
         found: dict[int, np.ndarray] = {}

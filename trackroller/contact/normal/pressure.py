@@ -29,11 +29,15 @@ class NormalSolution:
 
     Attributes
     ----------
-    pressure : over the contact modulus, (ny, nx) [1]
-    approach : of the bodies [mm]
-    iterations : number of iterations
-    residual : over the approach: the largest remaining gap of an element of the patch, or the largest overlap of an
-        element outside it; the iteration stops at a small residual
+    pressure : numpy.ndarray, shape (ny, nx)
+        Pressure over the contact modulus [1].
+    approach : float
+        Approach of the bodies [mm].
+    iterations : int
+        Number of iterations.
+    residual : float
+        Largest remaining gap of an element of the patch, or largest overlap of an element outside it, over the approach
+        [1].
     """
 
     pressure: np.ndarray
@@ -83,9 +87,12 @@ def lift(shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: fl
 
     Parameters
     ----------
-    shear_lateral, shear_rolling : (ny, nx) [MPa]
-    hx, hy : element sides [mm]
-    per_stress : K/G [1/MPa]
+    shear_lateral, shear_rolling : numpy.ndarray, shape (ny, nx)
+        Shear tractions on the roller [MPa].
+    hx, hy : float
+        Element sides [mm].
+    per_stress : float
+        K/G [1/MPa].
     """
     ny, nx = shear_lateral.shape
     along_x, along_y = pressure_displacements(hx, hy, ny, nx, 0, 0)

@@ -30,8 +30,17 @@ _TINY = 1e-13  # keeps logarithms finite on the column through the pole
 
 @dataclass(frozen=True)
 class SlidingPatches:
-    """Friction of n patches: `resultants` on the roller, `power` per angular speed (n,) [N mm per rad], mean shear of
-    each element (n, N, M) [MPa]."""
+    """Friction of n patches.
+
+    Attributes
+    ----------
+    resultants : Resultants
+        Forces [N] and spin moment [N mm] on the roller, (n,).
+    power : numpy.ndarray, shape (n,)
+        Dissipation per angular speed omega [N mm per rad].
+    shear_lateral, shear_rolling : numpy.ndarray, shape (n, N, M)
+        Mean shear of each element [MPa].
+    """
 
     resultants: Resultants
     power: np.ndarray
@@ -61,11 +70,21 @@ def solve_sliding(
 
     Parameters
     ----------
-    patch, slip : patches and their kinematics, arrays (n,)
-    friction : coefficient mu, (n,) [1]
-    spin_model : 'concentric', 'edge' or 'skewed'
-    law : friction as a function of the slip speed; constant if not given
-    travel_speed : omega r_A, (n,) or scalar [mm/s]
+    patch, slip : GridPatch, Slip
+        Patches and their kinematics, arrays (n,).
+    friction : numpy.ndarray, shape (n,)
+        Coefficient mu [1].
+    spin_model : str
+        'concentric', 'edge' or 'skewed'.
+    law : FrictionLaw, optional
+        Friction as a function of the slip speed; constant if not given.
+    travel_speed : numpy.ndarray, shape (n,), or float
+        omega r_A [mm/s].
+
+    Returns
+    -------
+    SlidingPatches
+        Resultants, dissipation and shear.
 
     Notes
     -----

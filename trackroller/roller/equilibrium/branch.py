@@ -16,13 +16,23 @@ FOLLOWED = 1e-8  # largest residual of a solution that is followed further
 def follow_friction(roller: Roller, bounds: Bounds) -> tuple[Solution, np.ndarray]:
     """Follow the solutions of m rollers from little friction to the given friction.
 
-    Near self-locking, mu f = tan(alpha), the equations have several solutions or none. Loading reaches the solution
-    that grows out of the frictionless wedge. A contact that lifts off on the way stays off.
+    Near self-locking, mu f = tan(alpha), the equations have several solutions or none. A roller that is loaded from
+    zero reaches the solution that is connected to the frictionless wedge. A contact that lifts off on the way stays
+    off.
+
+    Parameters
+    ----------
+    roller : Roller
+        The m rollers.
+    bounds : Bounds
+        Lowest and highest slip of each roller.
 
     Returns
     -------
-    Solution : of the rollers at their friction; the residual is inf where the branch was lost
-    (m,) array : True for rollers that lift off
+    found : Solution
+        Solution at the given friction; the residual is inf where the branch ended before.
+    lifted : numpy.ndarray of bool, shape (m,)
+        True for rollers that lift off.
     """
     loads, law, rows = roller.loads, roller.law, roller.rows
     m = rows.size
@@ -56,14 +66,15 @@ def follow_friction(roller: Roller, bounds: Bounds) -> tuple[Solution, np.ndarra
         shed = lost & weak & (roller.axial_force != 0)
     found.residual[lost] = np.inf
     lifted |= np.where(lost, shed, ~roller.wedged(found.normal, found.forces))
-    return found, lifted & answered  # a law without any answer does not show lift-off
+    return found, lifted & answered  # rollers for which the contact law gave no forces at all did not show lift-off
 
 
 def self_locking(roller: Roller, bounds: Bounds) -> np.ndarray:
     """Return True where friction would lock the wedge without axial force, mu f >= tan(alpha), (m,).
 
-    In this case the even balance is unstable: the lateral friction turns with the load, and the slightest axial force
-    makes a contact lift off. The coarse law decides; where it has no answer, the result is False.
+    The balance with equal normal forces is then unstable: the lateral friction changes its sign with the load, and the
+    slightest axial force makes a contact lift off. The coarse law decides; where it gives no forces, the result is
+    False. Parameters are those of `follow_friction`.
     """
     loads = roller.loads
     even = Roller(replace(loads, axial_force=np.zeros_like(loads.axial_force)), roller.law, roller.rows)

@@ -1,4 +1,4 @@
-"""Equilibrium under a contact law that is expensive, by a cheap one that is corrected where the rollers balance."""
+"""Equilibrium under an expensive contact law, found with a cheap law that is corrected at the balance."""
 
 from __future__ import annotations
 
@@ -23,21 +23,23 @@ Correct = Callable[[np.ndarray, Equilibrium], np.ndarray]
 
 
 def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Equilibrium, np.ndarray]:
-    """Find the equilibrium of n rollers under a law that is corrected on the way.
+    """Find the equilibrium of n rollers under a law that is corrected after each solution.
 
     Parameters
     ----------
     loads : Loads
         Applied loads, friction and geometry, arrays (n,).
     law : ContactLaw
-        The cheap law with the corrections so far.
-    correct : Correct
-        Corrects the law at the balance of the given rollers, and returns by how much the forces change there over
-        mu F_N.
+        The cheap law with its corrections.
+    correct : callable
+        Corrects the law at the balance of given rollers and returns the largest change of a force there over mu F_N.
 
     Returns
     -------
-    The equilibrium, and the rollers (m,) that have not settled.
+    found : Equilibrium
+        The equilibrium.
+    rows : numpy.ndarray of int, shape (m,)
+        Rollers whose last correction was larger than `SETTLED`.
     """
     found = solve_equilibrium(loads, law)
     rows = _rolling(found, loads, np.arange(loads.friction.size))
@@ -57,7 +59,7 @@ def _rolling(found: Equilibrium, loads: Loads, rows: np.ndarray) -> np.ndarray:
 
 
 def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, found: Equilibrium) -> Equilibrium:
-    """Return `found` with the rollers `rows` balanced again, from where they were."""
+    """Return `found` with the rollers `rows` balanced again; the search starts from their last balance."""
     roller = Roller(loads, law, rows)
     bounds = Bounds(roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP))
     near = newton_polish(roller, roller.w_of(found.shift[rows]), found.normal_force[rows].T.copy(), bounds)
@@ -79,7 +81,7 @@ def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, found: Equili
 
 
 def solve_some(loads: Loads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
-    """Return the equilibrium of the rollers `rows` alone, found from the beginning; arrays (m,)."""
+    """Return the equilibrium of the rollers `rows`, searched without a start; arrays (m,)."""
 
     def numbered(ellipse, slip, friction, places, fine):
         return law(ellipse, slip, friction, rows[places], fine)
@@ -89,7 +91,7 @@ def solve_some(loads: Loads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
 
 
 def merged(found: Equilibrium, rows: np.ndarray, other: Equilibrium, places: np.ndarray) -> Equilibrium:
-    """Return `found` with the rollers `rows` taken from the `places` of `other`."""
+    """Return `found` with the rollers `rows` replaced by the rollers `places` of `other`."""
 
     def put(old: np.ndarray, new: np.ndarray) -> np.ndarray:
         out = old.copy()

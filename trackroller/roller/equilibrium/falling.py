@@ -3,8 +3,8 @@
 Such friction may transmit its largest torque at a moderate slip. If several slips balance the torque, the smallest one
 is taken: a gentle start reaches it, and it is stable.
 
-The search uses the coarse contact law. Near the largest transmissible torque the coarse and the fine law may differ in
-the place of the balance, and even in whether there is one; there the fine law itself is searched.
+The search uses the coarse contact law. Near the largest transmissible torque, the coarse and the fine law may disagree
+on the slip of the balance or on whether a balance exists. There the search uses the fine law.
 """
 
 from __future__ import annotations
@@ -26,14 +26,21 @@ def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bo
 
     Parameters
     ----------
-    whole : whole range of w
-    fine : True for the fine contact law
+    roller : Roller
+        The m rollers.
+    whole : Bounds
+        Whole range of w.
+    fine : bool
+        True for the fine contact law.
 
     Returns
     -------
-    Bounds : of the balance
-    (m,) array : True where there is no balance
-    (m,) array : True where the coarse law misses a balance by so little that the fine law may have one
+    bounds : Bounds
+        Bounds of the balance.
+    beyond : numpy.ndarray of bool, shape (m,)
+        True where there is no balance.
+    unsure : numpy.ndarray of bool, shape (m,)
+        True where the coarse law misses a balance by so little that the fine law may have one.
     """
     w_low, w_high = whole
     way = np.sign(roller.motor_force)  # driving needs a slip < 0
@@ -66,21 +73,27 @@ def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bo
 
 
 def balance_again(roller: Roller, whole: Bounds) -> tuple[Solution, Bounds, np.ndarray]:
-    """Find balances by the fine law alone, for rollers where the coarse law misleads.
+    """Find balances by the fine law alone, for rollers whose coarse law has its balance elsewhere or none.
 
     Parameters
     ----------
-    whole : whole range of w
+    roller : Roller
+        The m rollers.
+    whole : Bounds
+        Whole range of w.
 
     Returns
     -------
-    Solution : the balances
-    Bounds : from no slip to beyond the balance
-    (m,) array : True where there is no balance
+    found : Solution
+        The balances.
+    bounds : Bounds
+        Bounds from zero slip to beyond the balance.
+    beyond : numpy.ndarray of bool, shape (m,)
+        True where there is no balance.
     """
     (low, high), beyond, _ = first_balance(roller, whole, fine=True)
     w, normal = bracketed(roller, Bounds(low.copy(), high.copy()), fine=True, sweeps=SWEEPS, tolerance=1e-6)
-    # the normal forces lagged behind the search, so that the balance may lie slightly outside its bounds
+    # the search used the normal forces of the step before, so the balance may lie slightly outside its bounds
     room = 0.5 * (high - low)
     wider = Bounds(np.maximum(low - room, whole.low), np.minimum(high + room, whole.high))
     found = newton_polish(roller, w, normal, wider)
@@ -88,7 +101,7 @@ def balance_again(roller: Roller, whole: Bounds) -> tuple[Solution, Bounds, np.n
 
 
 def _narrow(low, high, way, rows, before, after, at_rest: bool) -> None:
-    """Narrow the bounds of `rows` to the slips `before` and `after`; `at_rest` the balance has the opposite slip."""
+    """Narrow the bounds of `rows` to the slips `before` and `after`, or to the opposite slip if `at_rest`."""
     drives = way[rows] < 0
     if at_rest:
         low[rows] = np.where(drives, 0.0, low[rows])
@@ -99,7 +112,7 @@ def _narrow(low, high, way, rows, before, after, at_rest: bool) -> None:
 
 
 def _climb(excess, rows, summit, way, low, high) -> np.ndarray:
-    """Search a slip that suffices around the highest point by golden sections; return True where there is one, (m,)."""
+    """Search the largest torque by golden sections; return True where it reaches the required torque, (m,)."""
     left, right = summit[0].copy(), summit[2].copy()
     inner = [left + GOLDEN * (right - left), right - GOLDEN * (right - left)]
     value = [excess(w, rows) for w in inner]

@@ -1,4 +1,4 @@
-"""Roots of the balances of a roller: bracketing in the slip with a coarse law, then Newton's method on all unknowns."""
+"""Find roots of the balances of a roller: bracket the slip with a coarse law, then refine all unknowns by Newton."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 
 from trackroller.roller.equilibrium.roller import Roller
 
-SMALL = 0.01  # rolling radius over the size of the patch, below which the digits of the forces are checked
+SMALL = 0.01  # rolling radius over the size of the patch, below which the error of the forces is estimated
 EPS = 2.0**-53
-# Changes below the share SETTLED of the goal are not followed further. Models in closed form (goal up to CLOSED) cost
-# little, and rollers at the ends of the parameter ranges need their last digits: they are followed to the end.
+# The iteration of a roller ends when a step changes its forces by less than SETTLED times the goal. Models in closed
+# form (goal up to CLOSED) are cheap and iterate until rounding ends them, which rollers at the ends of the parameter
+# ranges need.
 SETTLED, CLOSED = 0.1, 1e-11
 
 
@@ -64,13 +65,23 @@ def bracketed(
 
     Parameters
     ----------
-    fine : True for the fine contact law
-    sweeps : largest number of steps
-    tolerance : change of w and width of the bounds at which the search ends
+    roller : Roller
+        The m rollers.
+    bounds : Bounds
+        Lowest and highest w.
+    fine : bool
+        True for the fine contact law.
+    sweeps : int
+        Largest number of steps.
+    tolerance : float
+        Change of w and width of the bounds at which the search ends.
 
     Returns
     -------
-    w (m,) and normal forces (2, m) [N]
+    w : numpy.ndarray, shape (m,)
+        Slip.
+    normal : numpy.ndarray, shape (2, m)
+        Normal forces [N].
     """
     m, (w_low, w_high) = roller.rows.size, bounds
     normal = roller.floored(roller.without_friction())
@@ -93,7 +104,7 @@ def bracketed(
         new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
         moved = np.abs(new - w[active])
         w[active] = new
-        # a row whose balance holds needs no further step here; Newton's method refines it
+        # Newton's method refines rollers whose torque is balanced already
         unmet = np.abs(t) > (settled(roller) if fine else 0.0) * roller.torque_scale[active]
         active = active[(moved > tolerance) & (hi - lo > tolerance) & unmet]
         if active.size == 0:
@@ -102,7 +113,7 @@ def bracketed(
 
 
 def settled(roller: Roller) -> float:
-    """Return the relative change of forces below which a row is not followed further."""
+    """Return the relative change of forces at which the iteration of a roller ends."""
     return SETTLED * roller.goal if roller.goal > CLOSED else 0.0
 
 
@@ -148,14 +159,21 @@ def newton_polish(
 
     Parameters
     ----------
-    w, normal : start, (m,) and (2, m) [N]
-    bounds : w stays between these
-    enough : residual at which a row ends; 0 goes on until rounding or the noise of the law ends it
-    steps : largest number of steps
+    roller : Roller
+        The m rollers.
+    w, normal : numpy.ndarray, shape (m,) and (2, m)
+        Slip and normal forces [N] at the start.
+    bounds : Bounds
+        Limits of w.
+    enough : float
+        Residual at which the iteration of a roller ends; with 0 only rounding or the noise of the law ends it.
+    steps : int
+        Largest number of steps.
 
     Returns
     -------
-    Solution : the best state that each row met
+    Solution
+        State of each roller with the smallest residual.
     """
     m = w.size
     best = Solution(np.full(m, np.inf), w.copy(), normal.copy(), np.full((3, 2, m), np.nan))
@@ -194,7 +212,7 @@ def newton_polish(
 def _broyden(jac: np.ndarray, step: np.ndarray, change: np.ndarray) -> np.ndarray:
     """Return Broyden's update (m, 3, 3) after a step (m, 3) that changed the residuals by `change` (m, 3).
 
-    A zero step gives the update nothing to learn from: it is NaN, and the row ends as singular.
+    Broyden's update needs a nonzero step. After a zero step it is NaN, and the roller is reported as singular.
     """
     miss = change - np.einsum("mij,mj->mi", jac, step)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -28,13 +28,20 @@ class Loads:
 
     Attributes
     ----------
-    radial_force, axial_force, motor_force, friction, contact_angle, guide_profile_radius, rolling_radius : see
-        `trackroller.parameters`; the rolling radius is r_A
-    shape : Hertz shape of the contacts
-    difference_step : relative step for derivatives of the contact law, above the noise of iterative laws
-    converged : largest relative residual of a solution
-    falling : True if friction depends on the slip speed
-    at_high_speed : friction in complete slip over the coefficient `friction`
+    radial_force, axial_force, motor_force, friction, contact_angle, guide_profile_radius : numpy.ndarray, shape (n,)
+        See `trackroller.parameters`.
+    rolling_radius : numpy.ndarray, shape (n,)
+        r_A.
+    shape : HertzShape
+        Hertz shape of the contacts.
+    difference_step : float
+        Relative step for derivatives of the contact law, above the noise of iterative laws.
+    converged : float
+        Largest relative residual of a solution.
+    falling : bool
+        True if friction depends on the slip speed.
+    at_high_speed : float
+        Friction in complete slip over the coefficient `friction`.
     """
 
     radial_force: np.ndarray
@@ -65,8 +72,10 @@ class Loads:
 
         Parameters
         ----------
-        normal, shift : normal force [N] and r_Delta0 [mm], (2 m,): contact 1 of all rollers, then contact 2
-        rows : number of the roller of each contact, (2 m,)
+        normal, shift : numpy.ndarray, shape (2 m,)
+            Normal force [N] and r_Delta0 [mm] of contact 1 of all rollers, then of contact 2.
+        rows : numpy.ndarray of int, shape (2 m,)
+            Number of the roller of each contact.
         """
         side = np.repeat([1.0, -1.0], len(rows) // 2)
         slip = Slip(
@@ -92,13 +101,13 @@ class Roller:
         self.load = np.abs(self.radial_force) + np.abs(self.axial_force)
         self.largest = self.load * np.maximum(1e3, 10.0 / np.minimum(self.sin, self.cos))
         # The slip varies over the patch by the spin and by the curved profile of the guide, which ends at its equator.
-        # On a roller smaller than its patch the drilling friction decays slowly with the slip, hence the last factor.
+        # On a roller smaller than its patch, the spin moment decays slowly with the slip; the last factor counts this.
         root, flat = np.cbrt(self.load * np.maximum(1.0, 0.5 / self.cos)), loads.guide_profile_radius[rows] * self.cos
         wide, long = self.shape.lateral, self.shape.rolling
         bend = np.minimum((wide * root * self.cos) ** 2 / flat, flat)
         varies = 0.5 * (self.sin * np.hypot(wide, long) * root + bend)
         self.slip_scale = varies * (1.0 + varies / self.radius)
-        # the torque is compared with the largest torque of friction, so that little friction does not hide an imbalance
+        # the residual of the torque is relative to the largest torque of friction, so that it shows under low friction
         pressing = np.abs(self.radial_force) / self.cos + np.abs(self.axial_force)
         self.torque_scale = self.friction * pressing * (1.0 + varies / self.radius) + np.abs(self.motor_force)
 

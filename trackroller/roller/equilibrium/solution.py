@@ -34,16 +34,23 @@ class Equilibrium:
 
     Attributes
     ----------
-    regime : number in `parameters.REGIMES`, (n,)
-    converged : True where the residual is below the limit of the contact model, (n,)
-    residual : largest relative imbalance, (n,): forces over the applied loads, torque over the largest torque of
-        friction and motor. On rollers small against their patches it is no less than the uncertainty of the
-        transmitted force over the largest friction force.
-    jamming : True where friction alone carries the lateral load, (n,); for a roller that has lifted off, True if
-        friction would do so without axial force
-    shift : rolling radius shift r_Delta0, (n,) [mm]
-    normal_force : (n, 2) [N]
-    forces : resultants of both contacts, arrays (n, 2)
+    regime : numpy.ndarray of int, shape (n,)
+        Number in `parameters.REGIMES`.
+    converged : numpy.ndarray of bool, shape (n,)
+        True where the residual is below the limit of the contact model.
+    residual : numpy.ndarray, shape (n,)
+        Largest relative imbalance: forces over the applied loads, torque over the largest torque of friction and motor.
+        On rollers much smaller than their patches, it is at least the uncertainty of the transmitted force over the
+        largest friction force.
+    jamming : numpy.ndarray of bool, shape (n,)
+        True where friction alone carries the lateral load. For a roller that has lifted off, True if friction would
+        carry the lateral load without axial force.
+    shift : numpy.ndarray, shape (n,)
+        Rolling radius shift r_Delta0 [mm].
+    normal_force : numpy.ndarray, shape (n, 2)
+        Normal forces [N].
+    forces : Resultants
+        Resultants of both contacts, arrays (n, 2).
     """
 
     regime: np.ndarray
@@ -57,7 +64,7 @@ class Equilibrium:
 
 @dataclass
 class _Answer:
-    """What is known of n rollers: regime, residual, jamming, shift (n,), normal forces (2, n), forces (3, 2, n)."""
+    """Solution in progress: regime, residual, jamming, shift (n,), normal forces (2, n), contact forces (3, 2, n)."""
 
     regime: np.ndarray
     residual: np.ndarray
@@ -89,12 +96,15 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
 
     Parameters
     ----------
-    loads : applied loads, friction and geometry, arrays (n,)
-    law : contact law; with `fine=False` it may be cheap and rough
+    loads : Loads
+        Applied loads, friction and geometry, arrays (n,).
+    law : ContactLaw
+        Contact law; with `fine=False` it may be cheap and rough.
 
     Returns
     -------
     Equilibrium
+        Solution of the n rollers.
 
     Notes
     -----
@@ -165,7 +175,7 @@ def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, n
     drives = np.flatnonzero(roller.motor_force < 0)
     spins = Roller(roller.loads, roller.law, roller.rows[drives])
     torque = spins.torque(_forces_at(spins, whole.low[drives]))
-    # where the law gives no answer for this patch, the complete friction decides
+    # where the law gives no forces for this patch, the complete friction decides
     beyond[drives] = np.where(np.isnan(torque), -spins.motor_force > complete[drives], torque < 0)
     return whole, beyond, np.zeros(beyond.size, bool)
 
