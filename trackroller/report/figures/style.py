@@ -54,7 +54,6 @@ _RC: dict[Any, Any] = {
     "patch.linewidth": 0.6,
     "font.family": ["DejaVu Sans"],
     "mathtext.fontset": "dejavusans",
-    "axes.formatter.use_mathtext": True,
     "legend.frameon": False,
     "svg.fonttype": "path",
     "svg.hashsalt": "trackroller",
@@ -121,12 +120,14 @@ def head(figure: Figure, title: str, subtitle: str = "") -> None:
     figure._trackroller_title = "\n".join(lines)  # type: ignore[attr-defined]
 
 
-def _set_title(figure: Figure) -> None:
+def _lay_out(figure: Figure) -> None:
+    """Lay out a figure once for both of its files, and set its title."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
     # the layout moves one super title only, in one weight: the bold lines are laid over its blank ones
     title, room = getattr(figure, "_trackroller_title", ""), getattr(figure, "_suptitle", None)
     if not title or room is None:
         return
-    figure.draw_without_rendering()
     top = room.get_window_extent().transformed(figure.transFigure.inverted()).y1
     figure.text(
         0.015, top, title, ha="left", va="top", fontsize=7.5, fontweight="bold", linespacing=1.17, in_layout=False
@@ -159,7 +160,7 @@ def finish(figure: Figure) -> None:
 
 def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     """Write `name`.svg and `name`.png, both whole or not at all, and return the two paths."""
-    _set_title(figure)
+    _lay_out(figure)
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
     for path in paths:
         metadata = {"Date": None} if path.suffix == ".svg" else None  # the same data gives the same file
