@@ -10,13 +10,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, sampled_study
 
-from trackroller.analysis.pareto import pareto
+from trackroller.analysis.pareto import pareto, study_pareto
+from trackroller.analysis.sensitivity import analyse
 from trackroller.report.explorer.page import write_explorer
+from trackroller.report.page import write_report
 from trackroller.report.view import StudyView
+from trackroller.study.config import parse_study
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
 
@@ -192,6 +196,55 @@ def test_ten_pareto_sets_are_those_of_the_package(browser, pages, grid, sample):
         page.close()
 
 
+def robust_study():
+    """An inner/outer design of six points: what lengthens the life also costs friction power."""
+    study = parse_study(
+        {
+            "name": "robust",
+            "design": "inner_outer",
+            "samples": 50,
+            "outputs": ["forces", "friction_work", "life"],
+            "factors": {
+                "velocity": {"values": [30.0, 45.0, 60.0]},
+                "roller_material": {"values": ["POM", "PA6"]},
+                "friction_coefficient": {"uniform": [0.1, 0.3]},
+            },
+            "pareto": {"b10(roller_life_hours)": "max", "mean(friction_power)": "min"},
+        }
+    )
+    ds = study.design()
+    friction, speed = ds["friction_coefficient"].values, ds["velocity"].values
+    pom = np.where(ds["roller_material"].values.astype(str) == "POM", 1.0, 0.4)
+    ds["roller_life_hours"] = ("case", speed**2 * pom / friction, {"units": "h"})
+    ds["friction_power"] = ("case", friction * speed, {"units": "W"})
+    ds["regime"] = ("case", np.zeros(ds.sizes["case"], np.int8))
+    return ds.assign_attrs(study=study.merged())
+
+
+def test_goals_that_are_statistics_compare_design_points(browser, place):
+    ds = robust_study()
+    page = browser.open(written(ds, place, "robust"))
+    said = page.run("document.querySelector('#explorer').textContent")
+    assert "statistics over its scatter" in said and "it stands in report.html under Decide" in said
+    assert page.run("trackroller.points()") == [] and page.complaints == []
+    page.close()
+    analyse(place / "robust" / "study.nc", place / "robust" / "sensitivity.nc")
+    front = study_pareto(ds, xr.load_dataset(place / "robust" / "sensitivity.nc"))
+    best = np.flatnonzero(front["optimal"].values == 1)
+    assert 1 < len(best) < front.sizes["row"] == 6
+    page = browser.open(write_explorer(place / "robust"))
+    assert page.run("trackroller.points()") == best.tolist()
+    assert f"{len(best)} of 6 are beaten by no other" in page.run("document.querySelector('.points').textContent")
+    page.run("document.querySelectorAll('.points button')[1].click()")
+    point = front.isel(row=best[1])
+    own = (ds["velocity"] == point["velocity"]) & (
+        ds["roller_material"].astype(str) == str(point["roller_material"].item())
+    )
+    assert page.run("trackroller.selected()") == np.flatnonzero(own).tolist() and int(own.sum()) == 50
+    assert page.complaints == []
+    page.close()
+
+
 def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, grid):
     constraints = ["roller_peak_stress < 250 or axial_force == 0", "regime != full_slip"]
     told = yaml.safe_load(grid.attrs["study"]) | {"constraints": constraints}
@@ -264,6 +317,25 @@ def test_a_click_pins_a_case_and_two_stand_side_by_side(page, grid):
     assert commands[0].startswith("trackroller solve --set axis_distance=21.75")
     level = grid["roller_profile_radius"].values[np.unravel_index(one, grid["regime"].shape)[1]]
     assert f"--set roller_profile_radius={level}" in commands[0]
+
+
+def test_pinned_cases_tell_how_far_they_are_from_lift_off(page, grid):
+    regime = np.moveaxis(grid["regime"].values, grid["regime"].dims.index("axial_force"), -1)
+    numbers = np.moveaxis(
+        np.arange(grid["regime"].size).reshape(grid["regime"].shape), grid["regime"].dims.index("axial_force"), -1
+    )
+    lifts = (regime == 2).argmax(axis=-1) * (regime == 2).any(axis=-1)
+    place = np.argwhere((regime[..., 0] != 2) & (lifts > 0))[0]
+    row, end = int(numbers[(*place, 0)]), int(lifts[tuple(place)])
+    page.run(f"trackroller.pin({row})")
+    told = page.run("[...document.querySelectorAll('.pinned tbody tr')].map(e => e.textContent)")
+    ends = FACTORS["axial_force"][end - 1 : end + 1]
+    assert f"Lift-off by axial force, all else equalbetween {ends[0]:g} and {ends[1]:g} N" in told
+    least = grid["normal_force"].values.reshape(-1, 2)[row].min()
+    (said,) = [t for t in told if t.startswith("Least normal force (0 at lift-off)")]
+    assert float(re.search(r"\)([\d.]+) N", said)[1]) == pytest.approx(least, rel=5e-3)
+    sheet = page.run("[...document.querySelectorAll('.pinned .command code')].at(-1).textContent")
+    assert sheet == f"{page.run(f'trackroller.commands({row})[0]')} --report case-{row}.html"
 
 
 def test_table_and_commands_are_copied(browser, pages):
@@ -435,6 +507,52 @@ def test_a_hundred_thousand_rows_are_all_there(browser, place):
     page.run("trackroller.select({friction_coefficient: [0.02, 0.2]})")
     assert shown(page)[0] == mask.sum()
     assert page.run("document.querySelectorAll('.cases .row').length") < 60 and page.complaints == []
+    page.close()
+
+
+@pytest.mark.long
+def test_a_larger_study_shows_a_stated_sample_with_its_own_pareto_set(browser, place):
+    """Of 210,000 cases at most 200,000 are shown: rare states, and the sets that `pareto` finds for its goals."""
+    ds = as_table(sampled_study(210_000))
+    goals = {"roller_life_hours": "max", "roller_peak_stress": "min"}
+    told = yaml.safe_load(ds.attrs["study"]) | {"pareto": goals}
+    ds = ds.assign_attrs(study=yaml.safe_dump(told))
+    page = browser.open(written(ds, place, "sampled"))
+    said = page.run("document.querySelector('#explore p').textContent")
+    view, rows = StudyView.of(ds), page.run("trackroller.selected()")
+    assert said.startswith(f"{len(rows):,} of 210,000 cases are shown: a sample by regime and validity")
+    assert 199_900 < len(rows) <= 200_000 and len(rows) == shown(page)[0] == len(set(rows)) and max(rows) < 210_000
+    assert shown(page)[1] == view.valid[rows].sum()
+    for regime in np.unique(view.regime):
+        share = (view.regime == regime).mean()
+        assert (view.regime[rows] == regime).mean() == pytest.approx(share, rel=0.02)
+    out = pareto(ds, goals)
+    wanted = out["row"].values[out["optimal"].values == 1].tolist()
+    assert page.run(f"trackroller.pareto({json.dumps(goals)})") == wanted
+    assert page.complaints == []
+    page.close()
+
+
+SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 300"><rect width="400" height="300"/></svg>'
+
+
+def test_a_closed_figure_returns_to_its_place_and_keeps_the_focus(browser, place, grid):
+    folder = place / "figures"
+    folder.mkdir()
+    for name in ("life_map", "regime_map", "pareto-front"):
+        (folder / f"{name}.svg").write_text(SVG)
+    grid.to_netcdf(place / "enlarged.nc")
+    page = browser.open(write_report(place / "enlarged.nc", folder, place / "report.html"))
+    for close in ("document.querySelector('figure:target .close').click()", "escape"):
+        page.box("#regime_map a")
+        page.run("document.querySelector('#regime_map a').click()")
+        page.until("document.querySelector('figure:target')?.id === 'regime_map'")
+        page.key("Escape") if close == "escape" else page.run(close)
+        page.until("document.querySelector('figure:target') === null")
+        assert page.run("document.activeElement.id") == "regime_map-small"
+        top, height = page.run("(b => [b.top, innerHeight])(document.activeElement.getBoundingClientRect())")
+        assert -1 <= top < height
+    assert page.complaints == []
     page.close()
 
 

@@ -24,6 +24,7 @@ CONTACT_RESULTS = (
     "semi_axis_rolling",
     "friction_power",
     "friction_energy_per_distance",
+    "stick_area_fraction",
 )
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles", "error_estimate")
 PLAIN_RESULTS = (

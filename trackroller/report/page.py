@@ -77,7 +77,7 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     sens = xr.load_dataset(sensitivity_nc) if sensitivity_nc is not None and sensitivity_nc.is_file() else None
     content = contents(ds, sens)
     content["figures"] = _placed(figures(Path(figures_dir)))
-    content["explorer"] = _guarded(lambda: None, explorer, ds)
+    content["explorer"] = _guarded(lambda: None, explorer, ds, None, sens)
     write_text(Path(out_html), secured(render("report.html.j2", content, cell=cell)))
     export([t for key in ("decide", "why", "ends", "models") for t in content[key]], Path(out_html).parent / "tables")
     return Path(out_html)

@@ -58,13 +58,32 @@ function utilisation(study, row) {
   return found;
 }
 
+// How far a case is from lift-off: its least normal force, and in a grid the axial force at which the contact lifts.
+function liftOff(study, row) {
+  const loads = ["1", "2"].map((i) => (study.columns.get(`normal_force_${i}`) ?? study.columns.get(`normal_force[${i}]`))?.values[row] ?? NaN);
+  const [least, most] = [Math.min(...loads), Math.max(...loads)];
+  const found = least >= 0 ? [["Least normal force (0 at lift-off)", `${number(least, 3)} N, ${number((100 * least) / most, 3)} % of the other`]] : [];
+  const axial = study.columns.get("axial_force");
+  if (!study.grid || axial?.role !== "factor") return found;
+  const others = study.of("factor").filter((c) => c !== axial);
+  const lift = study.columns.get("regime").levels.indexOf("lift_off");
+  const states = new Map();
+  for (let i = 0; i < study.count; i++) if (others.every((c) => c.codes[i] === c.codes[row])) states.set(axial.values[i], study.columns.get("regime").codes[i] === lift);
+  const forces = [...states.keys()].sort((a, b) => a - b);
+  const first = forces.find((f) => f >= Math.max(0, axial.values[row]) && states.get(f));
+  const last = forces.findLast((f) => (first === undefined || f < first) && !states.get(f));
+  if (last === undefined) return found;
+  const told = first === undefined ? `none up to ${number(last)} N` : `between ${number(last)} and ${number(first)} N`;
+  return [...found, ["Lift-off by axial force, all else equal", told]];
+}
+
 // All that is known of a case: heads of sections, and pairs of words and value.
 function facts(study, row) {
   const rows = (list) => list.map((c) => [c.label, withUnit(c, row)]);
   const states = ["regime", "state", "reason"].map((name) => study.columns.get(name)).filter(Boolean);
   const parts = [
     ["Inputs", rows(study.of("factor"))],
-    ["Results", [...rows(study.of("output")), ...utilisation(study, row)]],
+    ["Results", [...rows(study.of("output")), ...utilisation(study, row), ...liftOff(study, row)]],
     ["Regime and validity", [...rows(states), ["Flags", flags(study, row)]]],
   ];
   const details = study.of("detail");
@@ -123,6 +142,7 @@ export function cards(model) {
     const commands = model.pins.flatMap((row, i) => [
       command(`Solve ${"AB"[i]} again`, solveCommand(study, row)),
       command(`Compare ${"AB"[i]} with the stored result`, repeatCommand(study, row)),
+      command(`Sheet of ${"AB"[i]}, with the exact limits`, `${solveCommand(study, row)} --report case-${study.caseOfRow(row)}.html`),
     ]);
     replace(
       pinned,

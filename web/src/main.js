@@ -243,6 +243,7 @@ function start(study, place) {
       throw new RangeError(`there is no row ${number}`);
     },
     commands: (row) => [solveCommand(study, row), repeatCommand(study, row)],
+    points: () => aims.points(),
     slice: () => cuts.curves(),
     fragment: () => written(model, parts),
   };
@@ -263,9 +264,9 @@ async function open() {
   }
 }
 
-// Escape closes an enlarged figure; an address that names no element leaves the page where it is.
+// Escape closes an enlarged figure as its link Close does: the figure keeps place and focus.
 addEventListener("keydown", (event) => {
-  if (event.key === "Escape" && document.querySelector("figure:target")) location.hash = "closed";
+  if (event.key === "Escape") document.querySelector("figure:target .close")?.click();
 });
 
 open();

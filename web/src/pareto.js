@@ -66,16 +66,21 @@ export function paretoRows(table, goals, limits) {
     const best = models.levels.indexOf(table.compared);
     checks.push((row) => models.codes[row] === best);
   }
-  let rows = [];
+  const rows = [];
   for (let i = 0; i < table.count; i++) {
     if (regime[i] <= last && !costs.some((cost) => Number.isNaN(cost[i])) && checks.every((test) => test(i))) rows.push(i);
   }
+  return frontOf(costs, rows);
+}
+
+// The rows that no other beats in every cost, in rising order.
+export function frontOf(costs, candidates) {
   // in lexicographic order only an earlier row can beat a row
   const order = (a, b) => {
     for (const cost of costs) if (cost[a] !== cost[b]) return cost[a] - cost[b];
     return a - b;
   };
-  rows = Uint32Array.from(rows).sort(order);
+  const rows = Uint32Array.from(candidates).sort(order);
   const front = [];
   const beats = (a, b) => costs.every((cost) => cost[a] <= cost[b]) && costs.some((cost) => cost[a] < cost[b]);
   for (const row of rows) if (!front.some((other) => beats(other, row))) front.push(row);

@@ -11,33 +11,19 @@ import xarray as xr
 
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import EXACTNESS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.report.columns import CONTACT_RESULTS
 from trackroller.roller.geometry import contact_geometry
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import flat, read_study
 
 MODEL = "contact_model"
 INPUTS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, "material_pair", *(o for o in OPTION_FACTORS if o != MODEL))
-RESULTS = (
-    "regime",
-    "normal_force",
-    "lateral_force",
-    "driving_force",
-    "spin_moment",
-    "semi_axis_lateral",
-    "semi_axis_rolling",
-    "friction_energy_per_distance",
-    "friction_energy_balance",
-    "peak_stress",
-    "stick_area_fraction",
-    "roller_life_hours",
-    "guide_life_hours",
-    "life_cycles",
-)
 LIVES = (
     ("roller_life_hours", "life of the roller", "h"),
     ("guide_life_hours", "life of the guide", "h"),
     ("life_cycles", "life", "overrollings"),
 )
+RESULTS = ("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress", *(life for life, *_ in LIVES))
 
 
 def pairs(ds: xr.Dataset) -> xr.Dataset | None:

@@ -37,7 +37,7 @@ def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
         part = array.view(np.uint8).reshape(len(array), -1).T.tobytes()
         entry: dict[str, Any] = {key: getattr(column, key) for key in ("name", "label", "unit", "role", "log")}
         if column.levels is not None:
-            entry["levels"] = [_plain(level) for level in column.levels]
+            entry["levels"] = [plain_level(level) for level in column.levels]
             entry["texts"] = list(column.texts)
             entry["number"] = all(isinstance(level, float) for level in column.levels)
         header.append(entry | {"type": array.dtype.str[1:], "start": start, "bytes": len(part)})
@@ -54,6 +54,6 @@ def _numbers(column: Column) -> np.ndarray:
     return np.ascontiguousarray(column.values + 1, dtype=kind)
 
 
-def _plain(level: Any) -> Any:
+def plain_level(level: Any) -> Any:
     """Return a level as JSON can hold it: infinity becomes a text."""
     return str(level) if isinstance(level, float) and not math.isfinite(level) else level

@@ -20,25 +20,27 @@ from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS
 from trackroller.report.columns import study_dims
 from trackroller.report.explorer.inputs import solve_inputs, strengths
-from trackroller.report.explorer.pack import pack
+from trackroller.report.explorer.pack import pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
-from trackroller.report.numbers import count
+from trackroller.report.numbers import capital, count, long_name, with_unit
 from trackroller.report.view import StudyView
 from trackroller.study.files import StudyFolder, write_text
+from trackroller.study.goals import statistic
 from trackroller.study.outputs import case_dims, read_study
 
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
 
 
-def explorer(ds: xr.Dataset, view: StudyView | None = None) -> dict[str, Any]:
+def explorer(ds: xr.Dataset, view: StudyView | None = None, sens: xr.Dataset | None = None) -> dict[str, Any]:
     """Return what the template of the explorer needs.
 
     Parameters
     ----------
     ds : gathered study
     view : the same study as a table, if it is there already
+    sens : analysis of the study, for the design points of an inner/outer design
 
     Returns
     -------
@@ -67,6 +69,7 @@ def explorer(ds: xr.Dataset, view: StudyView | None = None) -> dict[str, Any]:
         "goals": view.study.get("pareto") or default_objectives(ds),
         "constraints": list(view.study.get("constraints") or ()),
         "compared": compared(view),
+        "points": design_points(ds, sens),
         "columns": packed,
     }
     said = f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, all cases of rare"
@@ -98,6 +101,30 @@ def pareto_rows(ds: xr.Dataset, cases: int) -> np.ndarray:
         marked[front["row"].values[front["optimal"].values == 1]] = True
         marked = marked[_design_rows(ds)]
     return marked
+
+
+def design_points(ds: xr.Dataset, sens: xr.Dataset | None) -> dict[str, Any] | None:
+    """Return the design points of an inner/outer design by the study's own goals, which are statistics over scatter.
+
+    Returns
+    -------
+    `goals` as in the study file; with an analysis also `factors`, and `labels` and `values` by name. None if the goals
+    of the study are those of single cases.
+    """
+    goals = read_study(ds).get("pareto") or {}
+    if not any(statistic(name)[0] for name in goals):
+        return None
+    try:
+        front = study_pareto(ds, sens)
+    except InputError:  # the analysis was made for other goals
+        front = None
+    if front is None:
+        return {"goals": goals, "labels": {}}
+    factors = [name for name in front.attrs["factors"].split(", ") if name]
+    names = dict.fromkeys([*factors, *goals])
+    labels = {name: _heading(front[name], name) for name in names}
+    values = {name: [plain_level(value) for value in front[name].values.tolist()] for name in names}
+    return {"goals": goals, "factors": factors, "labels": labels, "values": values}
 
 
 def _design_rows(ds: xr.Dataset) -> np.ndarray:
@@ -138,6 +165,20 @@ def secured(page: str) -> str:
     return page.replace(POLICY, "; ".join(policy), 1)
 
 
+def _heading(column: xr.DataArray, name: str) -> str:
+    words, unit = str(column.attrs.get("long_name") or long_name(name)), str(column.attrs.get("units", ""))
+    return with_unit(capital(words), unit) if unit not in ("", "1") else capital(words)
+
+
+def _analysis(study_nc: Path) -> xr.Dataset | None:
+    """Return the analysis beside a study, None if there is none."""
+    path = study_nc.with_name("sensitivity.nc")
+    if not path.is_file():
+        return None
+    with xr.open_dataset(path) as opened:
+        return opened.load() if opened.data_vars else None
+
+
 def write_explorer(study_nc: Path, out: Path | None = None) -> Path:
     """Write the explorer of a gathered study as one HTML file.
 
@@ -169,7 +210,7 @@ def write_explorer(study_nc: Path, out: Path | None = None) -> Path:
     content = {
         "name": str(view.study.get("name") or path.parent.name),
         "description": str(view.study.get("description") or ""),
-        "explorer": explorer(ds, view),
+        "explorer": explorer(ds, view, _analysis(path)),
     }
     out = path.with_name("explorer.html") if out is None else Path(out)
     write_text(out, secured(render("explorer.html.j2", content)))

@@ -11,7 +11,7 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.report.columns import study_dims
+from trackroller.report.columns import BODY_RESULTS, CONTACT_RESULTS, study_dims
 from trackroller.report.flags import words_of
 from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, unit_text
 from trackroller.report.view import BODIES, StudyView
@@ -20,22 +20,7 @@ from trackroller.study.outputs import Output, default_names, outputs, read_study
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
-DETAILS = (
-    "normal_force",
-    "lateral_force",
-    "driving_force",
-    "spin_moment",
-    "semi_axis_lateral",
-    "semi_axis_rolling",
-    "max_pressure",
-    "friction_power",
-    "stick_area_fraction",
-    "peak_stress",
-    "peak_z",
-    "life_cycles",
-    "drilling_torque",
-    "slip",
-)
+DETAILS = (*CONTACT_RESULTS, *BODY_RESULTS, "drilling_torque", "slip")
 
 
 @dataclass(frozen=True)
