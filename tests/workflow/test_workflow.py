@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 import os
 import signal
 import subprocess
@@ -43,7 +44,12 @@ def test_study_to_report_then_nothing_and_after_a_change_only_what_depends_on_it
     with zipfile.ZipFile(place / "everything.zip") as archive:
         held = {Path(name).name for name in archive.namelist()}
         page = archive.read("everything/report.html").decode()
-    assert {p.name for p in (out / "figures").glob("*.svg")} < held and "can be sent by mail" in page
+        told = " ".join(
+            archive.read(name).decode(errors="replace") for name in archive.namelist() if name.endswith(".js")
+        )
+    assert {p.name for p in (out / "figures").glob("*.svg")} < held and "can be sent by mail" in page + told
+    captions = [item["caption"] for item in json.loads((out / "figures" / "index.json").read_text(encoding="utf-8"))]
+    assert captions and all(text.split(".")[0][:40] in page + told for text in captions)
     assert {"design.nc", "study.nc", "sensitivity.nc", "report.html"} <= set(read_crate(out))
     assert damaged_files(out) == {}
     assert list((out / "figures").glob("*.svg")) and list((out / "figures").glob("*.png"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -104,6 +105,23 @@ def study_inputs(study: Study) -> list[str]:
         found.append(table_path(study))
     user = find_user_file()
     return found + ([str(user)] if user is not None else [])
+
+
+def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
+    """Return what `snakemake --report` writes below the report and each figure, as reStructuredText by name.
+
+    Parameters
+    ----------
+    study : Study
+        The study; its question stands below the report.
+    folder : StudyFolder
+        The study's folder; without figures only the caption of the report is there.
+    """
+    index = folder.root / "figures" / "index.json"
+    drawn = json.loads(index.read_text(encoding="utf-8")) if index.is_file() else []
+    told = {"report": f"Study {study.name}: {study.config.description or 'no description'}"}
+    told |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in drawn}
+    return {name: re.sub(r"([*`|_\\])", r"\\\1", text) for name, text in told.items()}
 
 
 def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
