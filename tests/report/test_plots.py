@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import xml.etree.ElementTree as ET
 
@@ -16,6 +17,8 @@ from trackroller.errors import InputError
 from trackroller.report.claims import leading_factor, paired_effect
 from trackroller.report.figures import style
 from trackroller.report.figures.contact import plot_case
+from trackroller.report.figures.contact_patch import case_name
+from trackroller.report.figures.contact_sections import SURFACE, sections, surface_stress
 from trackroller.report.figures.panels import capped
 from trackroller.report.figures.study import draw_all
 from trackroller.report.numbers import number
@@ -186,8 +189,35 @@ def test_a_case_gets_shear_energy_and_sections_of_both_contacts(solved, tmp_path
     infos = plot_case(solved, tmp_path)
     assert [i.name for i in infos] == ["contact_shear", "contact_energy", "contact_1_stress", "contact_2_stress"]
     for info in infos:
-        ET.parse(tmp_path / f"{info.name}.svg")
+        drawn = ET.parse(tmp_path / f"{info.name}.svg").getroot()
+        assert float(drawn.get("width").removesuffix("pt")) == pytest.approx(170 / 25.4 * 72)
         assert info.caption and info.sentence
+
+
+def test_the_surface_map_is_highest_where_a_peak_at_the_surface_is_marked(solved):
+    """The search finds the peak by quadrature over the ellipse, the map by convolution of the tractions on a grid."""
+    at_surface = 0
+    for contact, body in itertools.product((1, 2), ("roller", "guide")):
+        part = solved.sel(contact=contact, body=body)
+        x, y, stress = surface_stress(solved, contact, body)
+        assert stress.max() < 1.01 * float(part["peak_stress"])
+        if float(part["peak_z"]) < SURFACE:
+            at_surface += 1
+            j, i = np.unravel_index(np.argmax(stress), stress.shape)
+            assert stress.max() == pytest.approx(float(part["peak_stress"]), rel=0.02)
+            assert (x[i], y[j]) == pytest.approx((float(part["peak_x"]), float(part["peak_y"])), abs=2 * (x[1] - x[0]))
+    assert at_surface
+    figure, info = sections(solved, 2)
+    assert [axes.get_title(loc="left") for axes in figure.axes[2:6:3]] == ["Roller, surface", "Guide, surface"]
+    assert "default case" in info.caption
+    bare = solved.drop_vars("shear_lateral")
+    assert surface_stress(bare, 2, "roller") is None and len(sections(bare, 2)[0].axes) == 5
+
+
+def test_a_case_is_named_by_what_differs_from_the_defaults():
+    case = tr.Case(motor_force=0.0, axial_force=10.0, roller_material="PA6")
+    named = case_name(solve_sliding(case, outputs=("forces",)))
+    assert named == "axial force 10 N, free rolling and PA6 on 1.7225-normalised"
 
 
 def test_frictionless_and_tall_contacts_are_drawn(tmp_path):

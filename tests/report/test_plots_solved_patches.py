@@ -12,7 +12,7 @@ from reference_cases import solve_sliding
 import trackroller as tr
 from trackroller.report.figures.contact_outline import Patch, widths
 from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
-from trackroller.report.figures.contact_sections import sections
+from trackroller.report.figures.contact_sections import SURFACE, sections, surface_stress
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "tractions", "subsurface")
 EDGED = {"motor_force": -15, "roller_profile": {"arc": -7, "edge": {"outer": 0.1}}}
@@ -74,6 +74,13 @@ def test_the_bar_over_a_section_is_the_patch(edged):
     bare = edged.drop_vars(["pressure", "patch_x", "patch_y"])  # then about the middle of the section
     (found,) = widths(bare.sel(contact=2, body="roller"), "x")
     assert found == pytest.approx(bars[0], abs=step)
+
+
+def test_the_surface_map_shows_the_peaks_of_solved_patches(edged):
+    for contact, body in ((1, "roller"), (1, "guide"), (2, "roller"), (2, "guide")):
+        part = edged.sel(contact=contact, body=body)
+        assert float(part["peak_z"]) < SURFACE
+        assert surface_stress(edged, contact, body)[2].max() == pytest.approx(float(part["peak_stress"]), rel=0.01)
 
 
 def test_two_strips_are_drawn_apart(edged):

@@ -237,19 +237,25 @@ def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) ->
     return Effect(effect.factor, effect.low, effect.high, float(10 ** np.median(steps)), nothing, steps.size, up, down)
 
 
-def leading_factor(view: StudyView, column: str, rows: np.ndarray) -> str:
-    """Return the factor that explains most of the variance of the logarithm of an output."""
+def leading_factor(view: StudyView, column: str, rows: np.ndarray, among: tuple[str, ...] | None = None) -> str:
+    """Return the factor (of all, or `among` some) that explains most of the variance of the logarithm of an output."""
+    share = explained(view, column, rows, view.factors if among is None else among)
+    return max(share, key=lambda name: share[name]) if share else ""
+
+
+def explained(view: StudyView, column: str, rows: np.ndarray, among: tuple[str, ...]) -> dict[str, float]:
+    """Return the share of the variance of the logarithm of an output [1] that each factor explains alone."""
     values = view.column(column)
     good = rows & np.isfinite(values) & (values > 0)
     logs = np.log10(values[good])
     if logs.size < 2 or not np.ptp(logs) > 0:
-        return ""
+        return {}
     share = {}
-    for name in view.factors:
+    for name in among:
         index, _ = classes(view, name, good, 3)
         means = np.array([logs[index == k].mean() if (index == k).any() else 0.0 for k in range(index.max() + 1)])
         share[name] = float(np.var(means[index]) / np.var(logs))
-    return max(share, key=lambda name: share[name]) if share else ""
+    return share
 
 
 def classes(view: StudyView, name: str, rows: np.ndarray, most: int) -> tuple[np.ndarray, list[Any]]:

@@ -78,7 +78,7 @@ def _values(source: str, name: str, contact: int) -> float:
 
 def bars() -> Drawn:
     """Figure 8: forces and stresses of both contacts by program."""
-    figure = style.new_figure(122)
+    figure = style.new_figure(122, style.COLUMN_MM)
     upper, lower = figure.subplots(2, 1)
     groups = [
         ("normal_force", "$F_\\mathrm{N%d}$"),
@@ -123,7 +123,7 @@ def bars() -> Drawn:
 def tractions() -> Drawn:
     """Figure 9: pressure and both shear components of contact 1, both models."""
     names = (("pressure", "$p$"), ("shear_lateral", "$\\tau_x$"), ("shear_rolling", "$\\tau_y$"))
-    figure = style.new_figure(94)
+    figure = style.new_figure(94, style.COLUMN_MM)
     grid = figure.subplots(3, 2, sharex=True, sharey=True)
     for column, model in enumerate(MODELS):
         part = solved("driven", model).isel(contact=0)

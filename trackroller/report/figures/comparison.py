@@ -102,7 +102,7 @@ def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
         return None
     frames = [shown for name in names if (shown := frame(paired, name, split=False)) is not None]
     height = 30.0 + 30.0 * len(wanted) + max(label_mm(shown.x) for shown in frames)
-    figure = style.new_figure(height, style.COLUMN_MM * (1 if len(names) < 2 else 2))
+    figure = style.new_figure(height)
     axes = figure.subplots(len(wanted), len(names), sharex="col", sharey="row", squeeze=False)
     handles: dict[str, Any] = {}
     for column, shown in enumerate(frames):

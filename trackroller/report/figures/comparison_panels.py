@@ -25,7 +25,6 @@ LOOKS: dict[str, dict[str, Any]] = {
     "kalker_table": {"color": "#56b4e9", "linestyle": "-.", "marker": "v"},
 }
 SIZE = 2.8
-WIDE = 2 * style.COLUMN_MM
 WRAP, UPRIGHT = 13, 4  # letters of a line of a category's name, and how many categories are named level
 
 
@@ -118,9 +117,7 @@ def rolling(ds: xr.Dataset) -> np.ndarray:
 def panels(shown: Frame, labels: list[str], row_mm: float) -> tuple[Figure, Any]:
     """Rows of panels, one a label, over the columns of the frame."""
     titles = shown.titles()
-    figure = style.new_figure(
-        30.0 + row_mm * len(labels) + label_mm(shown.x), style.COLUMN_MM if len(titles) < 3 else WIDE
-    )
+    figure = style.new_figure(30.0 + row_mm * len(labels) + label_mm(shown.x))
     axes = figure.subplots(len(labels), len(titles), sharex=True, sharey="row", squeeze=False)
     for column, title in enumerate(titles):
         axes[0, column].set_title(title, loc="left", pad=3)

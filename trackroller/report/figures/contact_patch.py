@@ -13,13 +13,27 @@ from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.ticker import MaxNLocator
 
-from trackroller.parameters import REGIME_LABELS
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, framed, patches_of
-from trackroller.report.numbers import number, rounded
+from trackroller.report.numbers import level_text, listing, long_name, number, rounded, setting
+from trackroller.roller.record import CASE, inputs_of, is_default
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # a longer ellipse than this is not drawn to scale
+PANEL_MM = 70.0  # width of a map
+
+
+def case_name(ds: xr.Dataset) -> str:
+    """Name a case by the inputs that differ from their defaults."""
+    if CASE not in ds.attrs:
+        return "one case"
+    given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
+    said = [setting(n, v) for n, v in given.items() if n in PARAMETERS and isinstance(v, float) and v == v]
+    pair = [str(inputs_of(ds)[name]) for name in MATERIAL_FIELDS]
+    said += [level_text("material_pair", " / ".join(pair))] if set(given) & set(MATERIAL_FIELDS) else []
+    said += [long_name(name) for name in given if name in MAPPING_FIELDS]
+    return listing(said) if said else "default case"
 
 
 def case_text(ds: xr.Dataset) -> str:
@@ -36,31 +50,24 @@ def _shapes(patches: list[Patch]) -> str:
 
 
 def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
-    """A figure with the patches to one scale unless they are very slender, and room for a profile.
-
-    Wide patches lie one above the other, tall ones stand side by side.
-    """
+    """A figure with the patches side by side, to one scale unless they are very slender, and room for a profile."""
     boxes, count = np.array([p.box for p in patches]), len(patches)
     (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     a, b = 0.5 * (right - left), 0.5 * (front - rear)
-    to_scale, tall = 1 / SLENDER <= b / a <= SLENDER, b > 1.2 * a
-    height = float(np.clip((30 if tall else 62) * b / a, 22, 66)) if to_scale else (60.0 if tall else 34.0)
-    rows = (1 if tall else count) + profile
-    columns = count if tall else 1
-    figure = style.new_figure(34 + (rows - profile) * (height + 9) + 38 * profile)
-    grid = figure.add_gridspec(rows, columns, height_ratios=[height] * (rows - profile) + [30] * profile)
-    maps = [figure.add_subplot(grid[0, i] if tall else grid[i, 0]) for i in range(count)]
-    for i, axes in enumerate(maps):
+    to_scale = 1 / SLENDER <= b / a <= SLENDER
+    height = float(np.clip(PANEL_MM * b / a, 22, 66)) if to_scale else 40.0
+    figure = style.new_figure(39 + height + 40 * profile)
+    grid = figure.add_gridspec(1 + profile, count, height_ratios=[height, 30] if profile else None)
+    maps = [figure.add_subplot(grid[0, i]) for i in range(count)]
+    for axes in maps:
         axes.set_xlim(left - 0.08 * a, right + 0.08 * a)
         axes.set_ylim(rear - 0.12 * b, front + 0.12 * b)
         axes.set_aspect("equal" if to_scale else "auto")
-        axes.xaxis.set_major_locator(MaxNLocator(2 if tall else 5))
+        axes.xaxis.set_major_locator(MaxNLocator(5 if to_scale and b < 1.2 * a else 3))
         axes.yaxis.set_major_locator(MaxNLocator(5))
         axes.grid(False)
-        if i == 0 or not tall:
-            axes.set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]")
-        if i == count - 1 or tall:
-            axes.set_xlabel("$x_\\mathrm{C}$ (lateral) [mm]")
+        axes.set_xlabel("$x_\\mathrm{C}$ (lateral) [mm]")
+    maps[0].set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]")
     return figure, maps, figure.add_subplot(grid[-1, :]) if profile else None, to_scale
 
 
@@ -82,7 +89,7 @@ def _light(name: str = "YlGnBu", end: float = 0.62) -> Any:
 
 
 def _bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
-    bar = figure.colorbar(image, ax=axes, location="bottom", aspect=35, pad=0.02, ticks=MaxNLocator(6))
+    bar = figure.colorbar(image, ax=axes, location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6))
     bar.set_label(label)
 
 
@@ -102,7 +109,7 @@ def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     note = "" if to_scale else " Axes not to one scale."
     pole = any(p.spin_pole is not None for p in patches)
     dot = " Black dot: spin pole." if pole else ""
-    style.head(figure, "Shear traction on the roller", f"{case_text(ds)}{dot}{note}")
+    style.head(figure, f"Shear traction on the roller: {case_name(ds)}", f"{case_text(ds)}{dot}{note}")
     style.finish(figure)
     best = int(np.argmax([s.max() for s in sizes]))
     caption = (
@@ -162,7 +169,7 @@ def _pole(axes: Axes, patch: Patch) -> None:
         axes.annotate(
             f"spin pole at x = {number(x)} mm",
             (0.99 if beyond else 0.01, 0.03),
-            fontsize=6.5,
+            fontsize=7,
             ha="right" if beyond else "left",
             xycoords="axes fraction",
         )
@@ -194,7 +201,9 @@ def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     across.set_title("Across the running track", loc="left", fontsize=7.5, pad=3)
     figure.legend(loc="outside lower left", ncols=2)
     style.head(
-        figure, "Friction energy of both contacts", case_text(ds) + ("" if to_scale else " Axes not to one scale.")
+        figure,
+        f"Friction energy of both contacts: {case_name(ds)}",
+        case_text(ds) + ("" if to_scale else " Axes not to one scale."),
     )
     style.finish(figure)
     caption = (

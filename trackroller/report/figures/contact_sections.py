@@ -1,4 +1,8 @@
-"""Von Mises stress in the two planes through the peak, for both bodies of a contact."""
+"""Von Mises stress in the two planes through the peak and on the surface, for both bodies of a contact.
+
+The roller stands above the guide as in the drawing of the README: x lateral, y in the rolling direction, z into each
+body.
+"""
 
 from __future__ import annotations
 
@@ -8,108 +12,175 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
 from matplotlib.ticker import MaxNLocator
 
+from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_outline import widths
-from trackroller.report.figures.contact_patch import case_text
-from trackroller.report.numbers import rounded
+from trackroller.report.figures.contact_outline import Patch, widths
+from trackroller.report.figures.contact_patch import case_name, case_text
+from trackroller.report.numbers import near, rounded
+from trackroller.roller.record import MATERIALS, materials_of
 
 PLANES = (
     ("von_mises_xz", "xz_x", "xz_z", "x", "lateral"),
     ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"),
 )
+TRACTIONS = ("pressure", "shear_lateral", "shear_rolling")
+AROUND = 0.25  # of the grid of the tractions: so far the surface is shown beyond each end of it
+SURFACE = 1e-3  # depth [mm] down to which a peak counts as one at the surface
+SLENDER = 2.5  # patches longer than this are not drawn to one scale
+ROW_MM, SHARE_MM = 36.0, 125.0  # height of a row; width that the panels of a row share
 
 
 def sections(ds: xr.Dataset, contact: int) -> tuple[Figure, style.FigureInfo] | None:
-    """Lateral and rolling section of roller and guide under one contact, the peak marked."""
+    """Draw lateral section, rolling section and surface of roller and guide under one contact, the peak marked.
+
+    It answers: where does each body break first, at the surface or below it, and how far does the stress reach?
+    """
     if not all(n in ds for n in ("von_mises_xz", "von_mises_yz", "xz_x", "xz_z", "yz_y", "yz_z")):
         return None
     part = ds.sel(contact=contact)
     bodies = [str(b) for b in part["body"].values if np.isfinite(part["von_mises_xz"].sel(body=b)).any()]
     if not bodies:
         return None
-    heights = [_height(part.sel(body=bodies[0]), plane) for plane in PLANES] * len(bodies)
-    figure = style.new_figure(30 + sum(heights) + 10 * len(heights))
-    grid = figure.subplots(len(heights), 1, squeeze=False, height_ratios=heights)[:, 0]
-    top = float(np.nanmax([part[p[0]].max() for p in PLANES]))
+    surfaces = {body: found for body in bodies if (found := surface_stress(ds, contact, body)) is not None}
+    shown = [*(part[plane[0]] for plane in PLANES), *([part["peak_stress"]] if "peak_stress" in part else [])]
+    top = float(np.nanmax([*(v.max() for v in shown), *(s[2].max() for s in surfaces.values())]))
+    first = part.sel(body=bodies[0])
+    spans = [float(np.ptp(first[name].values)) for name in ("xz_x", "yz_y")]
+    to_scale = 1 / SLENDER < spans[0] / spans[1] < SLENDER
+    shares = [*spans, spans[0]] if to_scale else [1.0, 1.0, 1.0]
+    shares = shares[: 3 if surfaces else 2]
+    deep = max(spans[1] if surfaces else 0.0, float(np.ptp(first["xz_z"].values)))
+    height = min(SHARE_MM * deep / sum(shares), 60.0) if to_scale else ROW_MM
+    figure = style.new_figure(34 + (height + 7) * len(bodies))
+    grid = figure.subplots(len(bodies), len(shares), squeeze=False, width_ratios=shares)
     image: Any = None
-    if "peak_stress" in part:
-        top = max(top, float(part["peak_stress"].max()))
-    for i, body in enumerate(bodies):
-        for j, plane in enumerate(PLANES):
-            image = _section(grid[2 * i + j], part.sel(body=body), body, plane, top)
-    bar = figure.colorbar(image, ax=list(grid), location="bottom", aspect=35, pad=0.01, ticks=MaxNLocator(6))
+    for row, body in zip(grid, bodies, strict=True):
+        for axes, plane in zip(row, PLANES, strict=False):
+            image = _section(axes, part.sel(body=body), body, plane, (top, to_scale))
+        if body in surfaces:
+            _surface(row[2], Patch(ds, contact), part.sel(body=body), surfaces[body], (top, to_scale))
+    bar = figure.colorbar(image, ax=list(grid.ravel()), location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6))
     bar.set_label("Von Mises stress [MPa]")
-    flat = (
-        "" if all(_to_scale(part.sel(body=bodies[0]), p) for p in PLANES) else " Flat sections are stretched in depth."
-    )
-    style.head(
-        figure,
-        f"Von Mises stress under contact {contact}",
-        f"{case_text(ds)} Cross: peak; black bar: width of the patch.{flat}",
-    )
+    scale = "" if to_scale else " Axes not to one scale."
+    head = f"Von Mises stress under contact {contact}: {case_name(ds)}"
+    style.head(figure, head, f"{case_text(ds)} Cross: peak; ring: peak below the surface.{scale}")
     style.finish(figure)
     caption = (
         f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section plane through the peak "
-        f"of each body; depth counts into the body, the cross marks the peak. {case_text(ds)}"
+        f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A cross marks the peak; on "
+        f"the surface a ring marks a peak below it. {head.partition(': ')[2]}. {case_text(ds)}"
     )
     return figure, style.FigureInfo(f"contact_{contact}_stress", caption, _sentence(part, bodies))
 
 
-def _height(part: xr.Dataset, plane: tuple[str, ...]) -> float:
-    """Height [mm] of a panel 66 mm wide that shows the section to scale, within what can be read."""
-    across, depth = part[plane[1]].values, part[plane[2]].values
-    return float(np.clip(66 * np.ptp(depth) / np.ptp(across), 20, 40))
+def surface_stress(ds: xr.Dataset, contact: int, body: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Compute the von Mises stress on the surface of a body from the solved tractions.
+
+    Parameters
+    ----------
+    ds : result of one case with its tractions and materials
+
+    Returns
+    -------
+    x (nx) and y (ny) in the contact [mm] and the stress (ny, nx) [MPa], or None where tractions or materials are not
+    known
+    """
+    patch = Patch(ds, contact) if {"patch_x", "patch_y", *TRACTIONS} <= set(ds.variables) else None
+    if patch is None or not patch.there or MATERIALS not in ds.attrs:
+        return None
+    margin = [max(1, int(np.ceil(AROUND * v.size))) for v in (patch.y, patch.x)]
+    x, y = _widened(patch.x, margin[1]), _widened(patch.y, margin[0])
+    fields = [np.pad(patch.field(name), [(m, m) for m in margin]) for name in TRACTIONS]
+    sign = FRICTION_SIGNS[("roller", "guide").index(body)]
+    poisson = materials_of(ds)[f"{body}_material"]["poisson_ratio"]
+    stress = stress_on_grid(x, y, fields[0], sign * fields[1], sign * fields[2], [0.0], poisson)
+    return x, y, von_mises(stress[0])
 
 
-def _to_scale(part: xr.Dataset, plane: tuple[str, ...]) -> bool:
-    return bool(20 < 66 * np.ptp(part[plane[2]].values) / np.ptp(part[plane[1]].values))
+def _widened(places: np.ndarray, margin: int) -> np.ndarray:
+    step = (places[-1] - places[0]) / (places.size - 1)
+    return places[0] + step * np.arange(-margin, places.size + margin)
 
 
-def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], top: float) -> Any:
+def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], drawn: tuple[float, bool]) -> Any:
     name, across, down, axis, words = plane
     x, z, stress = part[across].values, part[down].values, part[name].values
-    levels = np.linspace(0, top, 17)
-    image = axes.contourf(x, z, np.clip(stress, 0, top), levels=levels, cmap="cividis")
-    axes.contour(x, z, stress, levels=levels[2::2], colors="white", linewidths=0.35, alpha=0.7)
-    axes.set_ylim(float(z.max()), float(z.min()) - 0.03 * float(np.ptp(z)))
-    axes.set_aspect("equal" if _to_scale(part, plane) else "auto", anchor="W")
+    image = _fill(axes, x, z, stress, drawn[0])
+    roller = body == "roller"
+    far, near_ = float(z.max()), float(z.min()) - 0.03 * float(np.ptp(z))
+    axes.set_ylim((near_, far) if roller else (far, near_))
+    axes.set_aspect("equal" if drawn[1] else "auto", anchor="S" if roller else "N")
     for ends in widths(part, axis):
         axes.plot(ends, [0, 0], color="black", linewidth=2.2, solid_capstyle="butt", clip_on=False, zorder=4)
     other = "y" if axis == "x" else "x"
     place = ""
     if f"peak_{other}" in part:
-        place = f", plane ${other}_\\mathrm{{C}}$ = {rounded(float(part[f'peak_{other}']), 2)} mm"
+        where = near(float(part[f"peak_{other}"]), float(np.ptp(x)))
+        place = f"\nat ${other}_\\mathrm{{C}}$ = {where} mm"
     axes.set_title(f"{body.capitalize()}, {words} section{place}", loc="left", fontsize=7.5, pad=4)
-    axes.set_xlabel(f"${axis}_\\mathrm{{C}}$ ({words}) [mm]", labelpad=1)
-    axes.set_ylabel("Depth $z_\\mathrm{C}$ [mm]")
-    axes.locator_params(axis="x", nbins=6)
-    axes.locator_params(axis="y", nbins=5)
-    axes.grid(False)
-    _mark_peak(axes, part, axis)
+    axes.set_ylabel("Depth $z_\\mathrm{C}$ [mm]" if axis == "x" else "$z_\\mathrm{C}$ [mm]")
+    _labels(axes, f"${axis}_\\mathrm{{C}}$ ({words}) [mm]")
+    _mark_peak(axes, part, (axis, "z"))
     return image
 
 
-def _mark_peak(axes: Axes, part: xr.Dataset, axis: str) -> None:
-    if not all(n in part for n in ("peak_stress", f"peak_{axis}", "peak_z")):
+def _fill(axes: Axes, x: np.ndarray, y: np.ndarray, stress: np.ndarray, top: float) -> Any:
+    levels = np.linspace(0, top, 17)
+    image = axes.contourf(x, y, np.clip(stress, 0, top), levels=levels, cmap="cividis")
+    axes.contour(x, y, stress, levels=levels[2::2], colors="white", linewidths=0.35, alpha=0.7)
+    return image
+
+
+def _labels(axes: Axes, across: str) -> None:
+    axes.set_xlabel(across, labelpad=1)
+    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="y", nbins=5)
+    axes.grid(False)
+
+
+def _surface(axes: Axes, patch: Patch, part: xr.Dataset, found: tuple, drawn: tuple[float, bool]) -> None:
+    """Draw the stress on the surface of one body, as far as the sections reach, with the edge of the patch."""
+    x, y, stress = found
+    _fill(axes, x, y, stress, drawn[0])
+    axes.add_patch(PathPatch(patch.outline, facecolor="none", edgecolor="black", linewidth=0.9))
+    for limit, own, places in ((axes.set_xlim, "xz_x", x), (axes.set_ylim, "yz_y", y)):
+        reach = part[own].values
+        limit(max(float(reach[0]), float(places[0])), min(float(reach[-1]), float(places[-1])))
+    axes.set_aspect("equal" if drawn[1] else "auto")
+    axes.set_title(f"{str(part['body'].item()).capitalize()}, surface", loc="left", fontsize=7.5, pad=4)
+    axes.set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]", labelpad=1)
+    _labels(axes, "$x_\\mathrm{C}$ (lateral) [mm]")
+    _mark_peak(axes, part, ("x", "y"))
+
+
+def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
+    if not all(n in part for n in ("peak_stress", "peak_x", "peak_y", "peak_z")):
         return
-    x, z, value = (float(part[n]) for n in (f"peak_{axis}", "peak_z", "peak_stress"))
-    if not np.isfinite(x + z + value):
+    x, y, value, depth = (float(part[n]) for n in (*(f"peak_{axis}" for axis in plane), "peak_stress", "peak_z"))
+    if not np.isfinite(x + y + value):
         return
-    axes.plot(x, z, marker="x", color="white", markersize=7, markeredgewidth=2.6, zorder=5, clip_on=False)
-    axes.plot(x, z, marker="x", color="black", markersize=6, markeredgewidth=1.3, zorder=6, clip_on=False)
-    right = x < 0.25 * axes.get_xlim()[1]
+    below = plane[1] == "y" and depth >= SURFACE
+    look: dict[str, Any] = {"marker": "o" if below else "x", "markerfacecolor": "none", "clip_on": False}
+    axes.plot(x, y, color="white", markersize=7, markeredgewidth=2.6, zorder=5, **look)
+    axes.plot(x, y, color="black", markersize=6, markeredgewidth=1.3, zorder=6, **look)
+    if below:
+        return
+    right = x < np.mean(axes.get_xlim())
+    up = 9 if plane[1] == "y" or axes.get_ylim()[1] > axes.get_ylim()[0] else -9
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.9}
     axes.annotate(
         f"{value:.0f} MPa",
-        (x, z),
-        xytext=(8 if right else -8, -8),
+        (x, y),
+        xytext=(8 if right else -8, up),
         textcoords="offset points",
-        fontsize=6.8,
+        fontsize=7,
         ha="left" if right else "right",
         va="center",
         zorder=7,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.9},
+        bbox=box,
     )
 
 
@@ -119,6 +190,6 @@ def _sentence(part: xr.Dataset, bodies: list[str]) -> str:
     said = []
     for body in bodies:
         value, depth = float(part["peak_stress"].sel(body=body)), float(part["peak_z"].sel(body=body))
-        where = "at the surface" if depth < 1e-3 else f"{rounded(depth, 2)} mm deep"
+        where = "at the surface" if depth < SURFACE else f"{rounded(depth, 2)} mm deep"
         said.append(f"{value:.0f} MPa {where} in the {body}")
     return f"The peak is {' and '.join(said)}."

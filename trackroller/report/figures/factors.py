@@ -2,38 +2,33 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from trackroller.report.claims import classes, leading_factor
+from trackroller.report.claims import classes, explained, leading_factor
 from trackroller.report.effects import effect_of
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import capped, legend, mark_unlimited
-from trackroller.report.numbers import (
-    SPOKEN,
-    capital,
-    factor_label,
-    level_text,
-    long_name,
-    number,
-    short_levels,
-    with_unit,
-)
+from trackroller.report.figures.panels import capped, class_words, groups_of, legend, mark_unlimited
+from trackroller.report.numbers import capital, factor_label, level_text, long_name, short_levels, with_unit
 from trackroller.report.view import StudyView
 
 MAX_PANELS = 9
-COLOURS = 5  # as many levels of the deciding factor are told apart
 BINS = 6
+Groups = list[tuple[str, np.ndarray]]
+PANEL_LETTERS = 33  # letters of 7 pt under the axis of a panel
+MATTERS = 0.1  # of the variance: a category that explains more is never pooled
 FEWEST = 3  # a median is drawn from at least this number of rows
 
 
 def by_factor(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Draw the median and quartiles of an output along each factor, a colour a level of the deciding factor.
+
+    It answers: which way and how far does each factor move the life, and is that so for every material?
 
     Returns
     -------
@@ -46,26 +41,30 @@ def by_factor(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     rows = view.valid & ~np.isnan(view.column(column))
     if rows.sum() < 2:
         return None
-    lead = leading_factor(view, column, rows) or view.factors[0]
+    lead = _lead(view, column, rows)
     values, top = capped(view.column(column)[rows]) if "life" in words else (view.column(column)[rows], None)
-    names = list(view.factors[:MAX_PANELS])
+    names = [name for name in view.factors if _drawable(view, name, rows, np.ones(rows.sum(), bool))][:MAX_PANELS]
+    if not names:
+        return None
     columns = min(3, len(names))
-    figure = style.new_figure(26 + 50 * -(-len(names) // columns), style.WIDE_MM)
-    first, groups = None, _groups(view, lead, rows)
+    figure = style.new_figure(26 + 50 * -(-len(names) // columns))
+    first, groups = None, groups_of(view, lead, rows)
     for i, name in enumerate(names):
         axes = figure.add_subplot(-(-len(names) // columns), columns, i + 1, sharey=first)
         first = first or axes
-        _panel(axes, view, name, rows, values, [("", np.ones(rows.sum(), bool))] if name == lead else groups)
+        _panel(axes, view, name, rows, values, _series(view, name, rows, groups, lead))
         axes.tick_params(labelleft=i % columns == 0)
         mark_unlimited(axes, top)
     if first is not None and "life" in words:
         first.set_yscale("log")
         style.log_ticks(first.yaxis, *first.get_ylim())
     figure.supylabel(with_unit(capital(words), unit), fontsize=7.5)
-    if len(names) > 1:
+    apart = any(len(_series(view, name, rows, groups, lead)) > 1 for name in names)
+    if apart:
         looks = [{"color": c, "marker": m} for c, m in zip(style.palette(len(groups)), style.MARKERS, strict=False)]
         legend(figure, [(text, look) for (text, _), look in zip(groups, looks, strict=True)])
-    told = f"Lines: medians for each level of {long_name(lead)}; bands: the middle half of the valid designs."
+    each = f" for each level of {long_name(lead)}" if apart else ""
+    told = f"Lines: medians{each}; bands: the middle half of the valid designs."
     style.head(figure, f"{capital(words)} against each factor", told)
     style.finish(figure)
     caption = f"{capital(words)} of the {rows.sum():,} valid designs along each factor, all others as they vary. {told}"
@@ -80,29 +79,29 @@ def shown_output(view: StudyView) -> tuple[str, str, str] | None:
     return next((s for s in stresses if view.has(s[0])), None)
 
 
-def _groups(view: StudyView, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:
-    """Name and rows of each level (or third) of the deciding factor."""
-    index, ends = classes(view, lead, rows, 3)
-    present = [k for k in range(len(ends)) if (index == k).any()]
-    if len(present) > COLOURS:  # a number of many levels: lowest, highest and between
-        chosen = np.unique(np.linspace(0, len(present) - 1, COLOURS).round().astype(int))
-        present = [present[k] for k in chosen]
-    return [(_class_words(lead, ends[k]), index == k) for k in present]
+def _lead(view: StudyView, column: str, rows: np.ndarray) -> str:
+    """Return the factor to colour by: the one that decides, or a category that matters, so that none is pooled."""
+    lead = leading_factor(view, column, rows) or view.factors[0]
+    share = explained(view, column, rows, view.categories)
+    category = max(share, key=lambda name: share[name], default=lead)
+    return category if view.ordered(lead) and share.get(category, 0.0) > MATTERS else lead
 
 
-def _class_words(name: str, end: Any) -> str:
-    if isinstance(end, tuple):
-        return f"{long_name(name)} {number(float(f'{end[0]:.3g}'))} to {level_text(name, float(f'{end[1]:.3g}'))}"
-    return (
-        level_text(name, end)
-        if name in SPOKEN or isinstance(end, str)
-        else f"{long_name(name)} {level_text(name, end)}"
-    )
+def _series(view: StudyView, name: str, rows: np.ndarray, groups: Groups, lead: str) -> Groups:
+    """Return the groups to tell apart in a panel: a deciding number is one line, as is a factor with too few rows."""
+    whole = [("", np.ones(rows.sum(), bool))]
+    if name == lead:
+        return whole if view.ordered(name) or len(groups) < len(view.levels(name)) else groups
+    return groups if any(_drawable(view, name, rows, chosen) for _, chosen in groups) else whole
 
 
-def _panel(
-    axes: Axes, view: StudyView, name: str, rows: np.ndarray, values: np.ndarray, groups: list[tuple[str, np.ndarray]]
-) -> None:
+def _drawable(view: StudyView, name: str, rows: np.ndarray, chosen: np.ndarray) -> bool:
+    """Say whether at least two classes of a factor have rows enough for a median."""
+    counts = np.bincount(classes(view, name, rows, BINS)[0][chosen])
+    return bool((counts >= FEWEST).sum() > 1)
+
+
+def _panel(axes: Axes, view: StudyView, name: str, rows: np.ndarray, values: np.ndarray, groups: Groups) -> None:
     """Draw one factor: a line a group where the factor has an order, else marks with bars."""
     index, ends = classes(view, name, rows, BINS)
     ordered, own = view.ordered(name), view.table[name].to_numpy()[rows]
@@ -112,9 +111,10 @@ def _panel(
         else np.arange(len(ends), dtype=float)
     )
     colours = style.palette(len(groups)) if len(groups) > 1 else ["0.2"]
+    apart = len(groups) > 1 and all(np.ptp(index[chosen]) == 0 for _, chosen in groups)  # its colours name the levels
     for g, ((_, chosen), colour) in enumerate(zip(groups, colours, strict=True)):
         low, middle, high = _quartiles(values, index, chosen, len(ends))
-        shift = 0.0 if ordered else 0.12 * (g - (len(groups) - 1) / 2)
+        shift = 0.0 if ordered or apart else 0.12 * (g - (len(groups) - 1) / 2)
         look = {"color": colour, "marker": style.MARKERS[g % 10], "markersize": 3}
         if ordered:
             axes.fill_between(at, low, high, color=colour, alpha=0.18, linewidth=0)
@@ -125,14 +125,16 @@ def _panel(
     if ordered:
         axes.xaxis.set_major_locator(MaxNLocator(5))
         return
-    texts = [
-        textwrap.fill(t, 18)
-        for t in short_levels([_class_words(name, e) if isinstance(e, tuple) else level_text(name, e) for e in ends])
-    ]
-    axes.set_xticks(at, texts, rotation=0 if len(texts) <= 3 and max(map(len, texts)) < 14 else 35, fontsize=6.2)
-    for label in axes.get_xticklabels():
-        label.set(ha="right" if label.get_rotation() else "center", rotation_mode="anchor")
+    names = [class_words(name, e) if isinstance(e, tuple) else level_text(name, e) for e in ends]
+    letters = max(6, PANEL_LETTERS // len(names))
+    texts = ["" for _ in names] if apart else [_wrapped(t, letters) for t in short_levels(names)]
+    axes.set_xticks(at, texts, linespacing=0.95)
     axes.set_xlim(-0.6, len(at) - 0.4)
+
+
+def _wrapped(text: str, letters: int) -> str:
+    """Break a text into lines, but not between a number and its unit."""
+    return textwrap.fill(re.sub(r"(\d) ", "\\1\u00a0", text), letters).replace("\u00a0", " ")
 
 
 def _quartiles(values: np.ndarray, index: np.ndarray, chosen: np.ndarray, count: int) -> np.ndarray:

@@ -8,16 +8,16 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from trackroller.report.claims import classes, leading_factor
+from trackroller.report.claims import leading_factor
 from trackroller.report.effects import effect_of
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import Entries, drive_entries, drive_of, legend, marks, sampled
+from trackroller.report.figures.panels import Entries, drive_entries, drive_of, groups_of, legend, marks, running
 from trackroller.report.findings import lift_off, surface
-from trackroller.report.numbers import SPOKEN, SYMBOLS, factor_label, level_text, long_name, number, quantity, with_unit
+from trackroller.report.numbers import SYMBOLS, factor_label, listing, number, quantity, with_unit
 from trackroller.report.view import BODIES, StudyView
 
-CLOUD = 400  # cases of a sample drawn, where more would hide each other
-LINES = 5
+SAME = 0.9  # rank correlation from which a factor and the fit say the same
+MEDIANS = "Lines: medians of the designs; bands: 5 to 95 %."
 FORCES = (
     ("normal_force", "Normal force", r"$F_\mathrm{N}$"),
     ("lateral_force", "Lateral force", r"$F_\mathrm{T}$"),
@@ -26,9 +26,10 @@ FORCES = (
 
 
 def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """Draw peak stress over the fit, coloured by what decides it.
+    """Draw peak stress over the fit, coloured by what decides it beside the fit; of a sample the medians with bands.
 
-    Filled marks at the surface, hollow ones below.
+    It answers: how much stress does a closer groove save, and does it move the peak from below to the surface? In a
+    grid marks are filled where the peak lies at the surface.
     """
     fits = next((f for f in map(view.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
     bodies = [b for b in BODIES if view.has(f"peak_stress_{b}")]
@@ -37,32 +38,38 @@ def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | Non
     hue = _hue(view, f"peak_stress_{bodies[0]}", fits)
     rows, held = view.hold((*fits, hue) if hue else fits)
     rows = rows[view.rolling[rows.index]]
-    groups = _stress_groups(view, rows, hue)
-    rows, label = add_fit(view, rows)
     if not len(rows):
         return None
-    drawn, thinned = (rows, "") if view.grid else sampled(rows, CLOUD * len(groups))
-    figure = style.new_figure(64 + 3.6 * (len(groups) + 2), style.WIDE_MM)
+    columns = [f"peak_stress_{body}" for body in bodies]
+    inside = np.isin(np.arange(len(view.table)), rows.index)
+    chosen = groups_of(view, hue, inside) if hue else [("", np.ones(len(rows), bool))]
+    rows, label = add_fit(view, rows)
+    groups = [(text, rows.index.to_numpy()[mask]) for text, mask in chosen]
+    groups = _merged(groups, rows, columns) if view.grid else groups
+    figure = style.new_figure(64 + 3.6 * (len(groups) + 2))
     panels = figure.subplots(1, len(bodies), sharex=True, sharey=True, squeeze=False)[0]
     entries: Entries = []
     for i, ((text, members), colour) in enumerate(zip(groups, style.palette(len(groups)), strict=True)):
-        look = {"color": colour, "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6] if view.grid else "none"}
+        look = {"color": colour, "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6]}
         entries += [(text, look)] if text else []
         for axes, body in zip(panels, bodies, strict=True):
-            _stress_series(axes, drawn[drawn.index.isin(members)], body, look, view.grid)
+            _stress_series(axes, rows[rows.index.isin(members)], body, look, view.grid)
     for axes, body in zip(panels, bodies, strict=True):
         axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
         axes.set_ylim(bottom=0)
         axes.set_xlabel(label)
     panels[0].set_ylabel(with_unit("Peak von Mises stress", "MPa"))
-    dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
-    entries += [("filled: peak at the surface", dot), ("hollow: peak below it", {**dot, "markerfacecolor": "white"})]
-    legend(figure, entries)
-    style.head(figure, "Peak stress against fit", f"{held} {thinned}".strip())
+    if view.grid:
+        dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
+        entries += [("filled: at the surface", dot), ("hollow: below it", {**dot, "markerfacecolor": "white"})]
+        held = f"Filled marks: the peak lies at the surface; hollow marks: below it. {held}"
+    legend(figure, entries, 2)
+    told = held if view.grid else MEDIANS
+    style.head(figure, "Peak stress against fit", told)
     style.finish(figure)
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
-        f"guide; rolling designs. Filled marks: the peak lies at the surface; hollow marks: below it. {held} {thinned}"
+        f"guide; rolling designs. {told}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip(), _stress_sentence(view, bodies[0], fits))
 
@@ -77,12 +84,14 @@ def _stress_sentence(view: StudyView, body: str, fits: tuple[str, ...]) -> str:
 
 
 def _hue(view: StudyView, column: str, fits: tuple[str, ...]) -> str:
-    """Return the factor besides the fit that decides the peak stress, '' if there is none."""
-    others = [f for f in view.factors if f not in fits]
-    if not others:
-        return ""
-    lead = leading_factor(view, column, view.rolling)
-    return lead if lead in others else others[0]
+    """Return the factor besides the fit that decides the peak stress, '' if there is none.
+
+    In a sample a factor that the fit follows is the fit as well.
+    """
+    fit = add_fit(view, view.table)[0]["_fit"]
+    same = [f for f in view.factors if view.numeric(f) and abs(fit.corr(view.table[f], method="spearman")) > SAME]
+    others = tuple(f for f in view.factors if f not in fits and f not in same)
+    return leading_factor(view, column, view.rolling, others) or next(iter(others), "")
 
 
 def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
@@ -103,36 +112,31 @@ def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     return rows, f"Fit: guide over groove radius $-${r_g}/{r_t} [–]"
 
 
-def _stress_groups(view: StudyView, rows: pd.DataFrame, hue: str) -> list[tuple[str, np.ndarray]]:
-    """Name and row numbers of at most five lines: levels of the deciding factor, or its thirds."""
-    if not hue:
-        return [("", rows.index.to_numpy())]
-    inside = np.isin(np.arange(len(view.table)), rows.index)
-    index, ends = classes(view, hue, inside, 3)
-    here = np.flatnonzero(inside)
-    present = [k for k in range(len(ends)) if (index == k).any()]
-    if len(present) > LINES:
-        present = [present[k] for k in np.unique(np.linspace(0, len(present) - 1, LINES).round().astype(int))]
-    return [(_group_words(hue, ends[k]), here[index == k]) for k in present]
-
-
-def _group_words(hue: str, end: Any) -> str:
-    if isinstance(end, tuple):
-        return f"{long_name(hue)} {end[0]:.3g} to {end[1]:.3g}"
-    return level_text(hue, end) if hue in SPOKEN or isinstance(end, str) else f"{long_name(hue)} {level_text(hue, end)}"
+def _merged(groups: list, rows: pd.DataFrame, columns: list[str]) -> list[tuple[str, np.ndarray]]:
+    """Join groups with the same stresses: materials that differ in strength alone."""
+    found: dict[tuple[str, ...], tuple[list[str], np.ndarray]] = {}
+    for text, members in groups:
+        own = rows[rows.index.isin(members)].sort_values("_fit")[["_fit", *columns]]
+        key = tuple(f"{value:.4g}" for value in own.to_numpy(dtype=float).ravel())
+        found.setdefault(key, ([], members))[0].append(text)
+    return [(listing(texts), members) for texts, members in found.values()]
 
 
 def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], grid: bool) -> None:
     part, y = part.sort_values("_fit"), f"peak_stress_{body}"
-    if grid:
-        axes.plot(part["_fit"], part[y], color=look["color"], linestyle=look["linestyle"], zorder=2)
+    if not grid:
+        return running(axes, part["_fit"].to_numpy(), part[y].to_numpy(), look)
+    axes.plot(part["_fit"], part[y], color=look["color"], linestyle=look["linestyle"], zorder=2)
     flag = part.get(f"at_surface_{body}")
     at_surface = np.ones(len(part), dtype=bool) if flag is None else (flag == 1).to_numpy()
-    marks(axes, part, "_fit", y, {**look, "s": 15 if grid else 8}, at_surface)
+    return marks(axes, part, "_fit", y, {**look, "s": 15}, at_surface)
 
 
 def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """Draw normal, lateral and driving force of both contacts over the axial force, by drive."""
+    """Draw normal, lateral and driving force of both contacts over the axial force, by drive.
+
+    It answers: how do the contacts share the load, and at which axial force does one lift off?
+    """
     x = "axial_force"
     if not view.behind(x) or not view.numeric(x):
         return None
@@ -142,36 +146,36 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
     drives = drive_of(view.levels("motor_force") if "motor_force" in view.factors else None)
     shown = (*view.behind(x), *(["motor_force"] if drives != [None] else []))
     rows, held = view.hold(shown)
-    drawn, thinned = (rows, "") if view.grid else sampled(rows, CLOUD)
-    figure = style.new_figure(74, style.WIDE_MM)
+    told = held if view.grid else MEDIANS
+    figure = style.new_figure(74)
     panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
     colours = style.palette(3)
-    looks = [{"color": colours[c], "marker": "os"[c], "s": (10, 20)[c] if view.grid else (5, 9)[c]} for c in (0, 1)]
+    looks = [{"color": colours[c], "marker": "os"[c], "s": (10, 20)[c]} for c in (0, 1)]
     for axes, (name, words, symbol) in zip(panels, kinds, strict=True):
         for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
-            part = (drawn if level is None else drawn[drawn["motor_force"] == level]).sort_values(x)
+            part = (rows if level is None else rows[rows["motor_force"] == level]).sort_values(x)
             y, look = f"{name}_{contact}", looks[contact - 1]
-            if view.grid:
-                axes.plot(part[x], part[y], color=look["color"], linestyle=style.LINES[j % 6], zorder=2)
+            if not view.grid:
+                line = {"color": look["color"], "marker": look["marker"], "linestyle": style.LINES[j % 6]}
+                running(axes, part[x].to_numpy(dtype=float), part[y].to_numpy(dtype=float), line)
+                continue
+            axes.plot(part[x], part[y], color=look["color"], linestyle=style.LINES[j % 6], zorder=2)
             marks(axes, part, x, y, look, contact == 1)
         axes.set_ylabel(with_unit(f"{words} {symbol}", "N"))
         axes.set_xlabel(factor_label(x))
         axes.margins(y=0.1)
     if view.grid:
         _shade_lift_off(panels, rows, x)
-    faces = [{"markerfacecolor": colours[0]}, {"markerfacecolor": "none"}]
+    faces = [{"markerfacecolor": colours[0]}, {"markerfacecolor": "none" if view.grid else colours[1]}]
     entries: Entries = [
         (f"contact {c + 1}", {"color": colours[c], "marker": "os"[c], "linestyle": "none", **faces[c]}) for c in (0, 1)
     ]
-    legend(figure, entries + (drive_entries(drives) if drives != [None] and view.grid else []), 5)
-    style.head(figure, "Forces of both contacts against axial force", f"{held} {thinned}".strip())
+    legend(figure, entries + (drive_entries(drives) if drives != [None] else []), 5)
+    style.head(figure, "Forces of both contacts against axial force", told)
     style.finish(figure)
-    told = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
-    caption = (
-        "Forces (N) of contact 1 (filled circles) and contact 2 (open squares) on the roller over the axial force"
-        f"{told}. {held} {thinned}"
-    )
-    return figure, style.FigureInfo("forces_against_axial_force", caption.strip(), _force_sentence(view))
+    each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
+    caption = f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}."
+    return figure, style.FigureInfo("forces_against_axial_force", f"{caption} {told}".strip(), _force_sentence(view))
 
 
 def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
@@ -187,7 +191,7 @@ def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
             axes.axvspan(halves[i], halves[i + 1], zorder=0, **look)
     if lifted.any():
         box = {"facecolor": "white", "edgecolor": "none", "pad": 1}
-        place = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": 6.8, "bbox": box}
+        place = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": 7, "bbox": box}
         panels[0].annotate("lift-off", (halves[-1], 0.3), **place)
 
 

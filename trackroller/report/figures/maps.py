@@ -23,14 +23,16 @@ from trackroller.report.numbers import capital, factor_label, level_text, long_n
 from trackroller.report.view import StudyView
 
 MAX_TICKS = 9
+MOST_WRITTEN = 72  # cells of a map with its values written in
 BINS = 8  # classes of a factor with many levels in a sample
 Pair = tuple[str, str]
 
 
 def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """Draw life over the two numeric factors with most effect.
+    """Draw life over the two numeric factors with most effect; in a grid parts that do not roll are marked.
 
-    Regimes and designs outside the model are marked.
+    It answers: how long does the roller live, and where on the map is it no longer rolling? A small map has its lives
+    written in.
     """
     if view.life is None or not view.has(view.life[0]):
         return None
@@ -41,7 +43,7 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     rows, held = view.hold(pair)
     if not np.isfinite(rows[column]).any():
         return None
-    figure = style.new_figure(84, style.WIDE_MM)
+    figure = style.new_figure(84)
     axes = figure.subplots()
     image = _life_cells(axes, view, rows, pair, column)
     bar = figure.colorbar(
@@ -62,19 +64,17 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
 
 
 def _life_pair(view: StudyView) -> Pair | None:
-    """Of the pairs of numeric factors, return the one that shows most regimes, then most effect on life."""
+    """Of the pairs of numeric factors, return the one with several levels and most effect on life."""
     names = [f for f in view.factors if view.numeric(f) and len(view.levels(f)) > 1]
     column = view.life[0] if view.life else ""
     swing = {f: _swing(view, f, column) for f in names}
 
     def worth(pair: Pair) -> tuple[float, ...]:
         rows, _ = view.hold(pair)
-        regimes = rows["regime"].nunique() if "regime" in rows and view.grid else 1
         several = float(sum(len(view.levels(f)) > 2 for f in pair))
         return (
             float(np.isfinite(rows[column]).any()),
             several,
-            float(regimes),
             sum(swing[f] for f in pair),
         )
 
@@ -142,11 +142,22 @@ def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, col
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, found, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
     axes.tick_params(length=2)
+    _written(axes, life, image)
     if "regime" in rows and view.grid:
         regime = _table(rows["regime"], keys, shape)
         for code in (1, 2, 3):
             _hatched(axes, regime == code, code)
     return image
+
+
+def _written(axes: Axes, values: np.ndarray, image: Any) -> None:
+    """Write the lives into the cells of a small map."""
+    if values.size > MOST_WRITTEN or values.shape[1] > MAX_TICKS:
+        return
+    for (j, i), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            colour = "black" if image.norm(value) > 0.55 else "white"
+            axes.text(i + 0.5, j + 0.5, rounded(float(value), 2), color=colour, ha="center", va="center", fontsize=7)
 
 
 def set_ticks(axis: Axis, texts: list[str]) -> None:
@@ -180,7 +191,7 @@ def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
     label: dict[str, Any] = {
         "ha": "center",
         "va": "center",
-        "fontsize": 6.8,
+        "fontsize": 7,
         "zorder": 5,
         "rotation": 90 if thin else 0,
         "bbox": box,

@@ -10,10 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from trackroller.report.claims import classes
 from trackroller.report.figures import style
-from trackroller.report.numbers import level_text
+from trackroller.report.numbers import level_text, long_name, number, setting
+from trackroller.report.view import StudyView
 
-MAX_POINTS = 1000  # of a sample, in one scatter plot
+COLOURS = 5  # as many levels of the deciding factor are told apart
+CLASSES, FEWEST = 8, 5  # of a sample along an axis: most classes, and fewest rows of one
 Entries = list[tuple[str, dict[str, Any]]]
 
 
@@ -50,15 +53,13 @@ def mark_unlimited(axes: Axes, height: float | None) -> None:
         textcoords="offset points",
         ha="right",
         va="bottom",
-        fontsize=6.5,
+        fontsize=7,
         color="0.25",
     )
 
 
 def marks(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any], filled: Any) -> None:
     """Draw marks, filled where `filled` (n,) says so and hollow elsewhere.
-
-    More than 500 of them as pixels.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def marks(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any], 
     for chosen, face in ((filled, colour), (~filled, "white")):
         part = rows[chosen]
         shown = {"marker": look["marker"], "s": look["s"], "facecolor": face, "edgecolor": colour}
-        axes.scatter(part[x], part[y], linewidth=0.8, zorder=3, rasterized=len(part) > 500, **shown)
+        axes.scatter(part[x], part[y], linewidth=0.8, zorder=3, **shown)
 
 
 def legend(figure: Figure, entries: Entries, columns: int = 3) -> None:
@@ -96,8 +97,44 @@ def drive_of(levels: list[Any] | None) -> list[Any]:
     return levels if levels is not None and len(levels) <= 5 else [None]
 
 
-def sampled(rows: pd.DataFrame, most: int = MAX_POINTS) -> tuple[pd.DataFrame, str]:
-    """Thin out the points of a picture, and say so; sentences never use these rows."""
-    if len(rows) <= most:
-        return rows, ""
-    return rows.sample(most, random_state=0), f"{most} of {len(rows)} cases are drawn."
+def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> None:
+    """Draw the median of a sample along x, in classes of equally many rows, with a band from 5 to 95 %.
+
+    Parameters
+    ----------
+    x, y : values of the rows, shape (n,); rows without either are left out
+    look : `color`, `marker` and more of the line
+    """
+    good = np.isfinite(x) & np.isfinite(y)
+    x, y = x[good], y[good]
+    levels, index = np.unique(x, return_inverse=True)
+    most = min(CLASSES, x.size // FEWEST)
+    if levels.size > max(most, 1):
+        index = np.argsort(np.argsort(x, kind="stable"), kind="stable") * max(most, 1) // max(x.size, 1)
+    members = [index == k for k in np.unique(index)]
+    at = [np.median(x[m]) for m in members]
+    low, middle, high = np.array([np.percentile(y[m], (5, 50, 95), method="nearest") for m in members]).reshape(-1, 3).T
+    axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
+    axes.plot(at, middle, markersize=3, **look)
+
+
+def groups_of(view: StudyView, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:
+    """Return each level (or third) of the deciding factor in words, and which of the chosen rows have it.
+
+    Parameters
+    ----------
+    rows : the chosen cases, shape (n,) bool
+    """
+    index, ends = classes(view, lead, rows, 3)
+    present = [k for k in range(len(ends)) if (index == k).any()]
+    if len(present) > COLOURS:  # a number of many levels: lowest, highest and between
+        chosen = np.unique(np.linspace(0, len(present) - 1, COLOURS).round().astype(int))
+        present = [present[k] for k in chosen]
+    return [(class_words(lead, ends[k]), index == k) for k in present]
+
+
+def class_words(name: str, end: Any) -> str:
+    """Write a level of a factor, or the ends (low, high) of a class, with the name of a factor that needs it."""
+    if isinstance(end, tuple):
+        return f"{long_name(name)} {number(float(f'{end[0]:.3g}'))} to {level_text(name, float(f'{end[1]:.3g}'))}"
+    return level_text(name, end) if isinstance(end, str) else setting(name, end)

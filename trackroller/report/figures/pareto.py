@@ -10,7 +10,9 @@ from matplotlib.figure import Figure
 
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report import choices
+from trackroller.report.claims import leading_factor
 from trackroller.report.figures import style
+from trackroller.report.figures.panels import groups_of
 from trackroller.report.findings import CONDITIONS
 from trackroller.report.numbers import capital, factor_label, listing, long_name, plain, with_unit
 from trackroller.report.view import StudyView
@@ -36,25 +38,26 @@ def _label(front: xr.Dataset, name: str) -> str:
 
 
 def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
-    """Draw all allowed designs and the Pareto set.
+    """Draw all allowed designs, coloured by the factor that decides the first goal, and the Pareto set.
 
-    A panel for the first goal over each other one.
+    It answers: what does more of one goal cost in another, and which choice leads to which end of the set? The panels
+    show the first goal over each other one.
 
     Parameters
     ----------
     front : dataset of `trackroller.analysis.pareto.pareto`
-    view : the study, for the validity of the designs
+    view : the study, for the validity and the deciding factor of the designs
     """
     goals = choices.goals_of(front)
     if not (front["optimal"].values == 1).any():
         return None
     others = goals[1:4]
-    figure = style.new_figure(78, style.WIDE_MM)
+    figure = style.new_figure(78)
     panels = figure.subplots(1, len(others), squeeze=False)[0]
     for axes, goal in zip(panels, others, strict=True):
-        _trade(axes, front, goal, goals[0], joined=len(goals) == 2)
+        _trade(axes, front, goal, goals[0], _groups(front, view, goals[0][0]), joined=len(goals) == 2)
     handles, texts = panels[0].get_legend_handles_labels()
-    figure.legend(handles, texts, loc="outside lower center", ncols=2)
+    figure.legend(handles, texts, loc="outside lower left", ncols=3, markerscale=1.5, alignment="left")
     kind = str(front.attrs.get("kind", "design"))
     style.head(figure, f"Pareto-optimal {kind}s", "Arrows on the axes: the wanted direction.")
     style.finish(figure)
@@ -67,20 +70,44 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
     return figure, style.FigureInfo("pareto-front", caption, choices.pareto(front, view).text)
 
 
-def _trade(axes: Any, front: xr.Dataset, across: tuple[str, str], upwards: tuple[str, str], joined: bool) -> None:
+def _groups(front: xr.Dataset, view: StudyView | None, goal: str) -> list[tuple[str, np.ndarray]]:
+    """Return the rows of the front by the factor that decides the goal; without one all stand together."""
+    column = goal if view is not None and view.has(goal) else view.life[0] if view is not None and view.life else ""
+    if view is None or not column or front.attrs.get("kind", "design") != "design":
+        return []
+    allowed, rows = np.zeros(len(view.table), dtype=bool), front["row"].values
+    allowed[rows] = True
+    lead = leading_factor(view, column, allowed)
+    place = np.searchsorted(np.flatnonzero(allowed), rows)
+    return [(text, mask[place]) for text, mask in groups_of(view, lead, allowed)] if lead else []
+
+
+def _trade(
+    axes: Any,
+    front: xr.Dataset,
+    across: tuple[str, str],
+    upwards: tuple[str, str],
+    groups: list[tuple[str, np.ndarray]],
+    joined: bool,
+) -> None:
     """Draw one goal over another; a set for two goals is joined by the steps that bound it."""
     (x, up_x), (y, up_y) = across, upwards
     best = front["optimal"].values == 1
     xs, ys = front[x].values.astype(float), front[y].values.astype(float)
-    colour, finite = style.palette(4)[3], np.isfinite(xs) & np.isfinite(ys)
+    finite = np.isfinite(xs) & np.isfinite(ys)
     rest, shown = ~best & finite, best & finite
-    axes.scatter(xs[rest], ys[rest], s=5, color="0.65", marker=".", rasterized=True, label="other designs")
+    other = rest & ~np.any([mask for _, mask in groups], axis=0) if groups else rest
+    if other.any():
+        axes.scatter(xs[other], ys[other], s=5, color="0.65", marker=".", rasterized=True, label="other designs")
+    for (text, mask), colour, marker in zip(groups, style.palette(len(groups)), style.MARKERS, strict=False):
+        look = {"s": 6, "color": colour, "marker": marker, "alpha": 0.6, "linewidth": 0}
+        axes.scatter(xs[rest & mask], ys[rest & mask], rasterized=True, label=text, **look)
     if joined:
         order = np.argsort(xs[shown])
         step = {"max": "steps-pre", "min": "steps-post"}[up_x]
-        axes.plot(xs[shown][order], ys[shown][order], color=colour, linewidth=0.8, drawstyle=step)
-    look = {"marker": "D", "edgecolor": "0.1", "linewidth": 0.5, "zorder": 3, "label": "Pareto set"}
-    axes.scatter(xs[shown], ys[shown], s=14, color=colour, **look)
+        axes.plot(xs[shown][order], ys[shown][order], color="0.1", linewidth=0.8, drawstyle=step)
+    look = {"marker": "D", "edgecolor": "0.1", "linewidth": 0.9, "zorder": 3, "label": "Pareto set"}
+    axes.scatter(xs[shown], ys[shown], s=18, facecolor="white", **look)
     for name, set_scale, values in ((x, axes.set_xscale, xs[finite]), (y, axes.set_yscale, ys[finite])):
         if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
             set_scale("log")
@@ -91,6 +118,8 @@ def _trade(axes: Any, front: xr.Dataset, across: tuple[str, str], upwards: tuple
 
 def robust_points(table: xr.Dataset, output: str) -> Drawn:
     """Draw the spread of life and B10 of each design point, and how often it slips or lifts off.
+
+    It answers: which design point keeps its life when conditions scatter, and which may slip?
 
     Parameters
     ----------
@@ -105,7 +134,7 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
     if not np.isfinite(part["percentile_value"].values).any():
         return None
     rank = np.argsort(-np.nan_to_num(part["b10"].values, nan=-1.0))[:MAX_POINTS]
-    figure = style.new_figure(30 + 5.0 * len(rank), style.WIDE_MM)
+    figure = style.new_figure(30 + 5.0 * len(rank))
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=(2.4, 1))
     place = np.arange(len(rank))[::-1]
     own = float(table.attrs.get("log_life_scatter", 0.0)) > 0

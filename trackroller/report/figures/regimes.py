@@ -17,17 +17,25 @@ from trackroller.report.findings import occurrence
 from trackroller.report.numbers import capital, factor_label, long_name
 from trackroller.report.view import StudyView
 
+FEWEST = 5  # cases of a sample outside the most frequent regime
+
 
 def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
-    """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most."""
-    if "regime" not in view.table or len(np.unique(view.regime)) < 2 or len(view.factors) < 2:
+    """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most.
+
+    It answers: where may the roller not be used? None where nothing or too little of a sample does not roll.
+    """
+    if "regime" not in view.table or len(view.factors) < 2:
+        return None
+    most = np.unique(view.regime, return_counts=True)[1].max()
+    if len(view.table) - most < (1 if view.grid else FEWEST):
         return None
     ranked = sorted(view.factors, key=lambda f: -_spread(view, f))
     pair: Pair = (ranked[0], ranked[1])
     pair = pair if len(view.levels(pair[0])) >= len(view.levels(pair[1])) else (pair[1], pair[0])
     if not view.numeric(pair[0]):  # a factor with long names goes on the vertical axis, where its names have room
         pair = (pair[1], pair[0])
-    figure = style.new_figure(76, style.WIDE_MM)
+    figure = style.new_figure(76)
     axes = figure.subplots()
     note = _shares(axes, view, pair)
     axes.set_xlabel(factor_label(pair[0]))

@@ -19,6 +19,7 @@ from trackroller.report.numbers import capital, unit_text
 
 Drawn = tuple[Figure, style.FigureInfo] | None
 MAX_BARS = 12
+WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 FIRST = (
     "roller_life_hours",
     "roller_life_cycles",
@@ -59,15 +60,15 @@ def title(sens: xr.Dataset, output: str) -> str:
 
 
 def tornado(sens: xr.Dataset, output: str) -> Drawn:
-    """Draw bars of the headline index with 95 % intervals, the largest on top.
+    """Draw bars of the headline index with 95 % intervals, the largest on top; of Sobol indices both.
 
-    Of Sobol indices both.
+    It answers: which factor decides, and how sure is that?
     """
     index = words.headline(sens)
     ranks = words.order(sens, output)[:MAX_BARS]
     if not ranks:
         return None
-    figure = style.new_figure(22 + 6.0 * len(ranks), style.WIDE_MM)
+    figure = style.new_figure(22 + 6.0 * len(ranks))
     axes = figure.add_subplot()
     place = dict(zip((r.factor for r in ranks), np.arange(len(ranks))[::-1].astype(float), strict=True))
     first = [r for r in words.order(sens, output, "S1") if r.factor in place] if index == "ST" else []
@@ -112,7 +113,10 @@ def _bars(axes: Axes, ranks: list[words.Rank], place: dict[str, float], look: di
 
 
 def overview(sens: xr.Dataset) -> Drawn:
-    """Draw all outputs at once: the headline index of each factor, relative to the largest where it has units."""
+    """Draw all outputs at once: the headline index of each factor, relative to the largest where it has units.
+
+    It answers: which other result moves when a factor is changed for the sake of the life?
+    """
     index = words.headline(sens)
     table = sens[index].transpose("factor", "output").values
     table = np.abs(table) if index in words.SIGNED else np.where(np.isnan(table), np.nan, np.maximum(table, 0.0))
@@ -125,7 +129,7 @@ def overview(sens: xr.Dataset) -> Drawn:
     rank = np.argsort(-np.nan_to_num(table).mean(axis=1))
     names = [capital(str(n)) for n in sens["factor_name"].values[rank]]
     outputs = [capital(str(n)) for n in sens["output_name"].values[keep]]
-    label = "relative to the largest" if sized else AXIS[index]
+    label = f"{'relative to the largest' if sized else AXIS[index]} [–]"
     figure = _heat(table[rank].T, outputs, names, label, "Influence on every output")
     caption = f"{capital(words.INDEX_WORDS[index])} of every factor (columns) on every output (rows)."
     return figure, style.FigureInfo("influence-overview", caption, words.overview(sens).text)
@@ -133,7 +137,7 @@ def overview(sens: xr.Dataset) -> Drawn:
 
 def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, head: str) -> Figure:
     """Draw a heat map with its values written in."""
-    figure = style.new_figure(34 + 5.2 * len(rows), style.WIDE_MM)
+    figure = style.new_figure(34 + 5.2 * len(rows))
     axes = figure.add_subplot()
     limit = max(float(np.nanmax(np.abs(table))), 1e-9)
     image = axes.imshow(table, cmap="Greys", vmin=0.0, vmax=limit, aspect="auto")
@@ -141,7 +145,7 @@ def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, he
         if np.isfinite(value):
             text = f"{value:.2f}".removeprefix("0") if abs(value) < 10 else f"{value:.3g}"
             colour = "white" if value > 0.6 * limit else "0.1"
-            axes.text(j, i, text, ha="center", va="center", fontsize=6.5, color=colour)
+            axes.text(j, i, text, ha="center", va="center", fontsize=7, color=colour)
     axes.set_yticks(range(len(rows)), rows)
     axes.set_xticks(range(len(columns)), columns, rotation=25, ha="right", rotation_mode="anchor")
     axes.tick_params(length=0)
@@ -152,12 +156,15 @@ def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, he
 
 
 def convergence(sens: xr.Dataset, output: str) -> Drawn:
-    """Draw the headline index of the leading factors over the number of samples, with 95 % bands."""
+    """Draw the headline index of the leading factors over the number of samples, with 95 % bands.
+
+    It answers: are the samples enough, or does the ranking still change?
+    """
     index = words.headline(sens)
     ranks = words.order(sens, output)[:5]
     if f"{index}_course" not in sens or not ranks or sens.sizes.get("sample_size", 0) < 2:
         return None
-    figure = style.new_figure(62, style.WIDE_MM)
+    figure = style.new_figure(62)
     axes = figure.add_subplot()
     part = sens.sel(output=output)
     for i, (rank, colour) in enumerate(zip(ranks, style.palette(len(ranks)), strict=True)):
@@ -182,14 +189,17 @@ def convergence(sens: xr.Dataset, output: str) -> Drawn:
 
 
 def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
-    """Draw sigma over mu*: right matters, above the line acts differently from place to place."""
+    """Draw sigma over mu*: right matters, above the line acts differently from place to place.
+
+    It answers: which factors can be left out of a further study, and which act only together with others?
+    """
     if "mu_star" not in sens:
         return None
     part = sens.sel(output=output)
     x, y = part["mu_star"].values, part["sigma"].values
     if not np.isfinite(x).any():
         return None
-    figure = style.new_figure(64 + 1.2 * int(np.isfinite(x).sum()), style.WIDE_MM)
+    figure = style.new_figure(64 + 1.2 * int(np.isfinite(x).sum()))
     axes = figure.add_subplot()
     top = float(np.nanmax(x)) * 1.15 or 1.0
     for share, dash in ((1.0, "--"), (0.5, ":")):
@@ -230,14 +240,15 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
 def interactions(sens: xr.Dataset, output: str) -> Drawn:
     """Draw a heat map of two-factor interactions, main effects on the diagonal.
 
-    None where no interaction is found.
+    It answers: which two factors have to be chosen together? None where no interaction is worth that.
     """
     part = sens.sel(output=output)
     name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
     if not name or not np.isfinite(part[name].values).any():
         return None
     said = words.interactions(sens, output)
-    if said.kind != "interaction":  # a figure without a finding is left out
+    shares = name != "interaction"
+    if said.kind != "interaction" or (shares and said.values["value"] < WORTH):  # left out without a finding
         return None
     table = np.array(part[name].values, dtype=float)
     table = np.where(np.isfinite(table), table, table.T)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from trackroller.damage import fatigue
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import MAX_POINTS, Entries, legend
+from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.findings import strength
 from trackroller.report.numbers import count, listing, rounded, with_unit
 from trackroller.report.view import BODIES, StudyView
@@ -53,6 +53,7 @@ def scatters(material: Mapping[str, Any]) -> bool:
 def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
 
+    It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
     A body of which no life lies on the axis gets no panel: a heap of marks at the edge says nothing.
     """
     known, rule = _materials(view), str(view.study.get("life_rule", "elementary"))
@@ -64,10 +65,12 @@ def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     shown = shown or bodies[:1]
     names = list(dict.fromkeys(name for _, points in shown for name in points))[:MAX_MATERIALS]
     colours = dict(zip(names, style.palette(len(names)), strict=True))
-    figure = style.new_figure(68 + 2.4 * (len(names) + 3), style.WIDE_MM)
+    figure = style.new_figure(68 + 2.4 * (len(names) + 3))
     panels = figure.subplots(1, len(shown), sharey=True, squeeze=False)[0]
     for axes, (body, points) in zip(panels, shown, strict=True):
-        for i, name in enumerate(n for n in names if n in points):
+        for i, name in enumerate(names):
+            if name not in points:
+                continue
             _lines(axes, known[name], rule, colours[name], ends)
             _cases(axes, *points[name], {"color": colours[name], "marker": style.MARKERS[i % 10]}, ends[1])
         axes.set_xscale("log")
@@ -78,7 +81,7 @@ def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
         axes.set_xlabel(with_unit("Overrollings to failure", "1"))
     panels[0].set_ylabel(with_unit("Peak von Mises stress", "MPa"))
     legend(figure, _entries(names, colours, known), columns=4)
-    style.head(figure, "S-N diagram with the cases of the study", "Dots: peak stress and life, the worse contact.")
+    style.head(figure, "S-N diagram with the cases of the study", "Peak stress and life of the worse contact.")
     style.finish(figure)
     return figure, _info(view, shown, known, rule, ends[1])
 
@@ -144,14 +147,16 @@ def _lines(axes: Axes, material: Mapping[str, Any], rule: str, colour: Any, ends
 
 
 def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any], top: float) -> None:
-    """Draw the cases of a material on the axis, and their median as a large mark."""
-    use = np.flatnonzero(life <= top)
-    if not use.size:
+    """Draw where the cases of a material lie on its curve: a thick line for 90 % of them, a large mark for the median.
+
+    Cases beyond the end of the axis are left out.
+    """
+    order = np.argsort(life)[: int((life <= top).sum())]
+    if not order.size:
         return
-    middle = use[np.argsort(life[use])[use.size // 2]]
-    some = use[:: -(-use.size // MAX_POINTS)]
-    raster = some.size > 500
-    axes.scatter(life[some], stress[some], s=8, alpha=0.35, linewidth=0, zorder=3, rasterized=raster, **look)
+    middle = order[order.size // 2]
+    most = order[np.round(np.linspace(0.05, 0.95, 50) * (order.size - 1)).astype(int)]
+    axes.plot(life[most], stress[most], color=look["color"], linewidth=4, alpha=0.5, zorder=3)
     large = {"marker": look["marker"], "facecolor": "white", "edgecolor": "0.1", "linewidth": 0.9}
     axes.scatter(life[middle], stress[middle], s=30, zorder=5, **large)
 
@@ -161,7 +166,8 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, A
         (n, {"color": colours[n], "marker": style.MARKERS[i % 10], "markersize": 3}) for i, n in enumerate(names)
     ]
     none = {"linestyle": "none", "color": "0.1"}
-    entries.append(("median of the cases", {"marker": "o", "markerfacecolor": "white", **none}))
+    entries.append(("90 % of the cases", {"color": "0.5", "linewidth": 4}))
+    entries.append(("their median", {"marker": "o", "markerfacecolor": "white", **none}))
     entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", {"marker": "|", "markersize": 8, **none}))
     if any(scatters(known[n]) for n in names):
         dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in fatigue.PROBABILITIES]

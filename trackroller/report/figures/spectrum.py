@@ -11,7 +11,6 @@ from trackroller.report.numbers import listing
 from trackroller.report.sheet.spectrum import percent, track
 from trackroller.study.spectrum.damage import BODIES
 
-WIDTH_MM = 125.0  # of a column of the page
 MOST = 16  # blocks drawn one by one; the others stand together
 
 
@@ -37,7 +36,7 @@ def damage_by_block(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     order = np.argsort(-sum(shares.values()), kind="stable")
     shown, rest = order[:MOST], order[MOST:]
     words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
-    figure = style.new_figure(24 + 6.0 * len(words), WIDTH_MM)
+    figure = style.new_figure(24 + 6.0 * len(words))
     panels = figure.subplots(1, len(shares), sharey=True, squeeze=False)[0]
     told = []
     for axes, colour, (body, part) in zip(panels, style.palette(2), shares.items(), strict=False):

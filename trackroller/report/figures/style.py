@@ -90,7 +90,7 @@ def palette(count: int) -> list[Any]:
     return [dark[i % len(dark)] for i in range(max(count, 1))]
 
 
-def new_figure(height_mm: float, width_mm: float = COLUMN_MM) -> Figure:
+def new_figure(height_mm: float, width_mm: float = WIDE_MM) -> Figure:
     """Return an empty figure of true printed size [mm] whose parts are laid out without overlap."""
     figure = Figure(figsize=(width_mm / 25.4, height_mm / 25.4), layout="constrained")
     engine: Any = figure.get_layout_engine()
@@ -115,7 +115,7 @@ def head(figure: Figure, title: str, subtitle: str = "") -> None:
     """Write the title in bold and the subtitle under it, wrapped so that nothing runs out of the figure."""
     width = float(figure.get_figwidth()) * 25.4 - 3
     lines = wrapped(title, width, 7.5, "bold")
-    small = wrapped(subtitle, width, 7.0)
+    small = wrapped(subtitle, width, 7.0) if subtitle else []
     figure.suptitle("\n".join([" "] * len(lines) + small), x=0.015, ha="left", fontsize=7.0, linespacing=1.25)
     figure._trackroller_title = "\n".join(lines)  # type: ignore[attr-defined]
 
