@@ -307,9 +307,9 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
     ds["axial_force"] = ("case", np.arange(40.0))
     stress = np.linspace(100, 800, 40)[:, None, None] * np.array([1.0, 0.9])[None, :, None] * np.ones(2)
     ds["peak_stress"] = (("case", "contact", "body"), stress)
-    from trackroller.damage.fatigue import life_cycles
+    from trackroller.damage.sn_curve import SNCurve, life_cycles
 
-    ds["life_cycles"] = (("case", "contact", "body"), life_cycles(stress, 720.0, 360.0, 1e4, 5e6, rule))
+    ds["life_cycles"] = (("case", "contact", "body"), life_cycles(stress, SNCurve(720.0, 360.0, 1e4, 5e6), rule))
     ds["regime"] = ("case", (np.arange(40) % 4 == 0).astype(np.int8))
     study = {
         "name": "a",

@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.probability import probabilities
 from trackroller.analysis.targets import body_of, inner_sample
-from trackroller.damage.fatigue import DECADES, scatter_ranges, woehler_exponent
+from trackroller.damage.sn_curve import DECADES, curve_of, scatter_ranges, woehler_exponent
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import label
@@ -164,9 +164,7 @@ def deviation(material: Mapping[str, float]) -> float:
     t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
     if t_n is None and t_s is None:
         return 0.0
-    strength = material["tensile_strength"]
-    limit = material["fatigue_strength_ratio"] * strength
-    k = woehler_exponent(strength, limit, material["cycles_at_tensile_strength"], material["cycles_at_fatigue_limit"])
+    k = woehler_exponent(curve_of(material))
     return float(np.log10(scatter_ranges(k, t_n, t_s)[0]) / DECADES)
 
 

@@ -5,40 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.damage.sn_curve import (
-    AMPLITUDE,
-    CONVENTIONS,
-    DECADES,
-    PROBABILITIES,
-    SNCurve,
-    allowable_stress,
-    curve_of,
-    life_cycles,
-    line_at_probability,
-    or_points,
-    scatter_ranges,
-    woehler_exponent,
-)
 from trackroller.errors import InputError
-
-__all__ = [
-    "AMPLITUDE",
-    "CONVENTIONS",
-    "DECADES",
-    "PROBABILITIES",
-    "SNCurve",
-    "allowable_stress",
-    "block_damage",
-    "curve_of",
-    "damage_sum",
-    "guide_hours",
-    "life_cycles",
-    "line_at_probability",
-    "repetitions_to_failure",
-    "roller_hours",
-    "scatter_ranges",
-    "woehler_exponent",
-]
 
 
 def roller_hours(cycles: ArrayLike, velocity: ArrayLike, rolling_radius: ArrayLike) -> np.ndarray:
@@ -105,29 +72,6 @@ def block_damage(applied: ArrayLike, bearable: ArrayLike) -> np.ndarray:
         raise InputError("cycles", float(np.nanmin(n)), "a block's cycles must be >= 0")
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(n == 0, 0.0, n / life)
-
-
-@or_points(2)
-def damage_sum(
-    stress: ArrayLike, cycles: ArrayLike, curve: SNCurve, rule: str = "elementary", *, axis: int = -1
-) -> np.ndarray:
-    """Return the damage sum D = sum n_i/N_i of a spectrum of stress blocks (Palmgren-Miner).
-
-    Parameters
-    ----------
-    stress, cycles : array_like
-        Amplitudes [MPa] and cycles n_i [1] of the blocks along `axis`.
-    curve, rule
-        See `life_cycles`; the rule "unlimited" is Miner original.
-    axis : int
-        Axis of the blocks.
-
-    Returns
-    -------
-    numpy.ndarray
-        D [1], without the axis of the blocks.
-    """
-    return block_damage(cycles, life_cycles(stress, curve, rule)).sum(axis=axis)
 
 
 def repetitions_to_failure(damage: ArrayLike, critical_damage: float = 1.0) -> np.ndarray:

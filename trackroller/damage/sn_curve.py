@@ -10,8 +10,7 @@ ASSUME: the curve of the database holds for a failure probability of 50 %.
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,48 +52,27 @@ def curve_of(material: Any) -> SNCurve:
 
     Parameters
     ----------
-    material : Material or MaterialArrays
-        One material, or the columns of n materials.
+    material : Material, MaterialArrays or mapping
+        One material, the columns of n materials, or the values of a material by name.
 
     Returns
     -------
     SNCurve
         Values of the shape that the material has.
     """
-    return SNCurve(
-        material.tensile_strength,
-        material.fatigue_limit,
-        material.cycles_at_tensile_strength,
-        material.cycles_at_fatigue_limit,
-    )
+    known = material if isinstance(material, Mapping) else vars(material)
+    strength = known["tensile_strength"]
+    limit = known["fatigue_limit"] if "fatigue_limit" in known else known["fatigue_strength_ratio"] * strength
+    return SNCurve(strength, limit, known["cycles_at_tensile_strength"], known["cycles_at_fatigue_limit"])
 
 
-def or_points(place: int) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
-    """Let a function that takes an `SNCurve` at a place (an int) take the curve's four values there as well."""
-
-    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
-        @functools.wraps(function)
-        def wrapped(*args: Any, **named: Any) -> Any:
-            if "curve" in named or (len(args) > place and isinstance(args[place], SNCurve)):
-                return function(*args, **named)
-            own = {name: named.pop(name) for name in SNCurve._fields if name in named}
-            given = len(SNCurve._fields) - len(own)
-            curve = SNCurve(*args[place : place + given], **own)
-            return function(*args[:place], curve, *args[place + given :], **named)
-
-        return wrapped
-
-    return decorate
-
-
-@or_points(0)
 def woehler_exponent(curve: SNCurve) -> np.ndarray:
     """Return the exponent of an S-N curve, k = ln(N_k/N_Rm) / ln(R_m/sigma_D).
 
     Parameters
     ----------
     curve : SNCurve
-        The curve, or its four values one after another.
+        The curve.
 
     Returns
     -------
@@ -210,7 +188,6 @@ def _at_probability(
     return limit, knee, k
 
 
-@or_points(1)
 def life_cycles(
     stress: ArrayLike,
     curve: SNCurve,
@@ -227,7 +204,7 @@ def life_cycles(
     stress : array_like
         Amplitude [MPa].
     curve : SNCurve
-        The curve, or its four values R_m, sigma_D, N_Rm, N_k one after another.
+        The curve.
     rule : str
         Below sigma_D "elementary" runs the curve on, "haibach" takes the slope 2k - 1, "unlimited" gives inf.
     failure_probability : array_like
@@ -260,7 +237,6 @@ def life_cycles(
     return np.where(ratio < 1, np.inf, cycles) if rule == "unlimited" else cycles
 
 
-@or_points(1)
 def allowable_stress(
     cycles: ArrayLike,
     curve: SNCurve,

@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trackroller.damage import fatigue
+from trackroller.damage import sn_curve
+from trackroller.damage.sn_curve import curve_of
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.findings import strength
@@ -21,14 +22,7 @@ BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limi
 MAX_MATERIALS = 6
 _FIELDS = ("tensile_strength", "fatigue_strength_ratio", "cycles_at_tensile_strength", "cycles_at_fatigue_limit")
 _DASHES = {0.1: (0, (1, 1.2)), 0.9: (0, (4, 1.5))}
-Line = tuple[float, float, float, float]
 Points = dict[str, tuple[np.ndarray, np.ndarray]]
-
-
-def line_of(material: Mapping[str, Any]) -> Line:
-    """Return R_m, sigma_D [MPa], N_Rm and N_k [1] of a material's values."""
-    strength, ratio, first, knee = (float(material[name]) for name in _FIELDS)
-    return strength, strength * ratio, first, knee
 
 
 def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np.ndarray) -> np.ndarray:
@@ -40,8 +34,8 @@ def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np
     rule : life rule beyond the knee
     """
     t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
-    return fatigue.allowable_stress(
-        cycles, *line_of(material), rule, failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s
+    return sn_curve.allowable_stress(
+        cycles, curve_of(material), rule, failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s
     )
 
 
@@ -124,7 +118,7 @@ def _points(view: StudyView, body: str, known: Mapping[str, Any], rule: str) -> 
 
 def _ends(points: list, materials: list) -> tuple[float, float]:
     lives = np.concatenate([p[1] for p in points])
-    lines = [line_of(m) for m in materials]
+    lines = [curve_of(m) for m in materials]
     low, knee = min(line[2] for line in lines), max(line[3] for line in lines)
     finite = lives[np.isfinite(lives)]
     top = min(max(finite.max() * 2 if finite.size else knee, 20 * knee), BEYOND * knee)
@@ -135,13 +129,13 @@ def _ends(points: list, materials: list) -> tuple[float, float]:
 def _lines(axes: Axes, material: Mapping[str, Any], rule: str, colour: Any, ends: tuple[float, float]) -> None:
     """Draw the S-N curve of a material, with its scatter if it gives one."""
     at = np.geomspace(*ends, 400)
-    for probability in fatigue.PROBABILITIES if scatters(material) else (0.5,):
+    for probability in sn_curve.PROBABILITIES if scatters(material) else (0.5,):
         look: dict[str, Any] = {
             "linewidth": 1.0 if probability == 0.5 else 0.8,
             "linestyle": _DASHES.get(probability, "-"),
         }
         axes.plot(at, curve(material, rule, probability, at), color=colour, zorder=2, **look)
-    most, limit, first, knee = line_of(material)
+    most, limit, first, knee = curve_of(material)
     ends_look: dict[str, Any] = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
     axes.plot([first, knee], [most, limit], color="0.1", zorder=3, **ends_look)
 
@@ -170,7 +164,7 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, A
     entries.append(("their median", {"marker": "o", "markerfacecolor": "white", **none}))
     entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", {"marker": "|", "markersize": 8, **none}))
     if any(scatters(known[n]) for n in names):
-        dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in fatigue.PROBABILITIES]
+        dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in sn_curve.PROBABILITIES]
         entries += [(f"{100 * p:.0f} % fail", look) for p, look in dashes]
     return entries
 
@@ -179,7 +173,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Any], rule: str, top
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
         "with the peak von Mises stress (MPa) and the life in overrollings of the rolling cases. "
-        f"{fatigue.CONVENTIONS[rule]}."
+        f"{sn_curve.CONVENTIONS[rule]}."
     )
     left = int((~view.rolling).sum())
     caption += f" {count(left)} cases that do not roll are not drawn." if left and view.rolling.any() else ""
@@ -188,7 +182,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Any], rule: str, top
     said = []
     for body, _ in shown:
         names = material_of(view, body)
-        most, limit = (np.array([line_of(known[n])[i] if n in known else np.nan for n in names]) for i in (0, 1))
+        most, limit = (np.array([curve_of(known[n])[i] if n in known else np.nan for n in names]) for i in (0, 1))
         said.append(strength(body, view.column(f"peak_stress_{body}"), limit, most, view.rolling))
     texts = [s.text for s in said if s] + [_scatter_words(known, names) for _, names in shown[:1]]
     return style.FigureInfo("sn_diagram", caption, " ".join(t for t in texts if t))
@@ -198,7 +192,7 @@ def _scatter_words(known: Mapping[str, Any], names: Points) -> str:
     """Say at which share of the median life one in ten has failed, for each material that gives its scatter."""
     said = []
     for name in (n for n in names if scatters(known[n])):
-        k = fatigue.woehler_exponent(*line_of(known[name]))
+        k = sn_curve.woehler_exponent(curve_of(known[name]))
         own = known[name].get("scatter_in_cycles"), known[name].get("scatter_in_stress")
-        said.append(f"{rounded(float(fatigue.scatter_ranges(k, *own)[0]) ** -0.5, 2)} times its median life ({name})")
+        said.append(f"{rounded(float(sn_curve.scatter_ranges(k, *own)[0]) ** -0.5, 2)} times its median life ({name})")
     return f"By the scatter of the material, 10 % have failed at {listing(said)}." if said else ""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.damage import fatigue
+from trackroller.damage import fatigue, sn_curve
 from trackroller.parameters import REGIMES
 from trackroller.report.flags import Flag, flags_of
 from trackroller.report.inputs import material_source
@@ -207,15 +207,9 @@ def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Ma
 
 def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Mapping, probability: float) -> float:
     stress = ds["peak_stress"].sel(body=body).values
-    curve = (
-        material["tensile_strength"],
-        material["fatigue_strength_ratio"] * material["tensile_strength"],
-        material["cycles_at_tensile_strength"],
-        material["cycles_at_fatigue_limit"],
-    )
-    cycles = fatigue.life_cycles(
+    cycles = sn_curve.life_cycles(
         stress,
-        *curve,
+        sn_curve.curve_of(material),
         rule=str(ds.attrs["life_rule"]),
         failure_probability=probability,
         scatter_cycles=material.get("scatter_in_cycles"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import fatigue
+from trackroller.damage import fatigue, sn_curve
 from trackroller.parameters import PARAMETERS, REGIMES
 from trackroller.roller.case import to_table
 from trackroller.roller.record import material_values, plain_inputs
@@ -58,9 +58,9 @@ def damage_per_shift(
     for i, material in enumerate(bodies):
         t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
         if probability == 0.5 or t_n or t_s:
-            life[..., i] = fatigue.life_cycles(
+            life[..., i] = sn_curve.life_cycles(
                 stress[..., i],
-                fatigue.curve_of(material),
+                sn_curve.curve_of(material),
                 rule,
                 failure_probability=probability,
                 scatter_cycles=t_n,
@@ -161,7 +161,7 @@ def _labelled(
         "title": spectrum.name,
         "description": spectrum.description,
         "life_rule": rule,
-        "life_conventions": f"{fatigue.AMPLITUDE}; {fatigue.CONVENTIONS[rule]}; linear damage sum, failure at "
+        "life_conventions": f"{sn_curve.AMPLITUDE}; {sn_curve.CONVENTIONS[rule]}; linear damage sum, failure at "
         f"D = {spectrum.critical_damage:g}",
         "critical_damage": spectrum.critical_damage,
     }
