@@ -30,7 +30,7 @@ def analysed(design, count, seed):
     x1, x2, x3 = ds["axial_force"].values, ds["motor_force"].values, ds["velocity"].values - 1 - PI
     ds["friction_power"] = ("case", np.sin(x1) + 7 * np.sin(x2) ** 2 + 0.1 * x3**4 * np.sin(x1))
     ds.attrs = {"study": study.merged()}
-    return analyse_dataset(ds, ["friction_power"])
+    return analyse_dataset(ds)
 
 
 @pytest.mark.parametrize(

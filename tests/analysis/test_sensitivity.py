@@ -291,7 +291,7 @@ def test_full_slip_rows_are_left_out_counted_and_analysed_on_their_own():
     assert float(result["first"].sel(output="friction_power", factor="axial_force")) > 0.97
     assert float(result["first"].sel(output="full_slip", factor="velocity")) > 0.8  # binned: the step is smeared
     assert "full slip" in str(result["note"].sel(output="friction_power").item())
-    kept = analyse_dataset(solved(data, fake), keep=("rolling", "full_slip"))
+    kept = analyse_dataset(solved(data | {"analysis": {"keep": ["rolling", "full_slip"]}}, fake))
     assert float(kept["first"].sel(output="friction_power", factor="axial_force")) < 0.1
 
 

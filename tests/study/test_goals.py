@@ -37,6 +37,7 @@ LHS = {
         "roller_material": {"values": ["PA6", "POM"]},
     },
 }
+LIVES = LHS | {"analysis": {"outputs": ["roller_life_hours"]}}
 GOALS = {"pareto": {"roller_life_hours": "max", "friction_power": "min", "axis_distance": "min"}}
 STEEL = {
     "name": "steel",
@@ -213,17 +214,17 @@ def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
 def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set():
     """Power over 12 W only where life depends on velocity alone; below, the axial force decides."""
     ds = solved(
-        LHS | {"constraints": ["friction_power < 12", "regime != full_slip"], "analysis": {"keep": ["rolling"]}},
+        LIVES | {"constraints": ["friction_power < 12", "regime != full_slip"]},
         lambda x, v: x > 0.9,
         roller_life_hours=lambda x, v: np.where(v < 1.2, 10 ** (x + 0.01 * v), 10 ** (8 + v)),
         friction_power=lambda x, v: 10 * v,
     )
     free = ds.copy()
-    free.attrs = {**ds.attrs, "study": parse_study(LHS).merged()}
+    free.attrs = {**ds.attrs, "study": parse_study(LIVES).merged()}
     kept = (ds["velocity"].values < 1.2) & (ds["axial_force"].values <= 0.9)
     index = {}
     for name, one in (("limited", ds), ("free", free)):
-        sens = analyse_dataset(one, ["roller_life_hours"])
+        sens = analyse_dataset(one)
         index[name] = float(sens["first"].sel(output="roller_life_hours", factor="axial_force"))
         if name == "limited":
             assert f"{kept.sum()} of 400 rows used" in sens["note"].values[0]
@@ -237,8 +238,8 @@ def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set(
 
 
 def test_zero_and_infinite_lives_are_left_out_and_counted():
-    ds = solved(LHS, roller_life_hours=lambda x, v: np.where(x < 0.1, np.inf, np.where(x > 0.9, 0.0, 10**v)))
-    sens = analyse_dataset(ds, ["roller_life_hours"])
+    ds = solved(LIVES, roller_life_hours=lambda x, v: np.where(x < 0.1, np.inf, np.where(x > 0.9, 0.0, 10**v)))
+    sens = analyse_dataset(ds)
     note = sens["note"].item()
     assert "40 unlimited" in note and "40 not positive" in note and "320 of 400" in note
     assert np.isfinite(sens["first"]).any()
@@ -383,12 +384,14 @@ def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
 def test_correlated_columns_of_a_table_are_told(tmp_path):
     rows = [f"{-50 - i},{0.1 + 0.002 * i},{(i * 37) % 101}" for i in range(60)]
     (tmp_path / "t.csv").write_text("radial_force,friction_coefficient,axial_force\n" + "\n".join(rows))
-    study = parse_study({"name": "t", "design": "table", "table": "t.csv"}, Path(tmp_path / "s.yaml"))
+    study = parse_study(
+        {"name": "t", "design": "table", "table": "t.csv"} | {"analysis": LIVES["analysis"]}, Path(tmp_path / "s.yaml")
+    )
     ds = study.design()
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
     ds.attrs = {"study": study.merged()}
     assert design_of(ds).method == "table"
-    assert "are correlated (rank correlation -1.00)" in analyse_dataset(ds, ["roller_life_hours"]).attrs["treatment"]
+    assert "are correlated (rank correlation -1.00)" in analyse_dataset(ds).attrs["treatment"]
 
 
 def test_every_source_of_an_analysis_is_an_input_of_its_rule():

@@ -211,7 +211,7 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
     """
     order = np.argsort(y, kind="stable")
     last = np.append(np.diff(y[order]) != 0, True)  # equal outputs: compare after the last of them
-    value = _distance(group[order], last)
+    value = _distance(group[order], last, np.ones(len(y)))
     if not noise:
         return value, np.nan
     rng = np.random.default_rng(seed)
@@ -219,7 +219,8 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
         group = group[:: len(group) // PAWN_ROWS[1]]
         last = np.ones(len(group), dtype=bool)
     shrink = np.sqrt(len(group) / len(y))  # the noise of a distance falls as one over the root of the rows
-    drawn = [_distance(rng.permutation(group), last) for _ in range(60)]
+    once = np.ones(len(group))
+    drawn = [_distance(rng.permutation(group), last, once) for _ in range(60)]
     return value, float(np.percentile(drawn, 95) * shrink)
 
 
@@ -243,26 +244,21 @@ def pawn_interval(
     y, group = y[every], group[every]
     order = np.argsort(y, kind="stable")
     last, group = np.append(np.diff(y[order]) != 0, True), group[order]
-    number = np.arange(group.max() + 1)
-    rng = np.random.default_rng(seed)
-    member = (group == number[:, None]).astype(float)
-    drawn = np.empty(resamples)
-    for i in range(resamples):
-        weight = np.bincount(rng.integers(0, len(group), len(group)), minlength=len(group)).astype(float)
-        inside = np.cumsum(member * weight, axis=1)
-        whole = np.cumsum(weight) / len(group)
-        filled = inside[:, -1] > 0
-        apart = np.abs(inside[filled] / inside[filled, -1:] - whole)[:, last].max(axis=1)
-        drawn[i] = np.median(apart)
-    half = Z * float(drawn.std(ddof=1)) / shrink
+    rng, rows = np.random.default_rng(seed), len(group)
+    weights = (np.bincount(rng.integers(0, rows, rows), minlength=rows).astype(float) for _ in range(resamples))
+    half = Z * float(np.std([_distance(group, last, weight) for weight in weights], ddof=1)) / shrink
     return max(0.0, value - half), min(1.0, value + half)
 
 
-def _distance(group: np.ndarray, last: np.ndarray) -> float:
-    number = np.bincount(group).astype(float)
-    whole = np.arange(1, len(group) + 1)[last] / len(group)
-    distances = [np.abs(np.cumsum(group == g)[last] / number[g] - whole).max() for g in np.flatnonzero(number)]
-    return float(np.median(distances))
+def _distance(group: np.ndarray, last: np.ndarray, weight: np.ndarray) -> float:
+    """Return the median Kolmogorov-Smirnov distance of the groups from all rows, which are sorted by the output."""
+    number = np.bincount(group, weight)
+    whole = np.cumsum(weight)[last] / len(group)
+    return float(
+        np.median(
+            [np.abs(np.cumsum((group == g) * weight)[last] / number[g] - whole).max() for g in np.flatnonzero(number)]
+        )
+    )
 
 
 def prcc(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -96,7 +97,6 @@ def correlated(design: SampledDesign) -> str:
     return f"; {', '.join(told)}: the index of each includes the influence of both" if told else ""
 
 
-_DIMS = {1: ("output", "factor"), 2: ("output", "factor", "factor_2"), 0: ("output",)}
 _WORDS = {
     "S1": "first-order Sobol index",
     "ST": "total Sobol index",
@@ -120,6 +120,11 @@ _WORDS = {
     "pawn_noise": "PAWN index below which an inert factor stays",
     "delta_noise": "delta index below which an inert factor stays",
     "prcc": "partial rank correlation coefficient",
+    "group_S1": "first-order Sobol index of the group, interactions inside the group included",
+    "group_ST": "total Sobol index of the group",
+    "conditional_S1": "first-order Sobol index among the rows of one level",
+    "conditional_ST": "total Sobol index among the rows of one level",
+    "conditional_rows": "rows, cells or blocks behind the indices of one level",
 }
 
 
@@ -137,29 +142,50 @@ def labelled(design: SampledDesign, columns: list[Output], results: list[Estimat
     -------
     Dataset with the dimensions output, factor, factor_2 and sample_size, with units and long names.
     """
-    out = xr.Dataset(
-        coords={
-            "output": np.array([c.name for c in columns], dtype=object),
-            "factor": np.array(list(design.factors), dtype=object),
-            "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
-            "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
-            "scale": ("output", np.array([c.scale for c in columns], dtype=object)),
-            "factor_name": ("factor", np.array([factor_name(n) for n in design.factors], dtype=object)),
-        }
-    )
-    for name in results[0]:
-        values = np.stack([r[name] for r in results])
-        root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")
-        dims = ("output", "sample_size", "factor") if "_course" in name else _DIMS[values.ndim - 1]
-        attrs = {"units": "1", "long_name": _WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
-        if root in ("mu", "mu_star", "sigma", "effect", "curvature", "interaction"):
-            attrs["units"], attrs["comment"] = "", "in units of the output on its scale (log10: decades)"
-        out[name] = (dims, values, attrs)
+    coords = output_labels(columns) | {
+        "factor": np.array(list(design.factors), dtype=object),
+        "scale": ("output", np.array([c.scale for c in columns], dtype=object)),
+        "factor_name": ("factor", np.array([factor_name(n) for n in design.factors], dtype=object)),
+    }
+    out = xr.Dataset(stacked(results, ("output", "factor", "factor_2")), coords)
     if "factor_2" in out.dims:
         out = out.assign_coords(factor_2=out["factor"].values)
     if at.size and "sample_size" in out.dims:
         words = {"long_name": "rows of the design, from the first on", "units": "1"}
         out = out.assign_coords(sample_size=("sample_size", at, words))
+    return out
+
+
+def output_labels(columns: list[Output]) -> dict[str, Any]:
+    """Return the coordinates along `output`: name, units and words of each output."""
+    return {
+        "output": np.array([c.name for c in columns], dtype=object),
+        "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
+        "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
+    }
+
+
+def stacked(results: list[Estimates], dims: tuple[str, ...]) -> dict[str, Any]:
+    """Return the estimates of all outputs as variables of a data set.
+
+    Parameters
+    ----------
+    results : estimates of each output
+    dims : dimensions of an estimate, `output` first; one with fewer dimensions takes the first of them
+
+    Returns
+    -------
+    Dimensions, values and attributes by the name of the estimate.
+    """
+    out: dict[str, Any] = {}
+    for name in results[0]:
+        values = np.stack([r[name] for r in results])
+        root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")
+        axes = ("output", "sample_size", "factor") if "_course" in name else dims[: values.ndim]
+        attrs = {"units": "1", "long_name": _WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
+        if root in ("mu", "mu_star", "sigma", "effect", "curvature", "interaction"):
+            attrs |= {"units": "", "comment": "in units of the output on its scale (log10: decades)"}
+        out[name] = (axes, values, attrs)
     return out
 
 

@@ -46,7 +46,7 @@ def column(ds: xr.Dataset, dims: tuple[str, ...], name: str, factors: Iterable[s
         known = PARAMETERS.get(name)
         return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
     try:
-        found = outputs(ds, dims, [name], REGIMES[:3], natural=[name], unlimited=True)[0]
+        found = outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)[0]
     except InputError as error:
         close = nearest(name, REGIMES)
         remedy = f"Did you mean '{close}'?" if close else error.remedy

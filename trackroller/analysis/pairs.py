@@ -93,15 +93,30 @@ def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, degrees: tuple[in
         one, other = (bases[p][:, :joint] if ordered[p] else bases[p] for p in (i, j))
         columns.append((one[:, :, None] * other[:, None, :]).reshape(len(y), -1))
     term = np.repeat(np.arange(len(columns)) - 1, [part.shape[1] for part in columns])
-    if len(y) < ROWS_PER_TERM * len(term):
-        return None
     table = np.concatenate(columns, axis=1)
+    missed = held_out(y, table)
+    return None if missed is None else _Fit(table, term, float(1 - (missed**2).mean()))
+
+
+def held_out(y: np.ndarray, table: np.ndarray) -> np.ndarray | None:
+    """Return what a linear fit misses of each row that it was not fitted to.
+
+    Parameters
+    ----------
+    y : shape (n,) or (n, m)
+    table : columns of the fit, shape (n, columns)
+
+    Returns
+    -------
+    Residuals of the shape of `y`; None if the rows are too few or the columns depend on each other.
+    """
+    if len(y) < ROWS_PER_TERM * table.shape[1]:
+        return None
     basis, triangle = np.linalg.qr(table)
     if np.abs(np.diag(triangle)).min() < 1e-8 * len(y) ** 0.5:
         return None
-    lever = (basis**2).sum(axis=1)
-    missed = (y - basis @ (basis.T @ y)) / np.maximum(1e-9, 1 - lever)
-    return _Fit(table, term, float(1 - (missed**2).mean()))
+    lever = (basis**2).sum(axis=1).reshape(-1, *[1] * (y.ndim - 1))
+    return np.asarray((y - basis @ (basis.T @ y)) / np.maximum(1e-9, 1 - lever))
 
 
 def orthonormal(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.limits import column, meeting
+from trackroller.analysis.limits import Column, column, meeting
 from trackroller.analysis.restore import design_of
 from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
@@ -111,17 +111,10 @@ def pareto(
     values = {name: found[0] for name, found in columns.items()}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
-    table = np.stack([np.asarray(values[n], dtype=float) for n in objectives], axis=1)
-    allowed, excluded = _allowed(table, values, constraints, own, kept)
-    optimal = pareto_mask(table, objectives.values(), allowed)
+    undefined = np.isnan([np.asarray(values[name], dtype=float) for name in objectives]).any(axis=0)
+    allowed, excluded = _allowed(undefined, values, constraints, own, kept)
     shown = {n: c for n, c in design.columns.items() if not (model and n == "contact_model")}
-    data: dict[str, Any] = {name: ("row", _labels(values)[allowed]) for name, values in shown.items()}
-    for name, (value, units, long_name) in columns.items():
-        data[name] = ("row", value[allowed], {"units": units, "long_name": long_name})
-    data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
-    out = xr.Dataset(data, coords={"row": np.flatnonzero(allowed)})
-    out.attrs = {
-        "objectives": ", ".join(f"{n} {d}" for n, d in objectives.items()),
+    told = {
         "constraints": "; ".join(constraints),
         "factors": ", ".join(n for n in design.factors if n in shown),
         "rows": int(own.sum()),
@@ -130,11 +123,29 @@ def pareto(
         "not_rolling": int((own & (regime != 0)).sum()),
         "study": ds.attrs.get("study", ""),
     }
-    return out
+    return _front(shown, columns, objectives, allowed, told)
+
+
+def _front(
+    factors: Mapping[str, np.ndarray],
+    columns: Mapping[str, Column],
+    objectives: Mapping[str, str],
+    allowed: np.ndarray,
+    told: Mapping[str, Any],
+) -> xr.Dataset:
+    """Return the allowed rows with their factors, goals and `optimal`; see `pareto`."""
+    goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in objectives], axis=1)
+    optimal = pareto_mask(goals, objectives.values(), allowed)
+    data: dict[str, Any] = {name: ("row", _labels(values)[allowed]) for name, values in factors.items()}
+    for name, (value, units, long_name) in columns.items():
+        data[name] = ("row", value[allowed], {"units": units, "long_name": long_name})
+    data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
+    attrs = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()), **told}
+    return xr.Dataset(data, {"row": np.flatnonzero(allowed)}, attrs)
 
 
 def _allowed(
-    table: np.ndarray, values: Mapping[str, Any], constraints: list[str], own: np.ndarray, kept: np.ndarray
+    undefined: np.ndarray, values: Mapping[str, Any], constraints: list[str], own: np.ndarray, kept: np.ndarray
 ) -> tuple[np.ndarray, dict[str, int]]:
     """Return the mask of allowed rows and the number of rows that each reason excluded."""
     allowed = own.copy()
@@ -142,7 +153,7 @@ def _allowed(
     # constraints come first, so that a row without a value counts for them
     checks = {"regime": kept}
     checks |= meeting(constraints, values, own.size)
-    checks["an undefined goal"] = ~np.isnan(table).any(axis=1)
+    checks["an undefined goal"] = ~undefined
     for reason, good in checks.items():
         excluded[reason] = int((allowed & ~good).sum())
         allowed &= good
@@ -200,17 +211,10 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
     InputError : a statistic is not in the analysis
     """
     columns = {name: _of_points(table, name) for name in objectives}
-    values = np.stack([column.values.astype(float) for column in columns.values()], axis=1)
-    known = ~np.isnan(values).any(axis=1)
-    optimal = pareto_mask(values, objectives.values())
+    known = ~np.isnan([column[0].astype(float) for column in columns.values()]).any(axis=0)
     outer = [name for name in str(table.attrs["outer_factors"]).split(", ") if name]
-    data: dict[str, Any] = {name: ("row", table[name].values[known]) for name in outer}
-    data |= {name: ("row", column.values[known], column.attrs) for name, column in columns.items()}
-    data["optimal"] = ("row", optimal[known].astype(np.int8), {"long_name": "in the Pareto set"})
-    out = xr.Dataset(data, coords={"row": np.flatnonzero(known)})
     left = int((~known).sum())
-    out.attrs = {
-        "objectives": ", ".join(f"{n} {d}" for n, d in objectives.items()),
+    told = {
         "constraints": "",
         "factors": ", ".join(outer),
         "rows": len(known),
@@ -219,32 +223,30 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
         "kind": "design point",
         "study": table.attrs.get("study", ""),
     }
-    return out
+    return _front({name: table[name].values for name in outer}, columns, objectives, known, told)
 
 
-def _of_points(table: xr.Dataset, name: str) -> xr.DataArray:
+def _of_points(table: xr.Dataset, name: str) -> Column:
     """Return a statistic or an outer factor at each design point, with units and long name."""
     kind, output = statistic(name)
+    if not kind:
+        known = PARAMETERS.get(name)
+        return table[name].values, known.units if known else "", known.long_name if known else name
     if kind == "probability" and output in REGIMES:
         found, told, units = table["probability"].sel(regime=output), REGIME_LABELS[REGIMES.index(output)], "1"
     elif kind == "probability":
-        own = table["target"].values == output
-        if not own.any():
+        if output not in table["target"].values:
             raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
-        place = int(np.argmax(own))
-        told, units = f"meeting the target for {table['target_name'].values[place]}", "1"
-        found = table["target_probability"].isel(target=place)
-    elif kind:
+        part = table.isel(target=int(np.argmax(table["target"].values == output)))
+        found, units = part["target_probability"], "1"
+        told = f"meeting the target for {part['target_name'].item()}"
+    else:
         if output not in table["output"].values or kind not in table:
             raise InputError("pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}")
         part = table.sel(output=output)
         found, told, units = part[kind], str(part["output_name"].item()), str(part["output_units"].item())
-    else:
-        known = PARAMETERS.get(name)
-        attrs = {"units": known.units if known else "", "long_name": known.long_name if known else name}
-        return table[name].copy().assign_attrs(attrs)
     word = {"b10": "B10", "b10_safe": "B10 with other cases as life 0"}.get(kind, kind.replace("_", " "))
-    return found.copy().assign_attrs(units=units, long_name=f"{word} of {told}")
+    return found.values, units, f"{word} of {told}"
 
 
 def default_objectives(ds: xr.Dataset) -> dict[str, str]:

@@ -10,7 +10,7 @@ import xarray as xr
 
 from trackroller.analysis.givendata import firsts
 from trackroller.analysis.indices import Estimates, complete_part, variance_share
-from trackroller.analysis.labels import factor_name
+from trackroller.analysis.labels import factor_name, stacked
 from trackroller.analysis.sobol import closed_indices, with_bounds
 from trackroller.study.design.factors import label
 from trackroller.study.design.saltelli import all_groups, as_set
@@ -18,13 +18,6 @@ from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output
 
 ENDS = ("", "_low", "_high")
-WORDS = {
-    "group_S1": "first-order Sobol index of the group, interactions inside the group included",
-    "group_ST": "total Sobol index of the group",
-    "conditional_S1": "first-order Sobol index among the rows of one level",
-    "conditional_ST": "total Sobol index among the rows of one level",
-    "conditional_rows": "rows, cells or blocks behind the indices of one level",
-}
 
 
 def parts_of(
@@ -55,24 +48,14 @@ def parts_of(
         members = [", ".join(map(factor_name, names)) for names in groups.values()]
         coords["group_members"] = ("group", np.array(members, dtype=object))
         estimates = [of_groups(column.values, design, groups, seed, resamples) for column in columns]
-        found |= _stacked(estimates, ("output", "group"))
+        found |= stacked(estimates, ("output", "group"))
     if category := asked.get("conditional_on"):
         levels = design.factors[category].levels
         coords["level"] = ("level", np.array([label(level) for level in levels], dtype=object), {"factor": category})
         coords["factor"] = np.array(list(design.factors), dtype=object)
         estimates = [within_levels(column.values, design, category, seed, resamples) for column in columns]
-        found |= _stacked(estimates, ("output", "level", "factor"))
+        found |= stacked(estimates, ("output", "level", "factor"))
     return xr.Dataset(found, coords | {"output": np.array([c.name for c in columns], dtype=object)})
-
-
-def _stacked(estimates: Sequence[Estimates], dims: tuple[str, ...]) -> dict[str, Any]:
-    out = {}
-    for name in estimates[0]:
-        values = np.stack([one[name] for one in estimates])
-        root = name.removesuffix("_low").removesuffix("_high")
-        attrs = {"units": "1", "long_name": WORDS[root] + name[len(root) :].replace("_", " ")}
-        out[name] = (dims[: values.ndim], values, attrs)
-    return out
 
 
 def of_groups(

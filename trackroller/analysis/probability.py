@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import stats
 
-from trackroller.analysis.pairs import ROWS_PER_TERM, orthonormal
+from trackroller.analysis.pairs import held_out, orthonormal
 
 DEGREES = (12, 8, 5, 3, 2, 1)  # of the functions of each factor; the best prediction wins
 
@@ -81,12 +81,6 @@ def _unexplained(hits: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> np.
     for degree in DEGREES:
         found = [orthonormal(unit[:, j], bool(ordered[j]), degree) for j in range(unit.shape[1])]
         table = np.concatenate([np.ones((len(hits), 1)), *(part for part in found if part is not None)], axis=1)
-        if len(hits) < ROWS_PER_TERM * table.shape[1]:
-            continue
-        basis, triangle = np.linalg.qr(table)
-        if np.abs(np.diag(triangle)).min() < 1e-8 * len(hits) ** 0.5:
-            continue
-        lever = (basis**2).sum(axis=1)[:, None]
-        missed = (hits - basis @ (basis.T @ hits)) / np.maximum(1e-9, 1 - lever)
-        best = np.minimum(best, (missed**2).mean(axis=0))
+        if (missed := held_out(hits, table)) is not None:
+            best = np.minimum(best, (missed**2).mean(axis=0))
     return best

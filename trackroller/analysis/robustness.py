@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
 from scipy import stats
 from scipy.optimize import brentq
 
+from trackroller.analysis.labels import output_labels
 from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.probability import probabilities
 from trackroller.analysis.targets import body_of, inner_sample
@@ -26,7 +27,7 @@ from trackroller.study.design.factors import label
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.goals import statistic
-from trackroller.study.outputs import Output, case_dims, default_names, flat, outputs, read_study, regimes
+from trackroller.study.outputs import Output, case_dims, default_names, flat, outputs, read_study, regimes, settings
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
@@ -34,8 +35,7 @@ PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 def robustness(
     ds: xr.Dataset,
     design: SampledDesign,
-    names: Iterable[str] | None = None,
-    log_life_scatter: float | Mapping[str, np.ndarray] = 0.0,
+    log_life_scatter: Mapping[str, np.ndarray],
 ) -> xr.Dataset:
     """Summarise every output and the probability of each regime at every design point.
 
@@ -45,12 +45,9 @@ def robustness(
         Solved study with an inner/outer array design, dimension `case`.
     design : SampledDesign
         Design of the study, see `trackroller.analysis.restore.design_of`.
-    names : iterable of str, optional
-        Outputs, see `trackroller.study.outputs.outputs`.
-    log_life_scatter : float or mapping of str to numpy.ndarray
-        Standard deviation of log10 life of the material itself [1], besides the scatter of the study: lg(T_N) / 2.563
-        for the scatter range T_N between 10 and 90 % failure probability. One number, or for each body an array of
-        shape (n,), see `material_deviations`.
+    log_life_scatter : mapping of str to numpy.ndarray
+        For each body the standard deviation of log10 life of the material itself [1], shape (n,), besides the scatter
+        of the study: see `material_deviations`.
 
     Returns
     -------
@@ -72,19 +69,15 @@ def robustness(
     shape = (design.meta["design_points"], design.meta["inner_samples"])
     dims = case_dims(ds, design.factors)
     regime = regimes(ds, dims).reshape(shape)
-    wanted = list(names) if names is not None else default_names(ds, design.factors, dims)
-    goals = [statistic(goal) for goal in read_study(ds).get("pareto") or ()]
+    study = read_study(ds)
+    wanted = list(settings(study).get("outputs") or default_names(ds, design.factors, dims))
+    goals = [statistic(goal) for goal in study.get("pareto") or ()]
     wanted += [output for kind, output in goals if kind not in ("", "probability") and output not in wanted]
     met = allowed_cases(ds, dims, design.columns)
-    columns = outputs(ds, design.factors, wanted, natural=wanted, unlimited=True, allowed=met)
+    columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=met)
     results = []
     for column in columns:
-        own = (
-            log_life_scatter.get(body_of(column.name), 0.0)
-            if isinstance(log_life_scatter, Mapping)
-            else log_life_scatter
-        )
-        scatter = np.broadcast_to(np.asarray(own, dtype=float), (design.size,)).reshape(shape)
+        scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size)).reshape(shape)
         results.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
     out = xr.Dataset(coords=_coordinates(design, shape, columns))
     for key in results[0] if results else ():
@@ -95,7 +88,8 @@ def robustness(
     for end, value in found.items():
         attrs = {"units": "1", "long_name": f"probability{end.replace('_', ' ')} of the regime"}
         out[f"probability{end}"] = (("regime", "point"), value.reshape(len(REGIMES), -1), attrs)
-    out.attrs = _attributes(design, _largest(log_life_scatter)) | {"study": ds.attrs.get("study", "")}
+    largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
+    out.attrs = _attributes(design, largest) | {"study": ds.attrs.get("study", "")}
     out.attrs["constrained"] = int(met is not None)
     return out
 
@@ -115,11 +109,6 @@ def _attributes(design: SampledDesign, scatter: float) -> dict[str, str | int | 
         "log_life_scatter": scatter,
         "treatment": treatment + (", the material's own scatter of life in B10" if scatter else ""),
     }
-
-
-def _largest(scatter: float | Mapping[str, np.ndarray]) -> float:
-    parts = list(scatter.values()) if isinstance(scatter, Mapping) else [np.asarray(scatter)]
-    return max((float(np.max(part)) for part in parts), default=0.0)
 
 
 def material_deviations(ds: xr.Dataset, wanted: bool | float) -> dict[str, np.ndarray]:
@@ -178,9 +167,7 @@ def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list[Ou
         outer[name] = ("point", values)
     point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(shape[0])]
     return {
-        "output": np.array([c.name for c in columns], dtype=object),
-        "output_units": ("output", np.array([c.units for c in columns], dtype=object)),
-        "output_name": ("output", np.array([c.long_name for c in columns], dtype=object)),
+        **output_labels(columns),
         "percentile": np.array(PERCENTILES),
         "regime": np.array(REGIMES, dtype=object),
         "point": np.arange(shape[0]),

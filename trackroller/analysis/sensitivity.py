@@ -7,7 +7,7 @@ inner/outer array design gets distributions of life (`robustness`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -48,9 +48,9 @@ NEEDS = {
 class Settings:
     """Seed, number of bootstrap resamples and given-data measures of an analysis."""
 
+    resamples: int
+    measures: tuple[str, ...]
     seed: int = 0
-    resamples: int = 300
-    measures: tuple[str, ...] = tuple(MEASURES)
 
 
 class Found(NamedTuple):
@@ -135,30 +135,15 @@ _METHODS: dict[str, Callable[[np.ndarray, SampledDesign, Settings], Found]] = {
 _UNIT = {"saltelli": "blocks", "morris": "elementary effects", "grid": "cells"}
 
 
-def analyse_dataset(
-    ds: xr.Dataset,
-    names: Iterable[str] | None = None,
-    keep: Iterable[str] | None = None,
-    natural: Iterable[str] = (),
-    seed: int = 0,
-    scale: str | Mapping[str, str] = "",
-) -> xr.Dataset:
+def analyse_dataset(ds: xr.Dataset) -> xr.Dataset:
     """Compute sensitivity indices of every output of a study and record how they were obtained.
 
     Parameters
     ----------
     ds : xarray.Dataset
         Gathered study with dimension `case` or one dimension a factor, and the study file in the attribute `study`.
-    names : iterable of str, optional
-        Outputs, see `trackroller.study.outputs.outputs`. Default: the key `analysis` of the study file.
-    keep : iterable of str, optional
-        Regimes whose rows count. Default: the key `analysis` of the study file, or rolling only.
-    natural : iterable of str
-        Outputs that stay on their natural scale, see `trackroller.study.outputs.outputs`.
-    seed : int
-        Seed of all random numbers. The same study and seed give the same indices.
-    scale : str or mapping of str to str
-        Scale of the outputs, see `trackroller.study.outputs.outputs`. Default: the key `analysis` of the study file.
+        The key `analysis` of the study file says which outputs and regimes count. The same study gives the same
+        indices.
 
     Returns
     -------
@@ -179,23 +164,22 @@ def analyse_dataset(
     study = read_study(ds)
     design = design_of(ds, study)
     given = settings(study)
-    names = given.get("outputs") if names is None else names
-    keep = tuple(given.get("keep", ("rolling",)) if keep is None else keep)
-    how = Settings(seed, int(given.get("resamples", 300)), tuple(given.get("measures", MEASURES)))
+    keep = tuple(given.get("keep", ("rolling",)))
+    how = Settings(int(given.get("resamples", 300)), tuple(given.get("measures", MEASURES)))
     dims = case_dims(ds, design.factors)
     met = allowed_cases(ds, dims, design.columns)
     own = material_deviations(ds, given.get("material_scatter", False))
     aims = targets(ds, design, given["target"], own, met) if given.get("target") else xr.Dataset()
     if design.method == "inner_outer":
-        return robustness(ds, design, names, own).merge(aims, combine_attrs="override")
-    columns = outputs(ds, design.factors, names, keep, natural, scale=scale or given.get("scale", ""), allowed=met)
+        return robustness(ds, design, own).merge(aims, combine_attrs="override")
+    columns = outputs(ds, design.factors, given.get("outputs"), keep, scale=given.get("scale", ""), allowed=met)
     if not columns or not design.factors:
         raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
     found = [_METHODS[design.method](column.values, design, how) for column in columns]
     for one in found:
         one.estimates.pop("rows_used", None)
     result = labelled(design, columns, [one.estimates for one in found], found[0].sizes)
-    result = result.merge(parts_of(design, columns, given, seed, how.resamples))
+    result = result.merge(parts_of(design, columns, given, how.seed, how.resamples))
     result = result.assign(_quality(result, design, columns, found))
     if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
         told = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
@@ -206,7 +190,7 @@ def analyse_dataset(
         "needs": NEEDS[design.method],
         "rows": design.size,
         "kept_regimes": ", ".join(keep),
-        "bootstrap_seed": seed,
+        "bootstrap_seed": how.seed,
         "resamples": how.resamples,
         "interval": "95 %",
         "treatment": treatment(regimes(ds, dims), keep, met) + correlated(design),
@@ -250,13 +234,7 @@ def _bounds(out: indices.Estimates, method: str) -> tuple[np.ndarray, np.ndarray
     return (low / whole, high / whole) if whole > 0 else (low * np.nan, high * np.nan)
 
 
-def analyse(
-    study_nc: str | Path,
-    out_nc: str | Path,
-    names: Iterable[str] | None = None,
-    keep: Iterable[str] | None = None,
-    natural: Iterable[str] = (),
-) -> xr.Dataset:
+def analyse(study_nc: str | Path, out_nc: str | Path) -> xr.Dataset:
     """Analyse a gathered study file and write the labelled result.
 
     Parameters
@@ -265,12 +243,6 @@ def analyse(
         Gathered study.
     out_nc : str or pathlib.Path
         NetCDF file to write. The file appears only after it has been written completely.
-    names : iterable of str, optional
-        Outputs, see `analyse_dataset`.
-    keep : iterable of str, optional
-        Regimes whose rows count, see `analyse_dataset`.
-    natural : iterable of str
-        Outputs that stay on their natural scale, see `analyse_dataset`.
 
     Returns
     -------
@@ -283,6 +255,6 @@ def analyse(
         As `analyse_dataset`.
     """
     with xr.open_dataset(study_nc, cache=False) as opened:  # variables one by one: a study may be large
-        result = analyse_dataset(opened, names, keep, natural)
+        result = analyse_dataset(opened)
     write_whole(Path(out_nc), lambda part: result.to_netcdf(part))
     return result

@@ -69,7 +69,7 @@ def targets(
     -----
     At a level of the outer array the probability is the mean over its design points. Their common sample counts once.
     """
-    columns = outputs(ds, design.factors, list(wanted), natural=list(wanted), unlimited=True, allowed=allowed)
+    columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
     hits = np.stack([_hits(c, wanted[c.name], deviations.get(body_of(c.name))) for c in columns], axis=1)
     names = [c.name for c in columns]
     if len(names) > 1:

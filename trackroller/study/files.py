@@ -147,6 +147,8 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
             os.fsync(stream.fileno())
         os.replace(beside, path)
         _sync_folder(path.parent)
+    except WorkError:
+        raise
     except (OSError, RuntimeError) as exc:
         if isinstance(exc, OSError) and (exc.errno or 0) > 0:
             raise disk_error(exc, path) from exc

@@ -214,7 +214,6 @@ def outputs(
     factors: Iterable[str],
     names: Iterable[str] | None = None,
     keep: Iterable[str] = ("rolling",),
-    natural: Iterable[str] = (),
     unlimited: bool = False,
     scale: str | Mapping[str, str] = "",
     allowed: np.ndarray | None = None,
@@ -231,8 +230,6 @@ def outputs(
         Names of `DEFAULTS`, scalar variables, or `variable[contact,body]`. Default: `default_names`.
     keep : iterable of str
         Regimes whose rows are used. Rows of other regimes become NaN and are counted.
-    natural : iterable of str
-        Outputs on the natural scale, also lives, whose default scale is log10.
     unlimited : bool
         Keep infinite lives, for ranking, instead of counting them as unusable.
     scale : str or mapping
@@ -259,12 +256,11 @@ def outputs(
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
-    options, natural = _available(ds, factors, dims), set(natural)
+    options = _available(ds, factors, dims)
     found = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
         values, units, words, usual = _raw(ds, name, dims, options)
-        told = scale if isinstance(scale, str) else scale.get(name, "")
-        on = "natural" if name in natural else told or usual
+        on = (scale if isinstance(scale, str) else scale.get(name, "")) or usual
         values, why = _countable(values, usable, stopped, unlimited, on)
         found.append(Output(name, values, units, words, on, lost | why))
     for i, name in enumerate(REGIMES):

@@ -127,7 +127,7 @@ def _found(ds: xr.Dataset, dims: list[str], names: Iterable[str]) -> list[Output
     found = []
     for name in names:
         try:
-            found += outputs(ds, dims, [name], REGIMES[:3], natural=[name], unlimited=True)
+            found += outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)
         except InputError:
             continue  # the study has no such result
     return found
