@@ -76,8 +76,9 @@ def test_levels_of_other_designs_have_a_probability(design):
     spread = {"friction_coefficient": {"uniform": [0.1, 0.3]}, "axial_force": {"normal": [0.0, 1.0]}}
     factors = {"contact_angle": {"values": [30.0, 40.0]}, **(listed if design == "grid" else spread)}
     data = POINTS | {"design": design, "samples": 256, "factors": factors, "base": {"velocity": 30.0}}
-    data |= {"analysis": {"target": {"friction_power": {"max": 8}}}}
+    data |= {"analysis": {"target": {"friction_power": {"max": 8}}, "conditional_on": "contact_angle"}}
     out = analyse_dataset(solved(data))
+    assert out.sizes["level"] == 2 < out.sizes["target_level"], "the levels of both keys stand side by side"
     assert float(out["target_probability"][0]) == pytest.approx(0.75, abs=0.005)
     own = (out["level_factor"] == "friction_coefficient").values
     np.testing.assert_allclose(out["level_probability"].values[0][own], [1, 1, 1, 0], atol=0.01)

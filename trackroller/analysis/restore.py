@@ -9,9 +9,10 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
+from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.study.design.draws import of_columns
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.factors import Factor
 from trackroller.study.design.sampling import OPTIONS, SampledDesign, current_name, sample
 from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study, settings
 
@@ -69,7 +70,6 @@ def _check_rows(ds: xr.Dataset, design: SampledDesign) -> None:
 def _table_design(ds: xr.Dataset, specs: Mapping[str, Any]) -> SampledDesign:
     """Return the design of a table: its factors are the columns that vary, without the expressions beside it."""
     columns: dict[str, np.ndarray] = {}
-    free: dict[str, Factor] = {}
     for name in map(str, ds.variables):
         values = ds[name].values
         number = values.dtype.kind in "fiu"
@@ -77,20 +77,11 @@ def _table_design(ds: xr.Dataset, specs: Mapping[str, Any]) -> SampledDesign:
             continue
         if number and (np.isnan(values).any() or not (name in PARAMETERS or name in ds.coords)):
             continue
-        levels = tuple(dict.fromkeys(values.tolist()))
-        if len(levels) > 1 and values.dtype.kind in "fiuOUST":
+        if values.dtype.kind in "fiuOUST" and not all_equal(values):
             columns[name] = values.astype(float if number else object)
-            free[name] = Factor(name, "values", levels=levels)
-    if "material_pair" in free:  # the pair stands for its two materials
-        for name in MATERIAL_FIELDS:
-            columns.pop(name, None)
-            free.pop(name, None)
+    if "material_pair" in columns:  # the pair stands for its two materials
+        columns = {name: values for name, values in columns.items() if name not in MATERIAL_FIELDS}
+    free, unit = of_columns(columns)
     if not free:
         raise InputError("study", list(ds.variables), "a table with at least one column that varies")
-    unit = np.stack([columns[n] if f.ordered else _index(columns[n], f) for n, f in free.items()], axis=1)
-    return SampledDesign(columns, free, "table", unit.astype(float), {})
-
-
-def _index(values: np.ndarray, factor: Factor) -> np.ndarray:
-    where = {level: i for i, level in enumerate(factor.levels)}
-    return np.array([where[v] for v in values.tolist()], dtype=float)
+    return SampledDesign(columns, free, "table", unit, {})

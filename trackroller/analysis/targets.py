@@ -61,9 +61,9 @@ def targets(
     Returns
     -------
     Dimension `target` (with `all` for several targets). `target_probability` (target, point) of an inner/outer design,
-    else (target,) of all cases; `level_probability` (target, level). Both with _low and _high (95 %), NaN in a grid or
-    a table, whose rows are no sample. A case that does not roll, misses a constraint or has no value misses each
-    target.
+    else (target,) of all cases; `level_probability` (target, target_level). Both with _low and _high (95 %), NaN in a
+    grid or a table, whose rows are no sample. A case that does not roll, misses a constraint or has no value misses
+    each target.
 
     Notes
     -----
@@ -80,7 +80,7 @@ def targets(
     for end, whole in zip(ENDS, found[0], strict=True):
         out[f"target_probability{end}"] = (("target", "point") if robust else ("target",), whole, {"units": "1"})
     for end, part in zip(ENDS, zip(*found[1:], strict=True), strict=False):
-        out[f"level_probability{end}"] = (("target", "level"), np.stack(part, axis=1), {"units": "1"})
+        out[f"level_probability{end}"] = (("target", "target_level"), np.stack(part, axis=1), {"units": "1"})
     return out
 
 
@@ -188,9 +188,9 @@ def _coordinates(
         "target_units": ("target", np.array(units, dtype=str)),
         "target_min": ("target", np.array([limit.get("min", np.nan) for limit in limits], dtype=float)),
         "target_max": ("target", np.array([limit.get("max", np.nan) for limit in limits], dtype=float)),
-        "level_factor": ("level", np.array([level.factor for level in levels], dtype=str)),
-        "level_low": ("level", np.array([level.low for level in levels], dtype=float)),
-        "level_high": ("level", np.array([level.high for level in levels], dtype=float)),
-        "level_text": ("level", np.array([level.text for level in levels], dtype=str)),
-        "level_rows": ("level", np.array([level.rows.sum() for level in levels], dtype=int)),
+        "level_factor": ("target_level", np.array([level.factor for level in levels], dtype=str)),
+        "level_low": ("target_level", np.array([level.low for level in levels], dtype=float)),
+        "level_high": ("target_level", np.array([level.high for level in levels], dtype=float)),
+        "level_text": ("target_level", np.array([level.text for level in levels], dtype=str)),
+        "level_rows": ("target_level", np.array([level.rows.sum() for level in levels], dtype=int)),
     }

@@ -22,7 +22,7 @@ from trackroller.materials.yaml_composer import TAG, Composer, plain_scalar
 MAX_BYTES = 5_000_000  # a study file larger than this is a table and belongs into a CSV
 
 
-def read_text(path: Path | str, what: str) -> str:
+def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     """Return the text of a user's file.
 
     Parameters
@@ -31,6 +31,8 @@ def read_text(path: Path | str, what: str) -> str:
         The file.
     what : str
         What the file is, for messages.
+    most : float
+        Largest size [bytes].
 
     Returns
     -------
@@ -48,7 +50,7 @@ def read_text(path: Path | str, what: str) -> str:
             raise InputError(what, str(path), "a file; this is a folder", "Give the path of a file.")
         if path.exists() and not path.is_file():
             raise InputError(what, str(path), "a regular file; this is a device or a pipe", "Give the path of a file.")
-        if path.stat().st_size > MAX_BYTES:
+        if path.stat().st_size > most:
             raise InputError(
                 what,
                 str(path),

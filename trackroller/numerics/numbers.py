@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from typing import Any
 
@@ -35,7 +36,12 @@ def read_number(value: Any) -> float:
         text = value.strip()
         if len(text) > MAX_LENGTH or not _TEXT.fullmatch(text):
             raise ValueError("not a number")
-        return float(text.lstrip(".") if text.lower().endswith("inf") and not text[0].isdigit() else text)
+        if text.lower().endswith(("inf", "infinity")):
+            return float(text.lstrip("."))
+        number = float(text)
+        if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
+            raise ValueError(f"{text} is too {'large' if number else 'small'} for a number of the computer")
+        return number
     try:
         return float(value)
     except (TypeError, OverflowError) as exc:

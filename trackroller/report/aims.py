@@ -110,7 +110,8 @@ def target_tables(table: xr.Dataset) -> list[Table]:
     said.append("A case that does not roll, misses a constraint or has no value misses every target.")
     if float(table.attrs.get("log_life_scatter", 0.0)) > 0:
         said.append("Lives hold the material's own scatter.")
-    levels = [[capital(_level_words(table, i)), *_cells(table, "level", i)] for i in range(table.sizes.get("level", 0))]
+    places = range(table.sizes.get("target_level", 0))
+    levels = [[capital(_level_words(table, i)), *_cells(table, "level", i)] for i in places]
     title = "Targets: probability by level of a factor"
     if table["target_probability"].ndim == 1:
         return [

@@ -9,8 +9,8 @@ from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.options import check_pairs, check_spin_model
 from trackroller.study.design import build
+from trackroller.study.design.draws import check_listed
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
-from trackroller.study.design.factors import LISTS
 from trackroller.study.goals import check
 from trackroller.study.parts import check_parts
 
@@ -54,14 +54,7 @@ def cross_check(study: Study) -> None:
     if (config.design == "table") != (config.table is not None):
         raise InputError("table", config.table, "design: table and the path of a CSV belong together")
     if config.design == "grid":
-        for name, spec in study.factors.items():
-            if not set(spec) & {*LISTS, "expression"}:
-                raise InputError(
-                    f"factors.{name}",
-                    spec,
-                    "a grid needs values, linspace or logspace",
-                    "Or choose a sampled design: lhs, sobol, saltelli, morris.",
-                )
+        check_listed(study.parsed)
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
     check(config, study.factors)

@@ -21,6 +21,7 @@ from trackroller.study.checks import cross_check
 from trackroller.study.design import build
 from trackroller.study.design.correlation import check_entries
 from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
+from trackroller.study.design.factors import Factor, parse
 from trackroller.study.design.sampling import METHODS, current_name
 from trackroller.study.goals import Analysis, comparisons, directions
 
@@ -202,6 +203,11 @@ class Study:
             if not isinstance(value := getattr(self.config, name), str)
         }
         return {**self.config.factors, **extra}
+
+    @cached_property
+    def parsed(self) -> dict[str, Factor]:
+        """Return all factors as `Factor`."""
+        return {name: parse(name, spec) for name, spec in self.factors.items()}
 
     @cached_property
     def materials(self) -> MaterialDatabase:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.study.design.factors import Factor, parse
+from trackroller.study.design.factors import Factor
 from trackroller.study.design.saltelli import serves
 
 if TYPE_CHECKING:
@@ -36,17 +36,11 @@ def check_parts(study: Study) -> None:
         raise InputError("exchange", "groups", "groups of factors under analysis.groups", "Add the groups.")
     if not groups and category is None:
         return
-    free = study.drawn.factors if config.design == "table" else _free(study.factors)
+    free = study.drawn.factors if config.design == "table" else {n: f for n, f in study.parsed.items() if f.varies}
     if groups:
         _check_groups(config, groups, free, study.factors)
     if category is not None:
         _check_category(config, category, free)
-
-
-def _free(specs: Mapping[str, Any]) -> dict[str, Factor]:
-    """Return the independent factors that vary."""
-    parsed = {name: parse(name, spec) for name, spec in specs.items()}
-    return {n: f for n, f in parsed.items() if f.kind != "expression" and not (f.discrete and len(f.levels) == 1)}
 
 
 def _check_groups(

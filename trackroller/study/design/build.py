@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import math
@@ -18,8 +19,8 @@ from trackroller.roller.fields import own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
-from trackroller.study.design.factors import label, parse
-from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
+from trackroller.study.design.factors import label
+from trackroller.study.design.sampling import SampledDesign, sample
 from trackroller.study.goals import check_scatter
 
 if TYPE_CHECKING:
@@ -60,14 +61,8 @@ def draw(study: Study) -> SampledDesign:
     InputError : as `sample`; an option that the design does not have; too many cases
     """
     config = study.config
-    check_design(config.rank_correlations, config.design)
     names = ("second_order", "levels", "inner", "grown_from", "rank_correlations")
-    options = {name: getattr(config, name) for name in names}
-    options = {k: v for k, v in options.items() if v is not None and v != ()}
-    for name in options:
-        if name not in OPTIONS.get(config.design, {}):
-            having = [design for design, known in OPTIONS.items() if name in known]
-            raise InputError(name, options[name], f"an option of design {' and '.join(having)}", "Remove the key.")
+    options = {name: value for name in names if (value := getattr(config, name)) not in (None, ())}
     if config.design == "table":
         options["table"] = table_path(study)
     if config.exchange == "groups":
@@ -85,16 +80,14 @@ def check_correlations(study: Study) -> None:
     """Refuse rank correlations that the design or the factors cannot have, before anything is drawn."""
     config = study.config
     check_design(config.rank_correlations, config.design)
-    factors = {name: parse(name, spec) for name, spec in study.factors.items() if "expression" not in spec}
-    if config.design == "inner_outer":
-        factors = {name: factor for name, factor in factors.items() if factor.scatter}
-    copula(config.rank_correlations, factors)
+    random = {n: f for n, f in study.parsed.items() if f.kind != "expression"}
+    copula(config.rank_correlations, {n: f for n, f in random.items() if f.scatter or config.design != "inner_outer"})
 
 
 def _check_columns(study: Study, design: SampledDesign) -> None:
     """Refuse further columns of a table that look like a misspelt name, and a table with further columns only."""
     known = [*PARAMETERS, *MATERIAL_FIELDS, "material_pair", *OPTION_FACTORS]
-    used = {name for spec in study.factors.values() for name in expressions.names(spec.get("expression", "0"))}
+    used = {name for factor in study.parsed.values() for name in expressions.names(factor.text or "0")}
     own = [name for name in design.columns if name not in known and name not in used]
     for name in own:
         check_own_name(name, f"table column {name}")
@@ -189,18 +182,16 @@ def _friction(study: Study, columns: dict[str, np.ndarray]) -> np.ndarray:
     values = columns["friction_coefficient"]
     if values.dtype != object:
         return values
-    known: dict[tuple[str, str, str], float] = {}
-    out = np.empty(len(values))
-    for i, value in enumerate(values):
+
+    @functools.cache
+    def known(value: Any, *pair: str) -> float:
         if isinstance(value, (int, float)) and not math.isnan(value):
-            out[i] = value
-            continue
+            return float(value)
         level = value if isinstance(value, str) and value in FRICTION_LEVELS else "typical"
-        key = (str(columns["roller_material"][i]), str(columns["guide_material"][i]), level)
-        if key not in known:
-            known[key] = float(study.materials.friction(key[0], key[1], level=level).value)
-        out[i] = known[key]
-    return out
+        return float(study.materials.friction(*pair, level=level).value)
+
+    rows = zip(values, *(columns[name].astype(str) for name in MATERIAL_FIELDS), strict=True)
+    return np.array([known(*row) for row in rows])
 
 
 def check_materials(study: Study) -> None:
@@ -243,7 +234,7 @@ def check_geometry(study: Study) -> None:
     tables are checked on the whole design before anything is solved.
     """
     config = study.config
-    if config.design == "table" or any("expression" in spec for spec in study.factors.values()):
+    if config.design == "table" or any(factor.kind == "expression" for factor in study.parsed.values()):
         design = build(study)
         problem = geometry_problem({name: design[name].values for name in _GEOMETRY})
     else:
@@ -258,10 +249,9 @@ def check_geometry(study: Study) -> None:
 
 
 def _ends(study: Study, name: str) -> list[float]:
-    spec = study.factors.get(name)
-    if spec is None:
+    factor = study.parsed.get(name)
+    if factor is None:
         return [study.config.base.get(name, PARAMETERS[name].default)]
-    factor = parse(name, spec)
     if factor.discrete:
         return [float(level) for level in factor.levels]
     if factor.kind == "normal":

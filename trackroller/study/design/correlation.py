@@ -136,13 +136,15 @@ def _remedy(entries: Sequence[Entry], rho: np.ndarray, names: list[str]) -> str:
     return f"{best[1]}, or {every}" if best[1] else f"M{every[1:]}"
 
 
-def reorder(unit: np.ndarray, root: np.ndarray | None) -> np.ndarray:
-    """Correlate a Latin hypercube and keep its strata: each column keeps its values and changes their order.
+def correlate(unit: np.ndarray, root: np.ndarray | None, strata: bool) -> np.ndarray:
+    """Correlate the columns of a sample.
 
     Parameters
     ----------
     unit : quantiles of independent factors [1], shape (n, k)
     root : see `copula`
+    strata : whether each column keeps its values and changes their order, so that a Latin hypercube stays one;
+        otherwise each row is correlated by itself and depends on no other row
 
     Returns
     -------
@@ -151,7 +153,7 @@ def reorder(unit: np.ndarray, root: np.ndarray | None) -> np.ndarray:
 
     Notes
     -----
-    The chance correlation of the sample is taken out first, where it has more rows than twice its factors.
+    With strata, the chance correlation of the sample is taken out first, where it has more rows than twice its factors.
 
     References
     ----------
@@ -159,7 +161,10 @@ def reorder(unit: np.ndarray, root: np.ndarray | None) -> np.ndarray:
     """
     if root is None:
         return unit
-    moved = np.flatnonzero((root != np.eye(len(root))).any(axis=0) | (root != np.eye(len(root))).any(axis=1))
+    own = root != np.eye(len(root))
+    if not strata:
+        return np.where(own.any(axis=1), norm.cdf(_normal(unit) @ root.T), unit)
+    moved = np.flatnonzero(own.any(axis=0) | own.any(axis=1))
     scores = _normal(unit[:, moved])
     if len(unit) > 2 * len(moved):
         scores = np.linalg.solve(np.linalg.cholesky(np.cov(scores, rowvar=False)), scores.T).T
@@ -167,24 +172,6 @@ def reorder(unit: np.ndarray, root: np.ndarray | None) -> np.ndarray:
     out = unit.copy()
     out[:, moved] = np.take_along_axis(np.sort(unit[:, moved], axis=0), rank, axis=0)
     return out
-
-
-def transform(unit: np.ndarray, root: np.ndarray | None) -> np.ndarray:
-    """Correlate the rows of a sample one by one.
-
-    Parameters
-    ----------
-    unit : quantiles of independent factors [1], shape (n, k)
-    root : see `copula`
-
-    Returns
-    -------
-    Quantiles, shape (n, k), uniform in each column; a row depends on no other row.
-    """
-    if root is None:
-        return unit
-    moved = (root != np.eye(len(root))).any(axis=1)
-    return np.where(moved, norm.cdf(_normal(unit) @ root.T), unit)
 
 
 def _normal(unit: np.ndarray) -> np.ndarray:

@@ -7,10 +7,10 @@ Each function takes the independent factors, the number of samples, the seed and
 from __future__ import annotations
 
 import itertools
+import math
 import warnings
 from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from SALib.sample import morris
 from scipy.stats import qmc
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.materials.yaml_file import read_text
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
 from trackroller.study.csv_file import csv_lines
@@ -36,12 +37,17 @@ def _map(free: Factors, unit: np.ndarray) -> dict[str, np.ndarray]:
     return {name: f.from_unit(unit[:, j]) for j, (name, f) in enumerate(free.items())}
 
 
-def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
-    for name, factor in free.items():
-        if not factor.discrete:
+def check_listed(factors: Factors) -> None:
+    """Refuse distributions in a grid."""
+    for name, factor in factors.items():
+        if not factor.discrete and factor.kind != "expression":
             allowed = "a grid needs values, linspace or logspace"
             remedy = "Or choose a sampled design (lhs, sobol, saltelli, morris)."
             raise InputError(f"factors.{name}", factor.kind, allowed, remedy)
+
+
+def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
+    check_listed(free)
     shape = tuple(len(f.levels) for f in free.values())
     if np.prod([float(s) for s in shape]) > MAX_ROWS:
         size = f"grid of {' x '.join(map(str, shape))}"
@@ -59,7 +65,7 @@ def _quantiles(method: str, free: Factors, n: int, seed: int, settings: Settings
     engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
-        return correlation.transform(engine.random(n), root)
+        return correlation.correlate(engine.random(n), root, strata=False)
 
 
 def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -183,55 +189,46 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
 
     Returns
     -------
-    Columns (name -> shape (n,)), the factors (columns that vary), the list index of each value (n, factors), and an
-    empty dictionary.
+    Columns (name -> shape (n,)), then as `of_columns`, and an empty dictionary.
 
     Raises
     ------
     InputError : no such file, a line of another length, an empty cell, or a text where a number is wanted
     """
-    names, lines = _table_lines(path)
+    names, lines = csv_lines(read_text(path, "table", most=math.inf), path, "table", "case")
+    for number, line in enumerate(lines, start=2):
+        if not all(line):
+            raise InputError("table", f"{path}, line {number}", f"{len(names)} values, none of them empty")
     columns: dict[str, np.ndarray] = {}
     for j, name in enumerate(names):
         cells = [line[j] for line in lines]
         try:
             columns[name] = column([read_number(cell) for cell in cells], numeric=True)
-        except ValueError:
+        except ValueError as exc:
             if name in PARAMETERS:
-                raise InputError("table", f"column {name}", PARAMETERS[name].allowed()) from None
+                raise InputError("table", f"column {name} ({exc})", PARAMETERS[name].allowed()) from None
             columns[name] = column(cells, numeric=False)
         if columns[name].dtype == float and np.isnan(columns[name]).any():
             raise InputError("table", f"column {name}: nan", "a number in each cell")
-    found = {name: _levels(values) for name, values in columns.items()}
-    found = {name: (levels, index) for name, (levels, index) in found.items() if len(levels) > 1}
-    free = {name: Factor(name, "values", levels=levels) for name, (levels, _) in found.items()}
-    unit = np.empty((len(lines), len(free)))
-    for j, (_, index) in enumerate(found.values()):
-        unit[:, j] = index
-    return columns, free, unit, {}
+    return columns, *of_columns(columns), {}
 
 
-def _levels(values: np.ndarray) -> tuple[tuple[Any, ...], np.ndarray]:
-    """Return the different values in the order of appearance, and the place of each row's value among these."""
-    _, first, inverse = np.unique(values, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty(len(order), dtype=int)
-    rank[order] = np.arange(len(order))
-    return tuple(values[first[order]].tolist()), rank[inverse]
+def of_columns(columns: Mapping[str, np.ndarray]) -> tuple[dict[str, Factor], np.ndarray]:
+    """Return the columns that vary as factors, and `unit` of these: numbers, or the index of other values.
 
+    Parameters
+    ----------
+    columns : name -> values of all rows, shape (n,)
 
-def _table_lines(path: Any) -> tuple[list[str], list[list[str]]]:
-    """Return the names of the columns and the lines of cells; no cell is empty."""
-    if path is None or not Path(path).is_file():
-        raise InputError("table", path, "the path of a CSV file with one column a factor")
-    try:
-        text = Path(path).read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as exc:
-        raise InputError("table", str(path), f"UTF-8 text (byte {exc.start} is not)", "Save it as UTF-8.") from None
-    except OSError as exc:
-        raise InputError("table", str(path), f"a readable CSV file ({exc})", "Check its rights.") from None
-    names, lines = csv_lines(text, path, "table", "case")
-    for number, line in enumerate(lines, start=2):
-        if not all(line):
-            raise InputError("table", f"{path}, line {number}", f"{len(names)} values, none of them empty")
-    return names, lines
+    Returns
+    -------
+    Factors by name, and an array of shape (n, number of factors).
+    """
+    levels = {name: tuple(dict.fromkeys(values.tolist())) for name, values in columns.items()}
+    free = {name: Factor(name, "values", levels=own) for name, own in levels.items() if len(own) > 1}
+    unit = np.empty((max(map(len, columns.values()), default=0), len(free)))
+    for j, (name, factor) in enumerate(free.items()):
+        index = {level: i for i, level in enumerate(factor.levels)}
+        values = columns[name]
+        unit[:, j] = values if factor.ordered else [index[value] for value in values.tolist()]
+    return free, unit

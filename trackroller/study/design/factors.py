@@ -67,6 +67,11 @@ class Factor:
         return self.kind in LISTS
 
     @property
+    def varies(self) -> bool:
+        """Return whether the factor is independent and has more than one value."""
+        return self.kind != "expression" and len(self.levels) != 1
+
+    @property
     def numeric(self) -> bool:
         """Return whether all its values are numbers (those of an expression are)."""
         return not self.discrete or all(_is_number(v) for v in self.levels)

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from trackroller.errors import InputError
-from trackroller.study.design.correlation import reorder
+from trackroller.study.design.correlation import correlate
 
 
 def grown_lhs(count: int, sizes: Sequence[int], seed: int, root: np.ndarray | None = None) -> np.ndarray:
@@ -33,9 +33,10 @@ def grown_lhs(count: int, sizes: Sequence[int], seed: int, root: np.ndarray | No
     Quantiles in the unit cube, shape (sizes[-1], count). The first sizes[i] rows are the sample of that size.
     """
     unit: np.ndarray = qmc.LatinHypercube(d=count, rng=np.random.default_rng(seed)).random(sizes[0])
-    unit = reorder(unit, root)
+    unit = correlate(unit, root, strata=True)
     for size in sizes[1:]:
-        unit = np.concatenate([unit, reorder(_fill(unit, size, np.random.default_rng([seed, size])), root)])
+        new = _fill(unit, size, np.random.default_rng([seed, size]))
+        unit = np.concatenate([unit, correlate(new, root, strata=True)])
     return unit
 
 

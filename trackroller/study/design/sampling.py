@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.errors import InputError, unknown_name
 from trackroller.numerics import expressions
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design.draws import DRAW, MAX_ROWS, table
@@ -150,10 +150,13 @@ def sample(
     settings = _settings(method, options)
     if method == "table":
         columns, free, unit, meta = table(settings["table"])
-        parsed = _beside_table({name: spec for name, spec in factors.items() if name not in columns})
+        parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
+        for name in (name for name, factor in parsed.items() if factor.kind != "expression"):
+            allowed = "a table has its factors as columns"
+            raise InputError(f"factors.{name}", factors[name], allowed, "Only expressions may stand beside a table.")
     else:
         parsed = {name: parse(name, spec) for name, spec in factors.items()}
-        free = {k: f for k, f in parsed.items() if f.kind != "expression" and not _single(f)}
+        free = {k: f for k, f in parsed.items() if f.varies}
         if not free and method != "grid":
             raise InputError("factors", list(factors), "at least one factor must vary")
         _check_weights(free, method)
@@ -164,7 +167,7 @@ def sample(
         raise InputError("design", method, f"at most {MAX_ROWS} rows")
     rows = len(unit)
     for name, factor in parsed.items():
-        if factor.discrete and _single(factor):
+        if len(factor.levels) == 1:
             columns[name] = factor.take(np.zeros(rows, dtype=int))
     columns |= _derived(parsed, columns, dict(base or {}), rows)
     order = [*[k for k in columns if k not in parsed], *[k for k in parsed if k in columns]]
@@ -179,21 +182,12 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
     settings: dict[str, Any] = {**OPTIONS.get(method, {})}
     for key, value in options.items():
         if key not in settings:
-            close = nearest(key, settings)
-            allowed = f"the options of {method}: " + (", ".join(settings) or "it has none")
-            raise InputError(f"design option {key}", value, allowed, f"Did you mean '{close}'?" if close else "")
+            having = [design for design, known in OPTIONS.items() if key in known]
+            if not having:
+                raise unknown_name("design option", key, settings)
+            raise InputError(key, value, f"an option of design {' and '.join(having)}", "Remove the key.")
         settings[key] = value
     return settings
-
-
-def _beside_table(factors: Mapping[str, Any]) -> dict[str, Factor]:
-    """Return the expressions that stand beside a table, and refuse every other factor."""
-    parsed = {name: parse(name, spec) for name, spec in factors.items()}
-    for name, factor in parsed.items():
-        if factor.kind != "expression":
-            allowed = "a table has its factors as columns"
-            raise InputError(f"factors.{name}", factors[name], allowed, "Only expressions may stand beside a table.")
-    return parsed
 
 
 def _check_weights(free: Mapping[str, Factor], method: str) -> None:
@@ -210,10 +204,6 @@ def _check_weights(free: Mapping[str, Factor], method: str) -> None:
                 if method == "inner_outer"
                 else f"Remove the weights, or choose design {WEIGHING[0]}.",
             )
-
-
-def _single(factor: Factor) -> bool:
-    return factor.discrete and len(factor.levels) == 1
 
 
 def _derived(
