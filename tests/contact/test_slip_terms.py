@@ -202,7 +202,8 @@ def test_study_file_is_refused_before_it_runs(wrong):
 
 
 def test_a_spectrum_takes_them():
-    from trackroller.study.spectrum.solve import Spectrum, solve_spectrum
+    from trackroller.study.spectrum.file import Spectrum
+    from trackroller.study.spectrum.solve import solve_spectrum
 
     told = {"blocks": [{"distance": 1000.0}], "contact_model": "fastsim", "accuracy": "preview"}
     plain, curved = (

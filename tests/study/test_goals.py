@@ -405,4 +405,4 @@ def test_every_source_of_an_analysis_is_an_input_of_its_rule():
     estimators = ("sobol", "indices", "givendata", "delta", "pairs", "convergence", "robustness", "labels", "restore")
     assert {f"analysis/{name}.py" for name in estimators} <= names
     assert {f"study/design/{name}.py" for name in ("arrays", "draws", "factors", "sampling", "grown_lhs")} <= names
-    assert {"numerics/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names
+    assert {"numerics/expressions.py", "damage/sn_curve.py", "study/outputs.py"} <= names

@@ -21,7 +21,7 @@ from trackroller.errors import InputError
 from trackroller.study import store
 from trackroller.study.config import parse_study
 from trackroller.study.files import WorkError, write_whole
-from trackroller.study.plan import identify, make_plan
+from trackroller.study.plan import identify, working_plan
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 
@@ -244,7 +244,8 @@ def test_workflow_marks_are_made_again_where_the_chunk_is_there_and_nowhere_else
     first, second, *_ = plan.chunks
     plan.folder.mark(first).unlink()
     plan.folder.chunk(second).unlink()
-    plan = make_plan(parse_study(DATA), tmp_path)
+    with working_plan(parse_study(DATA), tmp_path) as plan:
+        pass
     assert plan.folder.mark(first).is_file() and not plan.folder.mark(second).is_file()
     run(DATA, tmp_path)
     assert plan.folder.mark(second).is_file()
@@ -303,8 +304,8 @@ def test_table_of_cases(tmp_path):
 
 def test_results_folder_that_cannot_be_written_is_an_input_error(tmp_path):
     (tmp_path / "s").write_text("a file where the folder should be")
-    with pytest.raises(InputError, match="cannot be a folder"):
-        make_plan(parse_study(DATA), tmp_path)
+    with pytest.raises(InputError, match="cannot be a folder"), working_plan(parse_study(DATA), tmp_path):
+        pass
 
 
 def test_full_disk_ends_with_a_clear_message_and_leaves_nothing_behind(tmp_path):

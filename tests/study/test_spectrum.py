@@ -16,8 +16,8 @@ from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.report.numbers import rounded
 from trackroller.report.sheet.spectrum import sentences
-from trackroller.study.spectrum.file import overrollings_per_shift
-from trackroller.study.spectrum.solve import Spectrum, load_spectrum, solve_spectrum
+from trackroller.study.spectrum.file import Spectrum, load_spectrum, overrollings_per_shift
+from trackroller.study.spectrum.solve import solve_spectrum
 
 ROOT = Path(__file__).parents[2]
 RADIUS = 21.75 - 6 * math.cos(math.radians(30))

@@ -17,7 +17,7 @@ import yaml
 
 from trackroller.study.config import load_study, parse_study
 from trackroller.study.files import WorkError
-from trackroller.study.plan import make_plan
+from trackroller.study.plan import working_plan
 from trackroller.study.run import run_study
 from trackroller.study.solve import solve_chunk
 
@@ -85,7 +85,8 @@ def test_failed_cases_are_not_removed_under_a_run(tmp_path, solved):
 
 
 def test_chunk_whose_plan_is_gone_ends_with_a_sentence(tmp_path):
-    plan = make_plan(parse_study(DATA), tmp_path)
+    with working_plan(parse_study(DATA), tmp_path) as plan:
+        pass
     first = next(iter(plan.chunks))
     plan.folder.case_list(first).unlink()
     with pytest.raises(WorkError, match=rf"{first}.*planned anew.*Start again"):

@@ -67,7 +67,6 @@ def pareto(
     ds: xr.Dataset,
     objectives: Mapping[str, str],
     constraints: Iterable[str] = (),
-    keep: Iterable[str] | None = None,
 ) -> xr.Dataset:
     """Find the Pareto set of a solved study.
 
@@ -80,9 +79,8 @@ def pareto(
         "friction_power": "min"}.
     constraints : iterable of str
         Comparisons over outputs, factors, parameters and `regime`, such as "max_pressure < 1200", "regime != full_slip"
-        or "slip < 0.1 or slip > 0.2". A row with an undefined value does not meet them.
-    keep : iterable of str, optional
-        Regimes that are allowed. Default: rolling only, or every solved regime if a constraint names `regime`.
+        or "slip < 0.1 or slip > 0.2". A row with an undefined value does not meet them. Only rolling rows are
+        allowed, unless a constraint names `regime`.
 
     Returns
     -------
@@ -101,8 +99,7 @@ def pareto(
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
     constraints = list(constraints)
     wanted = {name for text in constraints for name in names_in(text)}
-    if keep is None:
-        keep = REGIMES[:3] if "regime" in wanted else ("rolling",)
+    keep = REGIMES[:3] if "regime" in wanted else ("rolling",)
     design = design_of(ds)
     dims = case_dims(ds, design.factors)
     regime = regimes(ds, dims)

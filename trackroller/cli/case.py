@@ -138,4 +138,4 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
 
 def is_study(path: Path) -> bool:
     """Return True for a study file, which has factors, a name or a design; any other file is a case file."""
-    return bool({"factors", "name", "design"} & set(read_mapping(path, "case file")))
+    return bool({"factors", "name", "design"} & set(read_mapping(path, "study or case file")))

@@ -11,8 +11,8 @@ from rich.table import Table
 from trackroller.cli.case import writable, write_result
 from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
 from trackroller.report.sheet.text import as_json
-from trackroller.study.spectrum.damage import BODIES
-from trackroller.study.spectrum.solve import load_spectrum, solve_spectrum
+from trackroller.study.spectrum.file import load_spectrum
+from trackroller.study.spectrum.solve import BODIES, solve_spectrum
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -43,10 +43,9 @@ class CaseList:
         columns = {name: values[rows] for name, values in self.columns.items()}
         return CaseList(self.name, self.cases[rows], columns, self.options)
 
-    def design(self, rows: np.ndarray | None = None) -> xr.Dataset:
-        """Return all rows, or the rows with the indices `rows`, as a design for `solve`."""
-        index = slice(None) if rows is None else rows
-        return xr.Dataset({name: ("case", values[index]) for name, values in self.columns.items()})
+    def design(self) -> xr.Dataset:
+        """Return the cases as a design for `solve`."""
+        return xr.Dataset({name: ("case", values) for name, values in self.columns.items()})
 
 
 def load_list(folder: StudyFolder, name: str) -> CaseList:

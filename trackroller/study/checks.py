@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.options import check_pairs, check_spin_model
 from trackroller.study.design import build
 from trackroller.study.design.draws import check_listed
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
+from trackroller.study.design.saltelli import serves
 from trackroller.study.goals import check
-from trackroller.study.parts import check_parts
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
+    from trackroller.study.design.factors import Factor
+
+
+GROUPED = ("grid", "saltelli")  # designs with indices of groups
+CONDITIONAL = ("grid", "saltelli", "lhs", "sobol", "table")  # designs with indices within the levels of a category
+MOST_LEVELS = 12
 
 
 def _check_options(study: Study) -> None:
@@ -57,8 +64,68 @@ def cross_check(study: Study) -> None:
         check_listed(study.parsed)
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
-    check(config, study.factors)
-    check_parts(study)
+    check(config, study.parsed)
+    _check_parts(study)
     _check_options(study)
     build.check_correlations(study)
     build.check_materials(study)
+
+
+def _check_parts(study: Study) -> None:
+    """Check `analysis.groups`, `analysis.conditional_on` and `exchange` of a study."""
+    config = study.config
+    groups, category = config.analysis.groups, config.analysis.conditional_on
+    if config.exchange is not None and config.design != "saltelli":
+        raise InputError("exchange", config.exchange, "an option of design saltelli", "Remove the key.")
+    if config.exchange == "groups" and not groups:
+        raise InputError("exchange", "groups", "groups of factors under analysis.groups", "Add the groups.")
+    if not groups and category is None:
+        return
+    free = study.drawn.factors if config.design == "table" else {n: f for n, f in study.parsed.items() if f.varies}
+    if groups:
+        _check_groups(config, groups, free, study.factors)
+    if category is not None:
+        _check_category(config, category, free)
+
+
+def _check_groups(
+    config: Any, groups: Mapping[str, tuple[str, ...]], free: Mapping[str, Factor], specs: Mapping[str, Any]
+) -> None:
+    names, seen = list(free), set()
+    if config.design not in GROUPED:
+        remedy = "Take design: saltelli with exchange: groups."
+        raise InputError("analysis.groups", list(groups), f"design {' or '.join(GROUPED)}, not {config.design}", remedy)
+    for group, members in groups.items():
+        where = f"analysis.groups.{group}"
+        if group in specs:
+            raise InputError(where, list(members), "a name that is no factor", "Rename the group.")
+        if not members:
+            raise InputError(where, [], "at least one factor")
+        for name in members:
+            if name not in free:
+                if name in specs:
+                    raise InputError(where, name, "factors that vary and are not computed by an expression")
+                raise unknown_name(where, name, names)
+            if name in seen:
+                raise InputError(where, name, "each factor in one group", "Remove it from one of the groups.")
+            seen.add(name)
+        places = [names.index(name) for name in members]
+        whole = config.design == "grid" or config.exchange == "groups"
+        if not whole and not serves(places, len(names), config.second_order is not False):
+            few = "1, 2, all but 2 or all but 1 factors; with second_order: false not every pair"
+            raise InputError(
+                where, list(members), f"a group that single exchanged columns give: {few}", "Add exchange: groups."
+            )
+
+
+def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
+    where = "analysis.conditional_on"
+    if config.design not in CONDITIONAL or config.exchange == "groups":
+        own = f"{config.design} with exchange: groups" if config.exchange == "groups" else config.design
+        raise InputError(where, name, f"design {', '.join(CONDITIONAL[:-1])} or {CONDITIONAL[-1]}, not {own}")
+    if name not in free:
+        raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])
+    if not free[name].discrete or len(free[name].levels) > MOST_LEVELS:
+        raise InputError(where, name, f"a factor with a list of at most {MOST_LEVELS} values")
+    if len(free) < 2:
+        raise InputError(where, name, "a study with further factors")

@@ -39,25 +39,19 @@ def workers(scheduler: str) -> Iterator[Executor]:
     InputError
         If the address is wrong or no scheduler answers.
     """
-    client = _client(scheduler)
-    try:
+    with _client(scheduler) as client:
         yield lambda cases, database: _solve(client, cases, database)
-    finally:
-        client.close()
-        if scheduler == "local":
-            client.cluster.close()
 
 
 def _client(scheduler: str) -> Any:
     import dask  # dask is optional and slow to import
-    from distributed import Client, LocalCluster
+    from distributed import Client
 
     if scheduler != "local" and not scheduler.startswith(("tcp://", "tls://")):
         raise InputError("--scheduler", scheduler, "local, or the address of a dask scheduler: tcp://host:port")
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
     if scheduler == "local":
-        count = len(os.sched_getaffinity(0))
-        return Client(LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None))
+        return Client(n_workers=len(os.sched_getaffinity(0)), threads_per_worker=1, dashboard_address=None)
     try:
         return Client(scheduler, timeout="10s")
     except (OSError, ValueError) as exc:

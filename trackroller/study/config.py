@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model, field_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, create_model, field_validator
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials import MaterialDatabase, load_database
@@ -33,11 +33,12 @@ if TYPE_CHECKING:
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 
-def check_name(name: str, where: str = "name") -> str:
+def check_name(name: Any) -> str:
     """Return a name that is valid for a folder inside the results folder; refuse any other name."""
+    name = str(name) if isinstance(name, (int, float)) else name
     if not isinstance(name, str) or not NAME.fullmatch(name) or ".." in name or name.endswith("."):
         raise InputError(
-            where,
+            "name",
             name,
             "letters, digits, '.', '_' and '-', at most 64, a letter or digit first",
             "It names the results folder: no path parts.",
@@ -45,12 +46,18 @@ def check_name(name: str, where: str = "name") -> str:
     return name
 
 
+Name = Annotated[str, BeforeValidator(check_name)]
+Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(check_entries)]
+Goals = Annotated[dict[str, str], BeforeValidator(directions)]
+Comparisons = Annotated[tuple[str, ...], BeforeValidator(comparisons)]
+
+
 class _Design(BaseModel):
     """Keys of a study file that state its name, its cases and its design."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, title="trackroller study", ser_json_inf_nan="constants")
 
-    name: str = Field(description="names the results folder; letters, digits, '.', '_', '-'")
+    name: Name = Field(description="names the results folder; letters, digits, '.', '_', '-'")
     description: str = Field("", description="one sentence at the head of the report")
     base: dict[str, Any] = Field({}, description="values of all cases; other parameters take their defaults")
     factors: dict[str, dict[str, Any]] = Field({}, description="what varies: a list or a distribution for each factor")
@@ -64,20 +71,10 @@ class _Design(BaseModel):
     )
     levels: int | None = Field(None, description="morris: number of levels")
     inner: Literal["lhs", "sobol"] | None = Field(None, description="inner_outer: how the inner array is sampled")
-    rank_correlations: tuple[tuple[str, str, float], ...] = Field(
+    rank_correlations: Correlations = Field(
         (), description="lhs, sobol, inner_outer: [factor, factor, Spearman rank correlation] each"
     )
     grown_from: tuple[int, ...] | None = Field(None, description="lhs, inner_outer: earlier numbers of samples")
-
-    @field_validator("name", mode="before")
-    @classmethod
-    def _name(cls, value: Any) -> Any:
-        return check_name(str(value) if isinstance(value, (int, float)) else value)
-
-    @field_validator("rank_correlations", mode="before")
-    @classmethod
-    def _rank_correlations(cls, value: Any) -> Any:
-        return check_entries(value)
 
     @field_validator("design")
     @classmethod
@@ -112,8 +109,8 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     analysis: Analysis = Field(
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
     )
-    pareto: dict[str, str] = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
-    constraints: tuple[str, ...] = Field((), description="comparisons that an allowed design must meet")
+    pareto: Goals = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
+    constraints: Comparisons = Field((), description="comparisons that an allowed design must meet")
     chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases in each job; chosen if not given")
 
     @field_validator(*(option.name for option in IN_STUDY), mode="before")
@@ -138,16 +135,6 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
             if isinstance(one, (bool, str)):
                 raise InputError(info.field_name, value, "a whole number", "Write digits without quotes.")
         return value
-
-    @field_validator("pareto", mode="before")
-    @classmethod
-    def _pareto(cls, value: Any) -> Any:
-        return directions(value)
-
-    @field_validator("constraints", mode="before")
-    @classmethod
-    def _constraints(cls, value: Any) -> Any:
-        return comparisons(value)
 
     @field_validator("base", mode="before")
     @classmethod

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import functools
 import json
+import mimetypes
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -37,15 +38,6 @@ INPUTS = "inputs"
 STUDY_FILE, MATERIALS_FILE = f"{INPUTS}/study.yaml", f"{INPUTS}/materials.yaml"
 RESULTS = ("design.nc", "study.nc", "sensitivity.nc", "report.html", "figures", "tables")
 LICENCE = "https://spdx.org/licenses/MIT"
-_TYPES = {
-    ".nc": "application/x-netcdf",
-    ".yaml": "application/yaml",
-    ".html": "text/html",
-    ".svg": "image/svg+xml",
-    ".png": "image/png",
-    ".json": "application/json",
-    ".csv": "text/csv",
-}
 PROFILES = tuple(f"https://w3id.org/ro/wfrun/{name}" for name in ("process/0.5", "workflow/0.5"))
 
 
@@ -103,8 +95,9 @@ def _files(root: Path, *names: str) -> Iterator[str]:
 def _file(root: Path, name: str) -> dict[str, Any]:
     path = root / name
     entry: dict[str, Any] = {"@id": name, "@type": "File", "sha256": sha256(path), "contentSize": path.stat().st_size}
-    if path.suffix in _TYPES:
-        entry["encodingFormat"] = _TYPES[path.suffix]
+    kind = "application/yaml" if path.suffix == ".yaml" else mimetypes.guess_type(name, strict=False)[0]
+    if kind is not None:
+        entry["encodingFormat"] = kind
     if name == STUDY_FILE:
         entry["@type"] = ["File", "SoftwareSourceCode", "ComputationalWorkflow"]
         entry |= {"name": "study file with every default", "programmingLanguage": {"@id": "#study-language"}}

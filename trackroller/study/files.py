@@ -226,7 +226,13 @@ def locked(path: Path, shared: bool = False, tell: Tell | None = None) -> Iterat
 
 
 def sweep(folder: StudyFolder) -> None:
-    """Remove the temporary files of killed processes. Only the sole holder of the lock may call this."""
+    """Remove what killed processes left: temporary files and parts of complete chunks.
+
+    Only the sole holder of the lock may call this, after damaged chunks are removed.
+    """
+    for path in folder.parts():
+        if folder.chunk(path.stem.partition("-")[0]).is_file():
+            path.unlink(missing_ok=True)
     for path in (*folder.root.glob(".*.tmp"), *folder.root.glob("*/.*.tmp")):
         if path.is_file():  # the figures are drawn in a temporary folder
             path.unlink(missing_ok=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.roller.dataset import file_attributes
 from trackroller.study import provenance, store
@@ -77,7 +78,7 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
 
     def save(beside: Path) -> None:
         with tempfile.TemporaryFile(dir=folder.root) as scratch:
-            results = _results(scratch, sizes, found, place, headers)
+            results = _results(scratch, sizes, found, cases, headers)
             coords = _labels(study, design, sizes, grid)
             for header in headers:
                 for name, entry in header.coords.items():
@@ -105,21 +106,17 @@ def _attributes(study: Study, design: xr.Dataset, headers: list[store.Block]) ->
 
 
 def _results(
-    scratch: Any, sizes: dict[str, int], found: Inventory, place: np.ndarray, headers: list[store.Block]
+    scratch: Any, sizes: dict[str, int], found: Inventory, cases: np.ndarray, headers: list[store.Block]
 ) -> Variables:
-    """Return the results of the cases with the indices `place`, and the reasons of the failed ones."""
+    """Return the results of cases, and the reasons of the failed ones."""
     layout = store.merged_layout(header.layout for header in headers)
-    values = _collect(scratch, layout, found, place)
+    values = _collect(scratch, layout, found, found.find(cases))
     variables, start = {}, 0
     for name, entry in layout.items():
         part = values[start : start + entry.size].T.reshape(*sizes.values(), *entry.shape)
         variables[name] = _variable((*sizes, *entry.dims), part.astype(entry.dtype, copy=False), entry.attrs)
         start += entry.size
-    reasons = np.full(len(place), "", dtype=object)
-    known = np.array([case.encode() for case in found.reasons], dtype="S32")
-    why = dict(zip(found.find(known).tolist(), found.reasons.values(), strict=True))
-    for i in np.flatnonzero(np.isin(place, list(why))):
-        reasons[i] = why[place[i]]
+    reasons = np.array([found.reasons.get(case.decode(), "") for case in cases], dtype=object)
     attrs = {"long_name": "why a case failed or misses its tolerance"}
     return variables | {"reason": _variable(tuple(sizes), reasons.reshape(*sizes.values()), attrs)}
 
@@ -157,10 +154,8 @@ def _labels(study: Study, design: xr.Dataset, sizes: dict[str, int], grid: dict[
         if dim == "material_pair":
             for i, name in enumerate(MATERIAL_FIELDS):
                 add(name, (dim,), np.array([pair[i] for pair in factor.levels], dtype=object))
-    number, words = (
-        np.arange(design.sizes["case"]),
-        {"long_name": "case number, for `trackroller repeat`", "units": "1"},
-    )
+    number = np.arange(design.sizes["case"])
+    words = {"long_name": "case number, for `trackroller repeat`", "units": "1"}
     labels["case"] = _variable(tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True)
     columns = {str(name): column.values for name, column in design.variables.items() if name != "case"}
     if "material_pair" in study.drawn.columns and "material_pair" not in grid:
@@ -179,12 +174,9 @@ def _texts(values: Any) -> np.ndarray:
 def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.ndarray]:
     """Return the dimensions that values depend on, and the values over these dimensions."""
     for dim in tuple(dims):
-        first = values.take([0], axis=dims.index(dim))
-        equal = values == first
-        if values.dtype.kind == "f":
-            equal |= np.isnan(values) & np.isnan(first)
-        if np.all(equal):
-            values = first.squeeze(dims.index(dim))
+        axis = dims.index(dim)
+        if all_equal(np.moveaxis(values, axis, 0)):
+            values = values.take(0, axis=axis)
             dims.remove(dim)
     return tuple(dims), values
 

@@ -18,16 +18,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, field_validator
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.numerics import expressions
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.roller.dataset import VARIABLES
 from trackroller.study.design.entries import choice
-from trackroller.study.design.factors import LISTS
+from trackroller.study.design.factors import Factor
 from trackroller.study.outputs import DEFAULTS, FIELDS
 
 MEASURES = ("first", "delta", "pawn", "prcc")
@@ -35,6 +35,25 @@ SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
 STATISTICS = ("b10", "b10_safe", "mean", "standard_deviation", "probability")  # of the design points of inner_outer
 TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table")
+
+
+def targets(value: Any) -> dict[str, dict[str, float]]:
+    """Check the key `analysis.target`: outputs, each with `min` or `max` or both."""
+    example = "For example {roller_life_hours: {min: 500}}."
+    if not isinstance(value, Mapping):
+        raise InputError("analysis.target", value, "outputs, each with min or max", example)
+    for name, limits in value.items():
+        where, allowed = f"analysis.target.{name}", "min, max or both, each a number"
+        if not isinstance(limits, Mapping) or not limits or not set(limits) <= {"min", "max"}:
+            raise InputError(where, limits, allowed, example)
+        for number in limits.values():
+            if isinstance(number, bool) or not isinstance(number, (int, float)) or not math.isfinite(number):
+                raise InputError(where, number, allowed, example)
+            if "life" in str(name) and number <= 0:
+                raise InputError(where, number, "a life above 0")
+        if limits.get("min", -math.inf) >= limits.get("max", math.inf):
+            raise InputError(where, dict(limits), "min below max")
+    return {str(name).replace(" ", ""): {str(k): float(v) for k, v in limits.items()} for name, limits in value.items()}
 
 
 class Analysis(BaseModel):
@@ -59,14 +78,9 @@ class Analysis(BaseModel):
         False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"
     )
 
-    target: dict[str, dict[str, float]] = Field(
+    target: Annotated[dict[str, dict[str, float]], BeforeValidator(targets)] = Field(
         {}, description="output with min or max: the probability to meet it, by design point and by level of a factor"
     )
-
-    @field_validator("target", mode="before")
-    @classmethod
-    def _target(cls, value: Any) -> Any:
-        return targets(value)
 
     @field_validator("scale")
     @classmethod
@@ -112,25 +126,6 @@ def directions(value: Any) -> dict[str, str]:
             "For example {roller_life_hours: max, friction_power: min}.",
         )
     return {str(name).replace(" ", ""): choice(way, f"pareto.{name}", DIRECTIONS) for name, way in value.items()}
-
-
-def targets(value: Any) -> dict[str, dict[str, float]]:
-    """Check the key `analysis.target`: outputs, each with `min` or `max` or both."""
-    example = "For example {roller_life_hours: {min: 500}}."
-    if not isinstance(value, Mapping):
-        raise InputError("analysis.target", value, "outputs, each with min or max", example)
-    for name, limits in value.items():
-        where, allowed = f"analysis.target.{name}", "min, max or both, each a number"
-        if not isinstance(limits, Mapping) or not limits or not set(limits) <= {"min", "max"}:
-            raise InputError(where, limits, allowed, example)
-        for number in limits.values():
-            if isinstance(number, bool) or not isinstance(number, (int, float)) or not math.isfinite(number):
-                raise InputError(where, number, allowed, example)
-            if "life" in str(name) and number <= 0:
-                raise InputError(where, number, "a life above 0")
-        if limits.get("min", -math.inf) >= limits.get("max", math.inf):
-            raise InputError(where, dict(limits), "min below max")
-    return {str(name).replace(" ", ""): {str(k): float(v) for k, v in limits.items()} for name, limits in value.items()}
 
 
 def comparisons(value: Any) -> list[str]:
@@ -192,7 +187,7 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
             )
 
 
-def check(config: Any, factors: Mapping[str, Any]) -> None:
+def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
     known = output_names(config.outputs)
     scale = config.analysis.scale
@@ -210,14 +205,14 @@ def check(config: Any, factors: Mapping[str, Any]) -> None:
     for name in config.pareto if config.design != "inner_outer" else ():
         if name not in free:
             raise _unknown("pareto", name, free, config.outputs)
-        if "expression" not in factors.get(name, {}) and not _numeric(factors.get(name, {})):
+        if name in factors and not factors[name].numeric:
             raise InputError("pareto", name, "a result or factor with one number a case", "Names have no order.")
     _check_constraints(config, factors, free)
 
 
-def _check_statistics(config: Any, factors: Mapping[str, Any], known: list[str]) -> None:
+def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[str]) -> None:
     """Check that `pareto` names statistics of design points in an inner/outer design, and in no other design."""
-    chosen = [n for n, spec in factors.items() if set(spec) & set(LISTS) and not spec.get("scatter") and _numeric(spec)]
+    chosen = [name for name, factor in factors.items() if factor.discrete and factor.numeric and not factor.scatter]
     for name in config.pareto:
         kind, output = statistic(name)
         if config.design != "inner_outer" and kind:
@@ -243,19 +238,15 @@ def statistic(name: str) -> tuple[str, str]:
     return (kind, output[:-1]) if bracket and kind in STATISTICS and output.endswith(")") else ("", name)
 
 
-def _check_constraints(config: Any, factors: Mapping[str, Any], free: list[str]) -> None:
+def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[str]) -> None:
     words = [*free, *MATERIAL_FIELDS, "material_pair", "regime"]
     for text in config.constraints:
         for name in names_in(text):
             if name not in words:
                 raise _unknown("constraints", name, [*words, *REGIMES], config.outputs)
         dummy: dict[str, Any] = dict.fromkeys(free, 1.0) | {name: "" for name in words[len(free) :]}
-        dummy |= {name: "" for name, spec in factors.items() if not _numeric(spec)} | {name: name for name in REGIMES}
+        dummy |= {name: "" for name, factor in factors.items() if not factor.numeric} | {name: name for name in REGIMES}
         expressions.condition(text, dummy)
-
-
-def _numeric(spec: Mapping[str, Any]) -> bool:
-    return all(isinstance(v, (int, float)) for v in spec.get("values", []))
 
 
 def _unknown(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:

@@ -12,7 +12,7 @@ from trackroller.errors import InputError
 from trackroller.materials.yaml_file import read_mapping
 from trackroller.parameters import OPTIONS
 from trackroller.study import store
-from trackroller.study.files import StudyFolder, Tell
+from trackroller.study.files import StudyFolder
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -69,14 +69,7 @@ def take_inventory(folder: StudyFolder) -> Inventory:
     fingerprints, whole = np.empty(0, dtype="S32"), np.empty(0, dtype=int)
     found = Inventory(fingerprints, whole, whole, whole, paths=[], headers=[])
     cases, regimes = [], []
-    for path in folder.solved_files():
-        try:
-            block = store.read_named(path)
-        except store.CorruptFile as exc:
-            found.corrupt[path] = str(exc)
-            continue
-        except FileNotFoundError:  # a running process has just completed the chunk
-            continue
+    for path, block in store.read_sound(folder.solved_files(), found.corrupt):
         cases.append(block.cases)
         regimes.append(block.columns("regime")[:, 0].astype(int))
         found.paths.append(path)
@@ -93,16 +86,6 @@ def take_inventory(folder: StudyFolder) -> Inventory:
     found.row = np.concatenate([np.arange(n) for n in count])[first]
     found.regime = np.concatenate(regimes)[first]
     return found
-
-
-def remove_corrupt(folder: StudyFolder, found: Inventory, tell: Tell) -> None:
-    """Name and remove damaged files, and the blocks of chunks that are complete."""
-    for path, why in found.corrupt.items():
-        tell(f"corrupt results, their cases are solved again: {why}")
-        path.unlink(missing_ok=True)
-    for path in folder.parts():
-        if folder.chunk(path.stem.partition("-")[0]).is_file():
-            path.unlink(missing_ok=True)
 
 
 def forget_failed(folder: StudyFolder, found: Inventory) -> int:

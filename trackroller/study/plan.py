@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.errors import InputError
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import to_table
 from trackroller.study.caselists import CaseList, load_list, write_list
@@ -39,8 +40,9 @@ from trackroller.study.files import (
     write_text,
 )
 from trackroller.study.identity import chunk_name, fingerprints
-from trackroller.study.inventory import Inventory, check_default_model, forget_failed, remove_corrupt, take_inventory
+from trackroller.study.inventory import Inventory, check_default_model, forget_failed, take_inventory
 from trackroller.study.sources import solver_digest
+from trackroller.study.store import remove_corrupt
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -144,12 +146,6 @@ def plan_key(study: Study) -> str:
     return digest.hexdigest()
 
 
-def make_plan(study: Study, results: Path | str = "results", *, tell: Tell | None = None) -> Plan:
-    """Plan a study, write its case lists, and release the study's folder; see `working_plan`."""
-    with working_plan(study, results, tell=tell) as plan:
-        return plan
-
-
 @contextlib.contextmanager
 def working_plan(
     study: Study, results: Path | str = "results", *, tell: Tell | None = None, rerun_failed: bool = False
@@ -200,26 +196,36 @@ def working_plan(
 
 def read_plan(study: Study, folder: StudyFolder) -> Plan | None:
     """Return the plan on the disk, or None if it is missing or was made for another version of the study."""
-    study = with_history(study, folder)
-    try:
-        data = json.loads(folder.plan_file.read_text())
-        if data["key"] != plan_key(study):
-            return None
-        return Plan(study, folder, data["chunks"], data["size"], data["distinct"], tuple(data["uses"]))
-    except (OSError, ValueError, KeyError, TypeError):
+    study, data = with_history(study, folder), _written(folder)
+    if data.get("key") != plan_key(study):
         return None
+    try:
+        return Plan(study, folder, data["chunks"], data["size"], data["distinct"], tuple(data["uses"]))
+    except (KeyError, TypeError):
+        return None
+
+
+def _written(folder: StudyFolder) -> dict[str, Any]:
+    """Return what the plan file says, {} without a readable one."""
+    try:
+        return dict(json.loads(folder.plan_file.read_text()))
+    except (OSError, ValueError, TypeError):
+        return {}
 
 
 def _repair_and_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> None:
     """Remove damaged files, and plan anew unless the plan on the disk accounts for every case."""
-    sweep(folder)
-    _tell_changed_solver(folder, tell)
+    if _written(folder).get("solver_digest", solver_digest()) != solver_digest():
+        tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     for path in (folder.design, folder.gathered):
+        if path.is_dir():
+            raise InputError(path.name, str(path), "a file; this is a folder", "Move the folder away.")
         if path.exists() and not matches_checksum(folder, path):
             tell(f"{path} is truncated or was altered (its checksum differs): it is made anew")
             path.unlink()
     found = take_inventory(folder)
-    remove_corrupt(folder, found, tell)
+    remove_corrupt(found.corrupt, tell)
+    sweep(folder)
     if rerun_failed:
         tell(f"{forget_failed(folder, found)} failed cases are solved again")
         found = take_inventory(folder)
@@ -231,16 +237,6 @@ def _repair_and_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed
             folder.mark(name).unlink(missing_ok=True)
         elif not folder.mark(name).is_file():
             folder.mark(name).touch()
-
-
-def _tell_changed_solver(folder: StudyFolder, tell: Tell) -> None:
-    """Say so if the cases of a folder were planned for another version of the solver's code."""
-    try:
-        known = json.loads(folder.plan_file.read_text()).get("solver_digest")
-    except (OSError, ValueError, AttributeError):
-        return
-    if known != solver_digest():
-        tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
 
 
 def _is_complete(plan: Plan, found: Inventory, tell: Tell) -> bool:

@@ -54,14 +54,10 @@ def versions() -> dict[str, str]:
     return found
 
 
-def materials_used(study: Study, names: list[str]) -> dict[str, Any]:
-    """Return the values of materials with their sources, by name."""
-    return {name: study.materials.material(name).with_sources() for name in names}
-
-
 def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
     """Return the global attributes of the gathered file for a study that uses the named materials."""
     config = study.config
+    values = {name: study.materials.material(name).with_sources() for name in materials}
     told = {
         **file_attributes(f"Parameter study '{study.name}' of locating-bearing track rollers", "solved and gathered"),
         "comment": config.description or f"Results of the study {study.name}",
@@ -73,7 +69,7 @@ def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
         "solver_digest": solver_digest(),
         "versions": json.dumps(versions()),
         "git_commit": git_commit(),
-        "materials": json.dumps(materials_used(study, materials), default=str),
+        "materials": json.dumps(values, default=str),
         "date_created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
     }
     if study.path is not None:

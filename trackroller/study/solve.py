@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -50,14 +51,15 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
     InputError
         If an option is wrong for all cases. A `ShapeError` concerns one case only and becomes a failed row.
     """
-    solver = _default_solver() if solver is None else solver
+    if solver is None:
+        from trackroller.roller.solver import solve as solver  # numba compiles on import; planning needs no solver
     started = time.perf_counter()
     blocks: list[store.Block] = []
     pending = [index]
     while pending:
         rows = pending.pop()
         try:
-            dataset = solver(cases.design(rows), database=database, **cases.options)
+            dataset = solver(cases.take(rows).design(), database=database, **cases.options)
             blocks.append(store.from_dataset(dataset, cases.cases[rows]))
             if cases.options.get("normal") == "halfspace":
                 _explain_shapes(blocks[-1], cases, rows, lambda one: solver(one, database=database, **cases.options))
@@ -74,12 +76,6 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
     return block
 
 
-def _default_solver() -> Solver:
-    from trackroller.roller.solver import solve  # numba compiles on import; planning needs no solver
-
-    return solve
-
-
 def _reason(exc: Exception) -> str:
     text = str(exc).splitlines()[0] if str(exc) else "no message"
     return text[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {text}"[:200]
@@ -91,7 +87,7 @@ def _explain_shapes(block: store.Block, cases: CaseList, rows: np.ndarray, solve
         return
     for i in np.flatnonzero(block.failed):
         try:
-            solve(cases.design(rows[i : i + 1]))
+            solve(cases.take(rows[i : i + 1]).design())
         except ShapeError as exc:
             block.reasons[block.cases[i].decode()] = _reason(exc)
 
@@ -148,42 +144,31 @@ def solve_chunk(
     """
     try:
         with locked(folder.lock, shared=True), locked(folder.case_list(name), tell=tell):
-            return _solve_locked(folder, name, database, executor, tell, progress)
+            if folder.chunk(name).is_file():
+                folder.mark(name).touch()
+                return f"chunk {name}: already solved"
+            cases = load_list(folder, name)
+            _check_identity(cases, database)
+            corrupt: dict[Path, str] = {}
+            blocks = [block for _, block in store.read_sound(folder.parts(name), corrupt)]
+            store.remove_corrupt(corrupt, tell)
+            finished = np.concatenate([np.empty(0, dtype="S32"), *(block.cases for block in blocks)])
+            missing = cases.take(np.flatnonzero(~np.isin(cases.cases, finished)))
+            started = time.perf_counter()
+            for block in executor(missing, database):
+                store.write_part(folder, name, block)
+                blocks.append(block)
+                if progress is not None:
+                    progress(len(block.cases))
+            return _summary(_complete(folder, cases, blocks), name, len(missing.cases), time.perf_counter() - started)
     except FileNotFoundError:
         raise list_is_gone(folder, name) from None
 
 
-def _solve_locked(
-    folder: StudyFolder,
-    name: str,
-    database: Any,
-    executor: Executor,
-    tell: Tell,
-    progress: Callable[[int], None] | None,
-) -> str:
-    if folder.chunk(name).is_file():
-        folder.mark(name).touch()
-        return f"chunk {name}: already solved"
-    cases = load_list(folder, name)
-    _check_identity(cases, database)
-    blocks = _finished_blocks(folder, name, tell)
-    finished = [b.cases for b in blocks]
-    missing = (
-        np.flatnonzero(~np.isin(cases.cases, np.concatenate(finished))) if finished else np.arange(len(cases.cases))
-    )
-    started = time.perf_counter()
-    for block in executor(cases.take(missing), database):
-        store.write_part(folder, name, block)
-        blocks.append(block)
-        if progress is not None:
-            progress(len(block.cases))
-    spent = time.perf_counter() - started
-    chunk = _complete(folder, cases, blocks)
-    speed = f", {len(missing) / spent:.0f} cases/s" if spent > 0 and len(missing) else ""
-    return (
-        f"chunk {name}: {len(cases.cases)} cases, {len(missing)} solved now in {spent:.1f} s{speed}, "
-        f"{int(chunk.failed.sum())} failed"
-    )
+def _summary(chunk: store.Block, name: str, count: int, spent: float) -> str:
+    speed = f", {count / spent:.0f} cases/s" if spent > 0 and count else ""
+    now = f"{count} solved now in {spent:.1f} s{speed}"
+    return f"chunk {name}: {len(chunk.cases)} cases, {now}, {int(chunk.failed.sum())} failed"
 
 
 def _check_identity(cases: CaseList, database: Any) -> None:
@@ -193,17 +178,6 @@ def _check_identity(cases: CaseList, database: Any) -> None:
             f"chunk {cases.name}: the materials or the solver changed after the study was planned. "
             "Start the run again: it plans anew."
         )
-
-
-def _finished_blocks(folder: StudyFolder, name: str, tell: Tell) -> list[store.Block]:
-    blocks = []
-    for path in folder.parts(name):
-        try:
-            blocks.append(store.read_named(path))
-        except store.CorruptFile as exc:
-            tell(f"corrupt results, their cases are solved again: {exc}")
-            path.unlink(missing_ok=True)
-    return blocks
 
 
 def _complete(folder: StudyFolder, cases: CaseList, blocks: list[store.Block]) -> store.Block:

@@ -131,26 +131,8 @@ def digest_file(folder: str | Path, *modules: str) -> str:
     return str(path)
 
 
-def without_comments(source: str, docstring: str = "") -> str:
-    """Return Python source without comments, docstrings and blank lines.
-
-    Parameters
-    ----------
-    source : str
-        Text of a module, formatted by `ruff format`.
-    docstring : str
-        What stands in the place of each docstring.
-
-    Returns
-    -------
-    str
-        The code, with its indentation.
-    """
-    return _split(source, docstring)[0]
-
-
 def _split(source: str, docstring: str = "") -> tuple[str, list[str]]:
-    """Code without comments and docstrings, and the literal strings in it."""
+    """Code without comments and blank lines, each docstring replaced, and the literal strings in it."""
     kept: list[str] = []
     strings: list[str] = []
     last = 0

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ import xarray as xr
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.dataset import file_attributes
-from trackroller.study.files import StudyFolder, write_whole
+from trackroller.study.files import StudyFolder, Tell, write_whole
 from trackroller.study.identity import chunk_name
 
 FAILED = 3  # value of `regime`
@@ -257,3 +257,21 @@ def read_named(path: Path) -> Block:
     if first != block.cases[0].decode() if first else chunk_name(block.cases) != path.stem:
         raise CorruptFile(path, "it holds other cases than its name announces")
     return block
+
+
+def read_sound(paths: Iterable[Path], corrupt: dict[Path, str]) -> Iterator[tuple[Path, Block]]:
+    """Read the blocks of a study and note in `corrupt` what is wrong with damaged files."""
+    for path in paths:
+        try:
+            yield path, read_named(path)
+        except CorruptFile as exc:
+            corrupt[path] = str(exc)
+        except FileNotFoundError:  # a running process has just completed the chunk
+            continue
+
+
+def remove_corrupt(corrupt: Mapping[Path, str], tell: Tell) -> None:
+    """Name and remove damaged files."""
+    for path, why in corrupt.items():
+        tell(f"corrupt results, their cases are solved again: {why}")
+        path.unlink(missing_ok=True)

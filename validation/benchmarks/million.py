@@ -26,7 +26,7 @@ from trackroller.study import store
 from trackroller.study.caselists import load_list
 from trackroller.study.config import load_study
 from trackroller.study.design.build import MAX_CASES
-from trackroller.study.plan import make_plan
+from trackroller.study.plan import working_plan
 from trackroller.study.solve import solve_rows
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,13 +56,15 @@ STUDY = {
 def plan() -> None:
     """Write the case lists."""
 
-    make_plan(load_study("study.yaml"), "results")
+    with working_plan(load_study("study.yaml"), "results"):
+        pass
 
 
 def hand_out() -> None:
     """Fill every chunk with the results of the first one, over and over."""
 
-    made = make_plan(load_study("study.yaml"), "results")
+    with working_plan(load_study("study.yaml"), "results") as made:
+        pass
     solved = None
     for name in made.chunks:
         cases = load_list(made.folder, name)

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from trackroller.report.figures import style
 from trackroller.report.numbers import listing
 from trackroller.report.sheet.spectrum import percent, track
-from trackroller.study.spectrum.damage import BODIES
+from trackroller.study.spectrum.solve import BODIES
 
 MOST = 16  # blocks drawn one by one; the others stand together
 

@@ -12,8 +12,8 @@ from trackroller.report.flags import flags_of
 from trackroller.report.numbers import capital, life, listing, number, share, unit_text
 from trackroller.report.sheet.rows import Row
 from trackroller.report.tables import Table
-from trackroller.study.spectrum.damage import BODIES
 from trackroller.study.spectrum.file import LOAD_FIELDS
+from trackroller.study.spectrum.solve import BODIES
 
 if TYPE_CHECKING:
     import xarray as xr

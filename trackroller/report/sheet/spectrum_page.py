@@ -16,7 +16,7 @@ from trackroller.report.sheet.facts import body_materials, versions
 from trackroller.report.sheet.rows import input_row, is_told
 from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
 from trackroller.study.files import write_text
-from trackroller.study.spectrum.damage import BODIES
+from trackroller.study.spectrum.solve import BODIES
 
 if TYPE_CHECKING:
     import xarray as xr

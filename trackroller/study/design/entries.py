@@ -88,15 +88,22 @@ def base_value(key: Any, value: Any) -> Any:
     ------
     InputError : unknown field, or a value outside its bounds
     """
-    if key == "material_pair":
-        return list(_pair(value, "base.material_pair"))
-    if key not in CASE_FIELDS:
+    if key not in (*CASE_FIELDS, "material_pair"):
         raise unknown_name("base", str(key), (*CASE_FIELDS, "material_pair"))
+    return _value(key, value, f"base.{key}")
+
+
+def _value(key: str, value: Any, where: str) -> Any:
+    """Return the value of a case field or of an option in the type of its field."""
+    if key == "material_pair":
+        if not isinstance(value, (list, tuple)) or len(value) != 2:
+            raise InputError(where, value, "a pair [roller material, guide material]")
+        return [_material_name(name, where) for name in value]
+    if key in OPTION_FACTORS:
+        return choice(value, where, OPTION_FACTORS[key])
     if key in MATERIAL_FIELDS:
-        return _material_name(value, f"base.{key}")
-    if key in MAPPING_FIELDS:
-        return _mapping(key, value, f"base.{key}")
-    return _number(key, value, f"base.{key}")
+        return _material_name(value, where)
+    return _mapping(key, value, where) if key in MAPPING_FIELDS else _number(key, value, where)
 
 
 def _material_name(value: Any, where: str) -> str:
@@ -125,12 +132,6 @@ def _mapping(name: str, value: Any, where: str) -> str:
     except InputError as exc:
         field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"
         raise InputError(field, exc.value, exc.allowed, exc.remedy) from None
-
-
-def _pair(value: Any, where: str) -> tuple[str, str]:
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise InputError(where, value, "a pair [roller material, guide material]")
-    return _material_name(value[0], where), _material_name(value[1], where)
 
 
 def _number(name: str, value: Any, where: str) -> Any:
@@ -172,17 +173,13 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
     InputError : unknown name, or an entry that is not allowed
     """
     where = f"factors.{key}"
-    if key not in FACTOR_NAMES:
-        if not isinstance(key, str) or not key.isidentifier() or not _used(key, factors):
-            raise unknown_name("factors", str(key), FACTOR_NAMES)
-        if isinstance(spec, Mapping):
-            spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
-        parse(key, spec)
-        return dict(spec)
+    own = key not in FACTOR_NAMES
+    if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
+        raise unknown_name("factors", str(key), FACTOR_NAMES)
     if isinstance(spec, Mapping):
         spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
     checked = parse(key, spec)
-    if key not in PARAMETERS and checked.kind != "values":
+    if not own and key not in PARAMETERS and checked.kind != "values":
         raise InputError(where, checked.kind, "names are given as {values: [...]}")
     if key in PARAMETERS:
         for level in (*checked.levels, *(checked.numbers if checked.kind == "uniform" else ())):
@@ -200,28 +197,13 @@ def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
     """Return the entries of a factor's list: numbers as floats, checked pairs, names as texts."""
     if not isinstance(value, list):
         return value
-    if kind != "values":
-        numbers = [_to_float(v) for v in value]
-        if kind in LISTS and len(numbers) == 3:
-            _check_count(numbers[2], where)
-        return numbers
-    if key in PARAMETERS:
-        return [_number(key, v, where) for v in value]
-    if key == "material_pair":
-        return [list(_pair(v, where)) for v in value]
-    if key not in FACTOR_NAMES:
-        return value
-    if key in OPTION_FACTORS:
-        return [choice(v, where, OPTION_FACTORS[key]) for v in value]
-    if key in MAPPING_FIELDS:
-        return [_mapping(key, v, where) for v in value]
-    return [_material_name(v, where) for v in value]
-
-
-def _check_count(count: Any, where: str) -> None:
-    """Refuse a mistyped number of levels before it fills the memory."""
-    if isinstance(count, (int, float)) and not count <= MAX_LEVELS:
-        raise InputError(where, count, f"at most {MAX_LEVELS} levels of a factor")
+    if kind == "values":
+        return value if key not in FACTOR_NAMES else [_value(key, entry, where) for entry in value]
+    numbers = [_to_float(entry) for entry in value]
+    if kind in LISTS and len(numbers) == 3 and isinstance(numbers[2], (int, float)) and not numbers[2] <= MAX_LEVELS:
+        # a mistyped number of levels would fill the memory
+        raise InputError(where, numbers[2], f"at most {MAX_LEVELS} levels of a factor")
+    return numbers
 
 
 def _to_float(value: Any) -> Any:

@@ -16,6 +16,7 @@ block.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -136,18 +137,22 @@ class Spectrum:
         if not isinstance(base, Mapping):
             raise InputError("base", base, "a mapping of case fields to values")
         made = tuple(_block(block, base, i) for i, block in enumerate(blocks, start=1))
-        _check_names([block.name for block in made])
+        if len({block.name for block in made}) < len(made):
+            twice = Counter(block.name for block in made).most_common(1)[0][0]
+            raise InputError("blocks", twice, "a name of its own for each block", "Rename one of the blocks.")
         if not sum(block.distance for block in made) > 0:
             raise InputError(
                 "distance", 0.0, "distances of a shift that add up to more than 0 m", "Give distances in m."
             )
+        options = {key: values[key] for key in OPTIONS if key in values}
+        Options(**options)  # checked before any case is solved
         return cls(
             name=str(values.get("name", "spectrum")),
             blocks=made,
             description=str(values.get("description", "")),
             critical_damage=_number("critical_damage", values.get("critical_damage", 1.0), open_lower=True),
             failure_probabilities=_probabilities(values.get("failure_probabilities", PROBABILITIES)),
-            options=_options({key: values[key] for key in OPTIONS if key in values}),
+            options=options,
         )
 
 
@@ -227,18 +232,6 @@ def _probabilities(values: Any) -> tuple[float, ...]:
         if number >= 1:
             raise InputError("failure_probabilities", number, "numbers between 0 and 1", "Give 0.1 for 10 %.")
     return tuple(sorted(set(numbers)))
-
-
-def _options(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Check the options of the solver before any case is solved."""
-    Options(**values)
-    return dict(values)
-
-
-def _check_names(names: list[str]) -> None:
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError("blocks", name, "a name of its own for each block", "Rename one of the blocks.")
 
 
 def _table(path: Path) -> list[dict[str, Any]]:

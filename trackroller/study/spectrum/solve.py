@@ -6,19 +6,25 @@ ASSUME: the blocks load the same two tracks of the roller and the same point of 
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import xarray as xr
+
+from trackroller.damage import fatigue, sn_curve
 from trackroller.materials import load_database
-from trackroller.study.spectrum.damage import damage_dataset
-from trackroller.study.spectrum.file import Block, Spectrum, load_spectrum
+from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.roller.case import to_table
+from trackroller.roller.record import material_values, plain_inputs
+from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from trackroller.materials import Material, MaterialDatabase
 
-    from trackroller.materials import MaterialDatabase
-
-__all__ = ["Block", "Spectrum", "load_spectrum", "solve_spectrum"]
+BODIES = ("roller", "guide")
+_BCB, _CB = ("block", "contact", "body"), ("contact", "body")
 
 
 def solve_spectrum(
@@ -58,4 +64,151 @@ def solve_spectrum(
     cases = [block.case for block in spectrum.blocks]
     options = {key: value for key, value in spectrum.options.items() if key != "life_rule"}
     solved = solve_cases(cases, outputs=("forces", "peak_stress"), database=database, **options)
-    return damage_dataset(spectrum, solved, database)
+    return _damage(spectrum, solved, database)
+
+
+def running_cycles(overrollings: np.ndarray, stress: np.ndarray, regime: np.ndarray) -> np.ndarray:
+    """Return the cycles of each track, (block, contact, body) [1]; 0 for a contact that has lifted off.
+
+    Parameters
+    ----------
+    overrollings : numpy.ndarray, shape (block, body)
+        Overrollings per shift [1].
+    stress : numpy.ndarray, shape (block, contact, body)
+        Peak stress [MPa]; NaN where there is none.
+    regime : numpy.ndarray of int, shape (block,)
+        Index into `REGIMES`.
+    """
+    unknown = np.isnan(stress)
+    lifted = (regime == REGIMES.index("lift_off"))[:, None, None] & unknown & ~unknown[:, ::-1, :]
+    return np.where(lifted, 0.0, overrollings[:, None, :])
+
+
+def damage_per_shift(
+    stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str, probability: float = 0.5
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return cycles to failure and damage per shift of each block, (block, contact, body) [1] each.
+
+    Parameters
+    ----------
+    stress, cycles : numpy.ndarray, shape (block, contact, body)
+        Peak stress [MPa] and cycles per shift [1].
+    bodies : list of Material
+        Materials of roller and guide.
+    rule : str
+        Life rule.
+    probability : float
+        Failure probability [1]. For values other than 0.5, a material without scatter gives NaN.
+    """
+    life = np.full(stress.shape, np.nan)
+    for i, material in enumerate(bodies):
+        t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
+        if probability == 0.5 or t_n or t_s:
+            life[..., i] = sn_curve.life_cycles(
+                stress[..., i],
+                sn_curve.curve_of(material),
+                rule,
+                failure_probability=probability,
+                scatter_cycles=t_n,
+                scatter_stress=t_s,
+            )
+    return life, fatigue.block_damage(cycles, life)
+
+
+def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) -> xr.Dataset:
+    """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
+    stress = solved["peak_stress"].transpose("case", "contact", "body").values
+    overrollings = overrollings_per_shift(spectrum)
+    cycles = running_cycles(overrollings, stress, solved["regime"].values)
+    case = spectrum.blocks[0].case
+    bodies = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
+    rule = spectrum.options.get("life_rule", "elementary")
+    life, damage = damage_per_shift(stress, cycles, bodies, rule)
+    total = damage.sum(axis=0)
+    shifts = fatigue.repetitions_to_failure(total, spectrum.critical_damage)
+    first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
+    variables: dict[str, Any] = {
+        "distance": ("block", [b.distance for b in spectrum.blocks], _attrs("m", "distance per shift", "s")),
+        "duration": ("block", [b.hours for b in spectrum.blocks], _attrs("h", "hours of travel per shift", "t")),
+        "overrollings": (("block", "body"), overrollings, _attrs("1", "overrollings per shift", "n")),
+        "peak_stress": (_BCB, stress, _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")),
+        "life_cycles": (_BCB, life, _attrs("1", "overrollings to failure at the stress of the block", "N")),
+        "damage": (_BCB, damage, _attrs("1", "damage of the block per shift", "n/N")),
+        "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
+        "life_shifts": (_CB, shifts, _attrs("1", "shifts to failure of each track", "L_S")),
+    }
+    distance, duration = (float(np.sum(variables[name][1])) for name in ("distance", "duration"))
+    for i, body in enumerate(BODIES):
+        index, to = ("TR", "G")[i], f"to the first failure of the {body}"
+        for unit, name, words, scale in (
+            ("1", "shifts", "shifts", 1.0),
+            ("km", "km", "distance", distance / 1e3),
+            ("h", "hours", "hours of travel", duration),
+        ):
+            meta = _attrs(unit, f"{words} {to}", f"L_{name[0].upper() if name == 'shifts' else name[0]},{index}")
+            variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
+    variables |= _loads(spectrum, database)
+    found = _labelled(spectrum, variables, solved, _scattered(spectrum, stress, cycles, bodies, rule), rule)
+    roller = {name: value for name, value in plain_inputs(case).items() if name not in LOAD_FIELDS}
+    return found.assign_attrs(roller=json.dumps(roller), materials=json.dumps(material_values(case, database)))
+
+
+def _loads(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, Any]:
+    """Return the loads of each block, (block), friction as the number that its pair of materials has."""
+    table = to_table([block.case for block in spectrum.blocks], database)
+    out = {}
+    for name in LOAD_FIELDS:
+        parameter = PARAMETERS[name]
+        meta = _attrs(parameter.units, parameter.long_name, parameter.symbol)
+        out[name] = ("block", np.asarray(getattr(table, name), dtype=float), meta)
+    return out
+
+
+def _attrs(units: str, long_name: str, symbol: str) -> dict[str, str]:
+    return {"units": units, "long_name": long_name, "symbol": symbol}
+
+
+def _scattered(
+    spectrum: Spectrum, stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str
+) -> np.ndarray | None:
+    """Return shifts to failure at each failure probability, (probability, contact, body); None without scatter."""
+    if not any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
+        return None
+    lives = [
+        fatigue.repetitions_to_failure(
+            damage_per_shift(stress, cycles, bodies, rule, p)[1].sum(axis=0), spectrum.critical_damage
+        )
+        for p in spectrum.failure_probabilities
+    ]
+    return np.stack(lives)
+
+
+def _labelled(
+    spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset, scattered: np.ndarray | None, rule: str
+) -> xr.Dataset:
+    coords: dict[str, Any] = {
+        "block": ("block", [b.name for b in spectrum.blocks], {"long_name": "block of the spectrum"}),
+        "contact": solved["contact"],
+        "body": solved["body"],
+    }
+    if scattered is not None:
+        coords["probability"] = (
+            "probability",
+            list(spectrum.failure_probabilities),
+            {"units": "1", "long_name": "failure probability"},
+        )
+        meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
+        variables["life_shifts_at_probability"] = (("probability", *_CB), scattered, meta)
+    for name in ("regime", "converged", "validity", "validity_body"):
+        if name in solved:
+            dims = ("block", "body")[: solved[name].ndim]
+            variables[name] = (dims, solved[name].values, dict(solved[name].attrs))
+    attrs = {key: value for key, value in solved.attrs.items() if key != "life_conventions"} | {
+        "title": spectrum.name,
+        "description": spectrum.description,
+        "life_rule": rule,
+        "life_conventions": f"{sn_curve.AMPLITUDE}; {sn_curve.CONVENTIONS[rule]}; linear damage sum, failure at "
+        f"D = {spectrum.critical_damage:g}",
+        "critical_damage": spectrum.critical_damage,
+    }
+    return xr.Dataset(variables, coords=coords, attrs=attrs)
