@@ -8,17 +8,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trackroller.damage.fatigue import block_damage, guide_hours, repetitions_to_failure, roller_hours
-from trackroller.damage.sn_curve import (
+from trackroller.damage.fatigue import (
     CONVENTIONS,
     SNCurve,
     allowable_stress,
     curve_of,
+    guide_hours,
     life_cycles,
     line_at_probability,
+    roller_hours,
     scatter_ranges,
     woehler_exponent,
 )
+from trackroller.damage.miner import block_damage, damage_sum, repetitions_to_failure
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.parameters import LIFE_RULES
@@ -28,11 +30,6 @@ STEEL = SNCurve(tensile_strength=720.0, fatigue_limit=360.0, n_rm=1e4, n_k=5e6)
 K = math.log(500) / math.log(2)
 stresses = st.floats(1.0, 5000.0)
 rules = st.sampled_from(LIFE_RULES)
-
-
-def damage_sum(stress, cycles, curve, rule="elementary"):
-    """Miner's sum over the blocks of a spectrum."""
-    return block_damage(cycles, life_cycles(stress, curve, rule)).sum()
 
 
 def test_a_material_its_columns_and_its_values_give_the_same_curve():

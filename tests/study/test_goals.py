@@ -308,7 +308,7 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
     ds["axial_force"] = ("case", np.arange(40.0))
     stress = np.linspace(100, 800, 40)[:, None, None] * np.array([1.0, 0.9])[None, :, None] * np.ones(2)
     ds["peak_stress"] = (("case", "contact", "body"), stress)
-    from trackroller.damage.sn_curve import SNCurve, life_cycles
+    from trackroller.damage.fatigue import SNCurve, life_cycles
 
     ds["life_cycles"] = (("case", "contact", "body"), life_cycles(stress, SNCurve(720.0, 360.0, 1e4, 5e6), rule))
     ds["regime"] = ("case", (np.arange(40) % 4 == 0).astype(np.int8))
@@ -405,4 +405,4 @@ def test_every_source_of_an_analysis_is_an_input_of_its_rule():
     estimators = ("sobol", "indices", "givendata", "delta", "pairs", "convergence", "robustness", "labels", "restore")
     assert {f"analysis/{name}.py" for name in estimators} <= names
     assert {f"study/design/{name}.py" for name in ("arrays", "draws", "factors", "sampling", "grown_lhs")} <= names
-    assert {"numerics/expressions.py", "damage/sn_curve.py", "study/outputs.py"} <= names
+    assert {"numerics/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names

@@ -308,6 +308,13 @@ def test_results_folder_that_cannot_be_written_is_an_input_error(tmp_path):
         pass
 
 
+@pytest.mark.parametrize("name", ["study.nc", "design.nc"])
+def test_folder_in_the_place_of_a_file_is_an_input_error(tmp_path, name):
+    (tmp_path / "s" / name).mkdir(parents=True)
+    with pytest.raises(InputError, match=rf"{name}.*this is a folder.*Move the folder away"):
+        run(DATA, tmp_path)
+
+
 def test_full_disk_ends_with_a_clear_message_and_leaves_nothing_behind(tmp_path):
     def write(beside):
         with open("/dev/full", "wb", buffering=0) as stream:

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import trackroller as tr
-from trackroller.damage.sn_curve import SNCurve, life_cycles
+from trackroller.damage.fatigue import SNCurve, life_cycles
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.report.numbers import rounded

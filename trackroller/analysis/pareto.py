@@ -108,7 +108,7 @@ def pareto(
     values = {name: found[0] for name, found in columns.items()}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
-    undefined = np.isnan([np.asarray(values[name], dtype=float) for name in objectives]).any(axis=0)
+    undefined = np.isnan(np.stack([values[name].astype(float) for name in objectives])).any(axis=0)
     allowed, excluded = _allowed(undefined, values, constraints, own, kept)
     shown = {n: c for n, c in design.columns.items() if not (model and n == "contact_model")}
     told = {
@@ -208,7 +208,7 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
     InputError : a statistic is not in the analysis
     """
     columns = {name: _of_points(table, name) for name in objectives}
-    known = ~np.isnan([column[0].astype(float) for column in columns.values()]).any(axis=0)
+    known = ~np.isnan(np.stack([column[0].astype(float) for column in columns.values()])).any(axis=0)
     outer = [name for name in str(table.attrs["outer_factors"]).split(", ") if name]
     left = int((~known).sum())
     told = {

@@ -20,7 +20,7 @@ from trackroller.analysis.labels import output_labels
 from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.probability import probabilities
 from trackroller.analysis.targets import body_of, inner_sample
-from trackroller.damage.sn_curve import DECADES, curve_of, scatter_ranges, woehler_exponent
+from trackroller.damage.fatigue import DECADES, curve_of, scatter_ranges, woehler_exponent
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import label

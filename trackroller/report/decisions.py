@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage.sn_curve import DECADES
+from trackroller.damage.fatigue import DECADES
 from trackroller.parameters import PARAMETERS
 from trackroller.report import choices
 from trackroller.report import sentences as words

@@ -11,9 +11,10 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from trackroller.errors import InputError
+from trackroller.materials.yaml_file import read_mapping
 
 Tell = Callable[[str], None]
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
@@ -43,6 +44,13 @@ class StudyFolder:
     def study_file(self) -> Path:
         """The study file with every default written out."""
         return self.root / "study.yaml"
+
+    def earlier(self) -> dict[str, Any]:
+        """Return the study as it was planned last, {} if there is none."""
+        try:
+            return read_mapping(self.study_file, "study")
+        except InputError:
+            return {}
 
     @property
     def plan_file(self) -> Path:

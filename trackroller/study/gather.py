@@ -176,7 +176,7 @@ def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.n
     for dim in tuple(dims):
         axis = dims.index(dim)
         if all_equal(np.moveaxis(values, axis, 0)):
-            values = values.take(0, axis=axis)
+            values = values.take([0], axis=axis).squeeze(axis)
             dims.remove(dim)
     return tuple(dims), values
 

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.errors import InputError
-from trackroller.materials.yaml_file import read_mapping
 from trackroller.parameters import OPTIONS
 from trackroller.study import store
 from trackroller.study.files import StudyFolder
@@ -122,10 +121,7 @@ def check_default_model(study: Study, folder: StudyFolder) -> None:
     if "contact_model" in {*study.config.model_fields_set, *study.factors} or not any(folder.solved_files()):
         return
     option = OPTIONS["contact_model"]
-    try:
-        earlier = read_mapping(folder.study_file, "study").get("contact_model", option.default)
-    except InputError:
-        return
+    earlier = folder.earlier().get("contact_model", option.default)
     if earlier != option.default:
         raise InputError(
             "contact_model",

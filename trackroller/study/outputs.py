@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -69,13 +68,8 @@ def settings(study: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_study(ds: xr.Dataset) -> dict[str, Any]:
-    """Return the study file that a result stores in the attribute `study` (YAML or JSON), {} without it."""
-    text = ds.attrs.get("study", "")
-    if isinstance(text, Mapping):
-        return dict(text)
-    if not text:
-        return {}
-    found = json.loads(text) if str(text).lstrip().startswith("{") else parse_yaml(str(text), "stored study file")
+    """Return the study file that a result stores in the attribute `study` (YAML), {} without it."""
+    found = parse_yaml(str(ds.attrs.get("study", "")), "stored study file")
     return dict(found) if isinstance(found, Mapping) else {}
 
 
@@ -171,24 +165,14 @@ def _usable(
     ds: xr.Dataset, dims: tuple[str, ...], regime: np.ndarray, keep: tuple[str, ...], allowed: np.ndarray | None
 ) -> tuple[np.ndarray, dict[str, int]]:
     """Return True for converged, allowed rows of the regimes to keep, and the number of other rows by reason."""
-    for name in keep:
-        if name not in REGIMES:
-            raise unknown_name("analysis.keep", name, REGIMES)
     usable = np.isin(regime, [REGIMES.index(name) for name in keep])
-    lost = {
-        REGIME_LABELS[i]: int((regime == i).sum())
-        for i, n in enumerate(REGIMES)
-        if n not in keep and (regime == i).any()
-    }
-    converged = flat(ds, "converged", dims) != 0 if "converged" in ds else np.ones(len(regime), dtype=bool)
-    if count := int((usable & ~converged).sum()):
-        lost["not converged"] = count
-    usable &= converged
-    if allowed is not None:
-        if count := int((usable & ~allowed).sum()):
-            lost["outside the constraints"] = count
-        usable = usable & allowed
-    return usable, lost
+    lost = {REGIME_LABELS[i]: int((regime == i).sum()) for i, name in enumerate(REGIMES) if name not in keep}
+    converged = flat(ds, "converged", dims) != 0 if "converged" in ds else None
+    for why, good in (("not converged", converged), ("outside the constraints", allowed)):
+        if good is not None:
+            lost[why] = int((usable & ~good).sum())
+            usable = usable & good
+    return usable, {why: count for why, count in lost.items() if count}
 
 
 def _countable(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import shlex
 from dataclasses import dataclass
 from pathlib import Path
@@ -96,11 +97,8 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     before = store.read_named(found.paths[found.file[place]]).take(found.row[[place]])
     row = design.drop_vars(list(design.coords)).isel(case=[number])
     again = store.from_dataset(solve(row, database=study.materials, **options[group[number]]), cases[[number]])
-    differences = {}
-    for name in before.layout:
-        old = before.columns(name)[0]
-        new = again.columns(name)[0] if name in again.layout else np.full(old.shape, np.nan)
-        differences[name] = largest_difference(old, new)
+    after = dataclasses.replace(before, values=store.aligned(again, before.layout))
+    differences = {name: largest_difference(before.columns(name), after.columns(name)) for name in before.layout}
     case = {name: row[name].values[0] for name in case_columns(row)}
     case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
     return Repeat(case, dict(options[group[number]]), differences)

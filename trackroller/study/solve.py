@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import logging
 import time
 from collections.abc import Callable, Iterator
@@ -52,17 +53,19 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
         If an option is wrong for all cases. A `ShapeError` concerns one case only and becomes a failed row.
     """
     if solver is None:
-        from trackroller.roller.solver import solve as solver  # numba compiles on import; planning needs no solver
+        from trackroller.roller.solver import solve  # numba compiles on import; planning needs no solver
+
+        solver = solve
+    one: Solver = functools.partial(solver, database=database, **cases.options)
     started = time.perf_counter()
     blocks: list[store.Block] = []
     pending = [index]
     while pending:
         rows = pending.pop()
         try:
-            dataset = solver(cases.take(rows).design(), database=database, **cases.options)
-            blocks.append(store.from_dataset(dataset, cases.cases[rows]))
+            blocks.append(store.from_dataset(one(cases.take(rows).design()), cases.cases[rows]))
             if cases.options.get("normal") == "halfspace":
-                _explain_shapes(blocks[-1], cases, rows, lambda one: solver(one, database=database, **cases.options))
+                _explain_shapes(blocks[-1], cases, rows, one)
         except Exception as exc:
             if isinstance(exc, (InputError, WorkError)) and not isinstance(exc, ShapeError):
                 raise

@@ -17,7 +17,7 @@ import pylife.materiallaws.woehlercurve  # noqa: F401  registers the accessor `.
 
 import trackroller as tr
 from trackroller.contact.linear import creepage_coefficients
-from trackroller.damage.sn_curve import SNCurve, life_cycles
+from trackroller.damage.fatigue import SNCurve, life_cycles
 from trackroller.parameters import LIFE_RULES
 
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data"

@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trackroller.damage import sn_curve
-from trackroller.damage.sn_curve import curve_of
+from trackroller.damage import fatigue
+from trackroller.damage.fatigue import curve_of
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.findings import strength
@@ -34,7 +34,7 @@ def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np
     rule : life rule beyond the knee
     """
     t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
-    return sn_curve.allowable_stress(
+    return fatigue.allowable_stress(
         cycles, curve_of(material), rule, failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s
     )
 
@@ -129,7 +129,7 @@ def _ends(points: list, materials: list) -> tuple[float, float]:
 def _lines(axes: Axes, material: Mapping[str, Any], rule: str, colour: Any, ends: tuple[float, float]) -> None:
     """Draw the S-N curve of a material, with its scatter if it gives one."""
     at = np.geomspace(*ends, 400)
-    for probability in sn_curve.PROBABILITIES if scatters(material) else (0.5,):
+    for probability in fatigue.PROBABILITIES if scatters(material) else (0.5,):
         look: dict[str, Any] = {
             "linewidth": 1.0 if probability == 0.5 else 0.8,
             "linestyle": _DASHES.get(probability, "-"),
@@ -164,7 +164,7 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, A
     entries.append(("their median", {"marker": "o", "markerfacecolor": "white", **none}))
     entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", {"marker": "|", "markersize": 8, **none}))
     if any(scatters(known[n]) for n in names):
-        dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in sn_curve.PROBABILITIES]
+        dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in fatigue.PROBABILITIES]
         entries += [(f"{100 * p:.0f} % fail", look) for p, look in dashes]
     return entries
 
@@ -173,7 +173,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Any], rule: str, top
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
         "with the peak von Mises stress (MPa) and the life in overrollings of the rolling cases. "
-        f"{sn_curve.CONVENTIONS[rule]}."
+        f"{fatigue.CONVENTIONS[rule]}."
     )
     left = int((~view.rolling).sum())
     caption += f" {count(left)} cases that do not roll are not drawn." if left and view.rolling.any() else ""
@@ -192,7 +192,7 @@ def _scatter_words(known: Mapping[str, Any], names: Points) -> str:
     """Say at which share of the median life one in ten has failed, for each material that gives its scatter."""
     said = []
     for name in (n for n in names if scatters(known[n])):
-        k = sn_curve.woehler_exponent(curve_of(known[name]))
+        k = fatigue.woehler_exponent(curve_of(known[name]))
         own = known[name].get("scatter_in_cycles"), known[name].get("scatter_in_stress")
-        said.append(f"{rounded(float(sn_curve.scatter_ranges(k, *own)[0]) ** -0.5, 2)} times its median life ({name})")
+        said.append(f"{rounded(float(fatigue.scatter_ranges(k, *own)[0]) ** -0.5, 2)} times its median life ({name})")
     return f"By the scatter of the material, 10 % have failed at {listing(said)}." if said else ""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.damage import fatigue, sn_curve
+from trackroller.damage import fatigue
 from trackroller.parameters import REGIMES
 from trackroller.report.flags import Flag, flags_of
 from trackroller.report.inputs import material_source
@@ -207,9 +207,9 @@ def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Ma
 
 def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Mapping, probability: float) -> float:
     stress = ds["peak_stress"].sel(body=body).values
-    cycles = sn_curve.life_cycles(
+    cycles = fatigue.life_cycles(
         stress,
-        sn_curve.curve_of(material),
+        fatigue.curve_of(material),
         rule=str(ds.attrs["life_rule"]),
         failure_probability=probability,
         scatter_cycles=material.get("scatter_in_cycles"),

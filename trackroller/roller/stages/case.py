@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import fatigue, sn_curve
+from trackroller.damage import fatigue
 from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
@@ -41,9 +41,9 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
     """
     per_body, errors = [], []
     for j, material in enumerate((table.roller, table.guide)):
-        curve = sn_curve.SNCurve(*(np.asarray(value)[:, None] for value in sn_curve.curve_of(material)))
-        per_body.append(sn_curve.life_cycles(v["peak_stress"][:, :, j], curve, rule=options.life_rule))
-        exponent = sn_curve.woehler_exponent(curve)
+        curve = fatigue.SNCurve(*(np.asarray(value)[:, None] for value in fatigue.curve_of(material)))
+        per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], curve, rule=options.life_rule))
+        exponent = fatigue.woehler_exponent(curve)
         if options.life_rule == "haibach":  # The curve is flatter below the fatigue limit.
             exponent = np.where(v["peak_stress"][:, :, j] < curve.fatigue_limit, 2.0 * exponent - 1.0, exponent)
         errors.append(exponent * v["error_estimate"][:, :, j])

@@ -184,11 +184,11 @@ def _friction(study: Study, columns: dict[str, np.ndarray]) -> np.ndarray:
         return values
 
     @functools.cache
-    def known(value: Any, *pair: str) -> float:
+    def known(value: Any, roller: str, guide: str) -> float:
         if isinstance(value, (int, float)) and not math.isnan(value):
             return float(value)
         level = value if isinstance(value, str) and value in FRICTION_LEVELS else "typical"
-        return float(study.materials.friction(*pair, level=level).value)
+        return float(study.materials.friction(roller, guide, level=level).value)
 
     rows = zip(values, *(columns[name].astype(str) for name in MATERIAL_FIELDS), strict=True)
     return np.array([known(*row) for row in rows])

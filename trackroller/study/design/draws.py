@@ -57,24 +57,17 @@ def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     return columns, index.astype(float), {"shape": shape}
 
 
-def _quantiles(method: str, free: Factors, n: int, seed: int, settings: Settings) -> np.ndarray:
-    """Return quantiles of a random sample of factors, shape (n, number of factors)."""
-    root = correlation.copula(settings.get(correlation.KEY, ()), free)
-    if method == "lhs":
-        return grown_lhs(len(free), [*check_sizes(settings.get("grown_from", ()), n), n], seed, root)
-    engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
-        return correlation.correlate(engine.random(n), root, strata=False)
-
-
 def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
-    unit = _quantiles(method, free, n, seed, settings)
-    return _map(free, unit), unit, {correlation.KEY: tuple(settings.get(correlation.KEY, ()))}
-
-
-def _problem(free: Factors) -> dict[str, Any]:
-    return {"num_vars": len(free), "names": list(free), "bounds": [[0.0, 1.0]] * len(free)}
+    entries = tuple(settings.get(correlation.KEY, ()))
+    root = correlation.copula(entries, free)
+    if method == "lhs":
+        unit = grown_lhs(len(free), [*check_sizes(settings.get("grown_from", ()), n), n], seed, root)
+    else:
+        engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
+            unit = correlation.correlate(engine.random(n), root, strata=False)
+    return _map(free, unit), unit, {correlation.KEY: entries}
 
 
 def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -102,8 +95,9 @@ def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         raise InputError("design option levels", levels, "an even whole number >= 4")
     count = len(free)
     # a seed for each trajectory, so that more of them leave the first ones as they were
+    problem = {"num_vars": count, "names": list(free), "bounds": [[0.0, 1.0]] * count}
     seeds = [int(np.random.SeedSequence([seed, i]).generate_state(1)[0]) for i in range(n)]
-    unit = np.concatenate([morris.sample(_problem(free), 1, num_levels=levels, seed=s) for s in seeds])
+    unit = np.concatenate([morris.sample(problem, 1, num_levels=levels, seed=s) for s in seeds])
     path = unit.reshape(n, count + 1, count)
     drawers = [np.random.default_rng([s, 1]) for s in seeds]
     columns = {}

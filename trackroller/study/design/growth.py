@@ -6,7 +6,7 @@ import dataclasses
 from typing import TYPE_CHECKING
 
 from trackroller.errors import InputError
-from trackroller.materials.yaml_file import parse_yaml, read_mapping
+from trackroller.materials.yaml_file import parse_yaml
 from trackroller.study.design.grown_lhs import check_sizes
 from trackroller.study.design.sampling import current_name
 
@@ -30,21 +30,17 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
     The study with `grown_from`, if it is a Latin hypercube whose factors, rank correlations, seed and design are
     unchanged. Otherwise the study as it is.
     """
-    config = study.config
-    if not _is_lhs(config.design, config.inner) or config.grown_from or not (folder.root / "study.yaml").is_file():
+    config, old = study.config, folder.earlier()
+    lhs = config.design == "lhs" or (config.design == "inner_outer" and config.inner in (None, "lhs"))
+    if not lhs or config.grown_from or not old:
+        return study
+    now = parse_yaml(study.merged(), "study")
+    old["design"] = current_name(str(old.get("design")))
+    if any((old.get(key) or None) != (now.get(key) or None) for key in SAME):
         return study
     try:
-        old = read_mapping(folder.root / "study.yaml", "study")
-        now = parse_yaml(study.merged(), "study")
-        old["design"] = current_name(str(old.get("design")))
-        if any((old.get(key) or None) != (now.get(key) or None) for key in SAME):
-            return study
         sizes = [*old.get("grown_from", ()), int(old["samples"])]
         earlier = check_sizes([s for s in sizes if s < config.samples], config.samples)
     except (InputError, KeyError, TypeError, ValueError):
         return study
     return dataclasses.replace(study, config=config.model_copy(update={"grown_from": earlier})) if earlier else study
-
-
-def _is_lhs(design: str, inner: str | None) -> bool:
-    return design == "lhs" or (design == "inner_outer" and inner in (None, "lhs"))

@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.sn_curve import PROBABILITIES
+from trackroller.damage.fatigue import PROBABILITIES
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import parse_mapping, read_text
 from trackroller.numerics.numbers import read_number

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import fatigue, sn_curve
+from trackroller.damage import fatigue, miner
 from trackroller.materials import load_database
 from trackroller.parameters import PARAMETERS, REGIMES
 from trackroller.roller.case import to_table
@@ -104,15 +104,15 @@ def damage_per_shift(
     for i, material in enumerate(bodies):
         t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
         if probability == 0.5 or t_n or t_s:
-            life[..., i] = sn_curve.life_cycles(
+            life[..., i] = fatigue.life_cycles(
                 stress[..., i],
-                sn_curve.curve_of(material),
+                fatigue.curve_of(material),
                 rule,
                 failure_probability=probability,
                 scatter_cycles=t_n,
                 scatter_stress=t_s,
             )
-    return life, fatigue.block_damage(cycles, life)
+    return life, miner.block_damage(cycles, life)
 
 
 def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) -> xr.Dataset:
@@ -125,7 +125,7 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
     rule = spectrum.options.get("life_rule", "elementary")
     life, damage = damage_per_shift(stress, cycles, bodies, rule)
     total = damage.sum(axis=0)
-    shifts = fatigue.repetitions_to_failure(total, spectrum.critical_damage)
+    shifts = miner.repetitions_to_failure(total, spectrum.critical_damage)
     first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
     variables: dict[str, Any] = {
         "distance": ("block", [b.distance for b in spectrum.blocks], _attrs("m", "distance per shift", "s")),
@@ -175,7 +175,7 @@ def _scattered(
     if not any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
         return None
     lives = [
-        fatigue.repetitions_to_failure(
+        miner.repetitions_to_failure(
             damage_per_shift(stress, cycles, bodies, rule, p)[1].sum(axis=0), spectrum.critical_damage
         )
         for p in spectrum.failure_probabilities
@@ -207,7 +207,7 @@ def _labelled(
         "title": spectrum.name,
         "description": spectrum.description,
         "life_rule": rule,
-        "life_conventions": f"{sn_curve.AMPLITUDE}; {sn_curve.CONVENTIONS[rule]}; linear damage sum, failure at "
+        "life_conventions": f"{fatigue.AMPLITUDE}; {fatigue.CONVENTIONS[rule]}; linear damage sum, failure at "
         f"D = {spectrum.critical_damage:g}",
         "critical_damage": spectrum.critical_damage,
     }
