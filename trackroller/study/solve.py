@@ -163,7 +163,8 @@ def solve_chunk(
                 blocks.append(block)
                 if progress is not None:
                     progress(len(block.cases))
-            return _summary(_complete(folder, cases, blocks), name, len(missing.cases), time.perf_counter() - started)
+            spent = time.perf_counter() - started
+            return _summary(_complete(folder, cases, blocks), name, len(missing.cases), spent)
     except FileNotFoundError:
         raise list_is_gone(folder, name) from None
 
