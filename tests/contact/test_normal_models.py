@@ -70,7 +70,7 @@ def test_sliding_on_the_grid_converges_to_sliding_on_the_ellipse(spin_model):
         scale = mu * 115 * np.array([1, 1, e.semi_axis_lateral[0]])
         errors.append(np.abs(numbers(found.resultants) - expected) / scale)
         power = sliding.integrals(e, slip, mu, spin_model=spin_model, nodes=40).power
-        assert found.power == pytest.approx(power, rel=0.1 / n)
+        assert found.works.dissipated * slip.rolling_radius == pytest.approx(power, rel=0.1 / n)
     assert np.all(errors[1] < 1.2e-3) and np.all(errors[1] < 0.5 * errors[0] + 1e-4)
 
 
@@ -80,7 +80,7 @@ def test_sliding_under_a_falling_law_matches_the_ellipse():
     expected = sliding.integrals(e, slip, mu, law=law, travel_speed=1000.0, nodes=40)
     found = normal_sliding.solve_sliding(grid, slip, mu, "skewed", law, 1000.0)
     np.testing.assert_allclose(numbers(found.resultants), numbers(expected.resultants), atol=2e-3 * 0.3 * 115)
-    assert found.power == pytest.approx(expected.power, rel=3e-3)
+    assert found.works.dissipated * slip.rolling_radius == pytest.approx(expected.power, rel=3e-3)
 
 
 def test_kalker_with_the_pressures_of_an_ellipse_is_kalker_on_the_ellipse():

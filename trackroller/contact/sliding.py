@@ -79,21 +79,19 @@ def integrals(
     """
     n = np.size(friction)
     law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
-    given = (
-        ellipse.semi_axis_lateral,
-        ellipse.semi_axis_rolling,
-        slip.sine,
-        slip.cosine,
-        slip.guide_profile_radius,
-        slip.shift,
-        travel_speed / slip.rolling_radius,
-    )
+    given = (*_geometry(ellipse, slip), travel_speed / slip.rolling_radius)
     patches = Patches(*(np.array(np.broadcast_to(v, n), dtype=float, order="C") for v in given))
     out = Sums(*(np.empty(n) for _ in range(4)))
     model, table, rule = spin_model_index(spin_model), law.knots, Rule(*clustered_rule(nodes))
     share_rows(lambda first, last: integrate(first, last, patches, model, table, rule, out), n, 32)
     f_t, f_a, m_r, power = (friction * ellipse.max_pressure * part for part in out)
     return Integrals(Resultants(f_t, f_a, m_r), power)
+
+
+def _geometry(ellipse: Ellipse, slip: Slip) -> tuple[np.ndarray, ...]:
+    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0, the fields of `Patches` but the speed."""
+    axes = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+    return *axes, slip.sine, slip.cosine, slip.guide_profile_radius, slip.shift
 
 
 def resultants(
@@ -127,16 +125,7 @@ def slip_field(ellipse: Ellipse, slip: Slip, x: np.ndarray, y: np.ndarray, spin_
     """
     column = (-1, *(1,) * (x.ndim - 1))
     a, b, sine, cosine, radius, shift, r_a = (
-        np.reshape(v, column)
-        for v in (
-            ellipse.semi_axis_lateral,
-            ellipse.semi_axis_rolling,
-            slip.sine,
-            slip.cosine,
-            slip.guide_profile_radius,
-            slip.shift,
-            slip.rolling_radius,
-        )
+        np.reshape(v, column) for v in (*_geometry(ellipse, slip), slip.rolling_radius)
     )
     x_spin = pole_lateral(shift, sine)
     line = pole_line(a, x_spin, pole_rolling(x_spin, a, b), spin_model_index(spin_model))

@@ -247,14 +247,7 @@ _QUANTITY_OF = {
     "roller_life_hours": "life",
     "guide_life_hours": "life",
 }
-_RELATIVE_TO = {
-    "normal_force": "itself",
-    "friction_force": "mu F_N",
-    "spin_moment": "mu F_N sqrt(a b)",
-    "friction_energy": "itself",
-    "peak_stress": "itself",
-    "life": "itself",
-}
+_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
 
 
 def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]:
@@ -299,7 +292,7 @@ def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
         variable: {
             "expected_relative_error": rounded_up(max(levels[q].median, 1e-16)),
             "relative_error_99_percent": rounded_up(max(levels[q].bound, levels[q].p99, 1e-16)),
-            "relative_error_refers_to": _RELATIVE_TO[q],
+            "relative_error_refers_to": _RELATIVE_TO.get(q, "itself"),
         }
         for variable, q in _QUANTITY_OF.items()
         if q in levels

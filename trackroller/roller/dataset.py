@@ -173,31 +173,21 @@ FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 
 
-def _flag(name: str, values: np.ndarray) -> tuple[str | tuple[str, ...], np.ndarray, dict[str, Any]]:
-    if name in ("validity", "validity_body"):
-        of = " for a body" if name == "validity_body" else ""
-        return (
-            ("case", "body")[: values.ndim],
-            values.astype(np.int32),
-            {
-                "long_name": f"validity flags: where an assumption of the model does not hold{of}",
-                "units": "1",
-                "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
-                "flag_meanings": " ".join(VALIDITY_BITS),
-                "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items()),
-            },
-        )
-    told, words = FLAGS[name]
-    return (
-        "case",
-        values.astype(np.int8),
-        {
-            "long_name": told,
-            "units": "1",
-            "flag_values": np.arange(len(words), dtype=np.int8),
-            "flag_meanings": " ".join(words),
-        },
-    )
+def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
+    """Return dimensions, values and attributes of a flag variable."""
+    if name in FLAGS:
+        told, words = FLAGS[name]
+        attrs = {"long_name": told, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8)}
+        return ("case",), values.astype(np.int8), attrs | {"flag_meanings": " ".join(words)}
+    attrs = {
+        "long_name": "validity flags: where an assumption of the model does not hold"
+        + (" for a body" if name == "validity_body" else ""),
+        "units": "1",
+        "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
+        "flag_meanings": " ".join(VALIDITY_BITS),
+        "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items()),
+    }
+    return ("case", "body")[: values.ndim], values.astype(np.int32), attrs
 
 
 def build(

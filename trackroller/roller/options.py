@@ -1,4 +1,4 @@
-"""Check what a solution is asked for."""
+"""Check the options of a solution, and choose the contact model that solves a case."""
 
 from __future__ import annotations
 
@@ -81,32 +81,22 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
     Raises
     ------
     InputError
-        For Hertz's ellipse from a table, the turning of the roller in full sliding, and the table of the exact theory
-        where they do not exist.
+        If non-Hertzian patches meet the published table of Hertz's ellipse, full sliding meets the turning of the
+        roller, or the table of the exact theory meets patches or slips that it does not hold.
     """
     if normal == "halfspace" and hertz != "exact":
-        raise InputError(
-            "hertz",
-            hertz,
-            "exact with normal: halfspace, which solves patch and pressure itself",
-            "Leave hertz out, or take normal: hertz (with circles).",
-        )
+        allowed = "exact with normal: halfspace, which solves patch and pressure itself"
+        raise InputError("hertz", hertz, allowed, "Leave hertz out, or take normal: hertz (with circles).")
     if "curve" in slip_terms and contact_model == "sliding":
-        raise InputError(
-            "slip_terms",
-            list(slip_terms),
-            "'curve' for fastsim and kalker only",
-            "Take contact_model: kalker, or leave 'curve' out: where everything slides it would leave all "
-            "forces as they are and only lengthen slip and friction work.",
+        remedy = (
+            "Take contact_model: kalker, or leave 'curve' out: in full sliding it changes no force, it only lengthens "
+            "slip and friction work."
         )
+        raise InputError("slip_terms", list(slip_terms), "'curve' for fastsim and kalker only", remedy)
     if contact_model == "kalker_table" and (normal != "hertz" or "profile" in slip_terms):
         name, value = ("normal", normal) if normal != "hertz" else ("slip_terms", list(slip_terms))
-        raise InputError(
-            name,
-            value,
-            "contact_model: kalker_table holds Hertzian patches with the slip of the tangent plane only",
-            "Take contact_model: kalker.",
-        )
+        allowed = "contact_model: kalker_table holds Hertzian patches with the slip of the tangent plane only"
+        raise InputError(name, value, allowed, "Take contact_model: kalker.")
 
 
 def check_spin_model(spin_models: Sequence[str], contact_models: Sequence[str]) -> None:
@@ -138,9 +128,14 @@ def model_in_use(options: Options, friction_law: str) -> str:
     Parameters
     ----------
     options : Options
-        What the case is solved with.
+        Options of the solution.
     friction_law : str
         The friction law of the case as canonical JSON, "" for constant friction.
+
+    Returns
+    -------
+    str
+        Name of the contact model.
 
     Notes
     -----

@@ -5,7 +5,7 @@ These shortcuts change no number beyond rounding; `solve(..., shortcuts=False)` 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -173,19 +173,12 @@ class Mirror:
     def spread_surface(self, good: np.ndarray, found: SurfaceTractions) -> SurfaceTractions:
         """Return tractions of all patches `good` from those of `asked(good)`; x rises in each patch."""
 
-        def mirrored(values: np.ndarray, sign: float, flip: bool = True) -> np.ndarray:
-            full, twin = self._copies(good, values, self.asked(good))
-            part = full[twin][..., ::-1] if flip else full[twin]
-            full[twin] = sign * part + 0.0
-            return full[good]
-
-        return SurfaceTractions(
-            mirrored(found.x, -1.0),
-            mirrored(found.y, 1.0, flip=False),
-            mirrored(found.pressure, 1.0),
-            mirrored(found.shear_lateral, -1.0),
-            mirrored(found.shear_rolling, 1.0),
-            mirrored(found.slip_lateral, -1.0),
-            mirrored(found.slip_rolling, 1.0),
-            mirrored(found.stick, 1.0).astype(bool),
-        )
+        out = {}
+        for field in fields(SurfaceTractions):
+            full, twin = self._copies(good, getattr(found, field.name), self.asked(good))
+            if field.name != "y":
+                full[twin] = full[twin][..., ::-1]
+            if field.name in ("x", "shear_lateral", "slip_lateral"):
+                full[twin] = 0.0 - full[twin]
+            out[field.name] = full[good]
+        return SurfaceTractions(**out | {"stick": out["stick"].astype(bool)})

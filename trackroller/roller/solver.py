@@ -149,20 +149,12 @@ def _check_cases(table: CaseTable, options: Options) -> None:
     """Refuse profiles and friction laws that the options cannot serve."""
     laws = table.friction_law[table.friction_law != ""]
     if options.contact_model == "kalker_table" and laws.size:
-        raise InputError(
-            "friction_law",
-            laws[0],
-            "constant friction with contact_model: kalker_table",
-            "Take contact_model: kalker, or leave friction_law out.",
-        )
+        remedy = "Take contact_model: kalker, or leave friction_law out."
+        raise InputError("friction_law", laws[0], "constant friction with contact_model: kalker_table", remedy)
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
-            raise InputError(
-                "normal",
-                options.normal,
-                f"a case with a {name} needs normal: halfspace",
-                f"Set normal to halfspace, or remove {name}.",
-            )
+            remedy = f"Set normal to halfspace, or remove {name}."
+            raise InputError("normal", options.normal, f"a case with a {name} needs normal: halfspace", remedy)
 
 
 def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:

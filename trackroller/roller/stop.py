@@ -17,24 +17,13 @@ import numpy as np
 from trackroller.errors import InputError, check_names
 from trackroller.numerics.expressions import Comparison, comparisons, condition, names
 from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.roller.dataset import VARIABLES
 
 STRENGTHS = {"R_m": "tensile_strength", "tensile_strength": "tensile_strength", "fatigue_limit": "fatigue_limit"}
+# the share of adhesion is left out, because it needs the tractions
 BEFORE_STRESSES = (
     "regime",
-    "normal_force",
-    "lateral_force",
-    "driving_force",
-    "spin_moment",
-    "rolling_radius_shift",
-    "slip",
-    "drilling_torque",
-    "tilting_moment",
-    "yaw_moment",
-    "transmitted_force",
-    "semi_axis_lateral",
-    "semi_axis_rolling",
-    "max_pressure",
-    "max_shear",
+    *(v.name for v in VARIABLES.values() if v.group in ("forces", "contact") and v.name != "stick_area_fraction"),
 )
 PEAK = "peak_stress"
 

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, SurfaceTractions
+from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.fastsim.point import Totals
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.numerics.threads import share_rows
@@ -62,6 +62,11 @@ class FastsimSolution:
     friction_energy_per_distance: np.ndarray
     stick_fraction: np.ndarray
     friction_change: np.ndarray
+
+    @property
+    def works(self) -> Works:
+        """Return the dissipation per distance travelled."""
+        return Works.of_friction(self.friction_energy_per_distance)
 
 
 def extrapolated(kernel: Kernel, steps: int, area: np.ndarray, limit: np.ndarray) -> FastsimSolution:

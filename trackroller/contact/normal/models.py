@@ -59,7 +59,7 @@ class GridModel(ContactModel):
         return self.patch(patch, slip, rows)
 
     def _solved(self, patch: GridPatch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
-        """Return the solution on the patches, an object with `resultants`."""
+        """Return the solution on the patches, an object with `resultants` and `works`."""
         raise NotImplementedError
 
     def law(self, patch, slip, friction, rows, fine) -> Resultants:
@@ -68,6 +68,10 @@ class GridModel(ContactModel):
         if fine:
             self._remember(grid, slip, rows)
         return _known(self._solved(grid, slip, friction, rows).resultants, grid)
+
+    def power(self, patch, slip, friction, rows) -> Works:
+        """Return the dissipation per distance travelled and the part that the pressures supply, (m,)."""
+        return self._solved(self.patch(patch, slip, rows), slip, friction, rows).works
 
     def _drawn(self, slip: Slip, rows: np.ndarray) -> Slip:
         """Return the slip on the drawn contour of the guide if the profile counts in the slip."""
@@ -108,11 +112,6 @@ class GridSlidingModel(GridModel):
         grid = self.patch(patch, slip, rows)
         return normal_sliding.tractions(grid, slip, friction, self.spin_model, self.friction_law, self.travel[rows])
 
-    def power(self, patch, slip, friction, rows) -> Works:
-        """Return the dissipation per distance travelled."""
-        grid = self.patch(patch, slip, rows)
-        return Works.of_friction(self._solved(grid, slip, friction, rows).power / slip.rolling_radius)
-
 
 class GridFastsimModel(GridModel):
     """Kalker's simplified theory, strip by strip over solved patches."""
@@ -136,11 +135,6 @@ class GridFastsimModel(GridModel):
     def surface(self, patch, slip, friction, rows) -> SurfaceTractions:
         """Return the tractions on the grid of elements."""
         return fastsim_grid.tractions(*self._given(self.patch(patch, slip, rows), slip, friction, rows))
-
-    def power(self, patch, slip, friction, rows) -> Works:
-        """Return the dissipation per distance travelled."""
-        grid = self.patch(patch, slip, rows)
-        return Works.of_friction(self._solved(grid, slip, friction, rows).friction_energy_per_distance)
 
 
 class GridKalkerModel(GridModel):
@@ -193,10 +187,6 @@ class GridKalkerModel(GridModel):
         """Return the tractions on the grid of elements."""
         grid = self.patch(patch, slip, rows)
         return kalker.to_tractions(grid, friction, self._solved(grid, slip, friction, rows))
-
-    def power(self, patch, slip, friction, rows) -> Works:
-        """Return the dissipation per distance travelled."""
-        return self._solved(self.patch(patch, slip, rows), slip, friction, rows).works
 
     def state(self, n):
         """Return the larger residual of both problems, and whether both are met, each (n,)."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.slip import (
@@ -36,14 +36,14 @@ class SlidingPatches:
     ----------
     resultants : Resultants
         Forces [N] and spin moment [N mm] on the roller, (n,).
-    power : numpy.ndarray, shape (n,)
-        Dissipation per angular speed omega [N mm per rad].
+    works : Works
+        Dissipation per distance travelled [N], (n,).
     shear_lateral, shear_rolling : numpy.ndarray, shape (n, N, M)
         Mean shear of each element [MPa].
     """
 
     resultants: Resultants
-    power: np.ndarray
+    works: Works
     shear_lateral: np.ndarray
     shear_rolling: np.ndarray
 
@@ -106,7 +106,8 @@ def solve_sliding(
         bound = friction[i] * patch.pressure[i]
         shear[i] = across[:2] * bound
         total[i] = (across * bound).sum(axis=(1, 2)) * hx * hy
-    return SlidingPatches(Resultants(total[:, 0], total[:, 1], total[:, 2]), total[:, 3], shear[:, 0], shear[:, 1])
+    works = Works.of_friction(total[:, 3] / slip.rolling_radius)
+    return SlidingPatches(Resultants(total[:, 0], total[:, 1], total[:, 2]), works, shear[:, 0], shear[:, 1])
 
 
 def _column_means(x, along, offset, sine, half, m, law, per_omega) -> np.ndarray:
