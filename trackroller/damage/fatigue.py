@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtri
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.materials.sn_curve import curve_exponent
 from trackroller.parameters import LIFE_RULES
 
 CONVENTIONS = {
@@ -89,7 +90,7 @@ def woehler_exponent(curve: SNCurve) -> np.ndarray:
         given = "R_m, sigma_D, N_Rm, N_k"
         allowed = "it must fall: R_m > sigma_D > 0 and N_k > N_Rm > 0"
         raise InputError("S-N curve", given, allowed, "Correct the material.")
-    return np.log(knee / first) / np.log(strength / limit)
+    return curve_exponent(knee / first, strength / limit)
 
 
 def scatter_ranges(

@@ -18,18 +18,22 @@ _ORDER = 16  # quadrature points, for ellipses that are not slender
 def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndarray | None = None) -> np.ndarray:
     """Return the largest von Mises stress over p_max at a few points, a lower bound of the peak.
 
-    The points lie along z below the centre, and on the surface in the centre and near the vertices of the ellipse.
-    The search may meet each of these points, so that the peak is not lower.
+    The points lie along z below the centre, and on the surface in the centre and near the vertices of the ellipse. The
+    peak is the largest stress at any point, so it is not lower than the stress at these points.
 
     Parameters
     ----------
-    patches : records of `ellipse.patch_rows`, (n,)
-    poisson_ratio : of roller and guide, (n, 2) [1]
-    fields : traction over its bound at element centres, (n, 2, ny, nx); full sliding if not given
+    patches : numpy.ndarray, shape (n,)
+        Records of `ellipse.patch_rows`.
+    poisson_ratio : numpy.ndarray, shape (n, 2)
+        Poisson's ratios of roller and guide [1].
+    fields : numpy.ndarray, shape (n, 2, ny, nx), optional
+        Traction over its bound at element centres; full sliding if not given.
 
     Returns
     -------
-    (n, 2) array for roller and guide [1]
+    numpy.ndarray, shape (n, 2)
+        Lower bounds for roller and guide [1].
     """
     size, count = lengths(patches), len(_DEPTHS)
     points = np.zeros((len(patches), count + len(_VERTICES), 3))

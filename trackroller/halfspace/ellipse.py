@@ -126,7 +126,8 @@ def refinement(patches: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    patches : records of `patch_rows`, (n,)
+    patches : numpy.ndarray, shape (n,)
+        Records of `patch_rows`.
     """
     long, short = np.maximum(patches["a"], patches["b"]), np.minimum(patches["a"], patches["b"])
     return np.clip(np.rint(np.sqrt(long / short / 2.0)), 1, 6).astype(int)
@@ -144,14 +145,19 @@ def near_parts(patches, fields, rows, points, waves: np.ndarray, rule: np.ndarra
 
     Parameters
     ----------
-    patches, fields : records of `patch_rows`, (n,), and traction fields (n, 2, ny, nx) as in `stress_parts`
-    rows : number of the patch of each point, (m,)
-    points : x_C, y_C and depth, (m, 3) [mm]
-    waves, rule : `unit_rule` of the plane waves, and of both directions of the friction integral
+    patches, fields : numpy.ndarray, shape (n,) and (n, 2, ny, nx)
+        Records of `patch_rows`, and traction fields as in `stress_parts`.
+    rows : numpy.ndarray of int, shape (m,)
+        Number of the patch of each point.
+    points : numpy.ndarray, shape (m, 3)
+        x_C, y_C and depth [mm].
+    waves, rule : numpy.ndarray
+        `unit_rule` of the plane waves, and of both directions of the friction integral.
 
     Returns
     -------
-    (m, 4, 6) array per unit p_max
+    numpy.ndarray, shape (m, 4, 6)
+        Stress parts per unit p_max.
     """
     at = Points(patches, fields, rows, points)
     out, directions = np.zeros((len(points), 4, 6)), np.empty((len(points), 2))
@@ -167,18 +173,24 @@ def stress_parts(
 
     Parameters
     ----------
-    patch : record of `patch_rows`
-    points : (m, 3) array of x_C, y_C and depth z >= 0 [mm]
-    waves, nodes : quadrature points; the error falls exponentially, except close to the spin pole
-    field : traction over its bound mu p at element centres, (2, ny, nx); full sliding if not given
+    patch : numpy.ndarray, shape ()
+        Record of `patch_rows`.
+    points : numpy.ndarray, shape (m, 3)
+        x_C, y_C and depth z >= 0 [mm].
+    waves, nodes : int
+        Quadrature points; the error falls exponentially, except close to the spin pole.
+    field : numpy.ndarray, shape (2, ny, nx), optional
+        Traction over its bound mu p at element centres; full sliding if not given.
 
     Returns
     -------
-    (m, 4, 6) array [1]
+    numpy.ndarray, shape (m, 4, 6)
+        Stress parts [1].
 
     Raises
     ------
-    InputError : more quadrature points than the kernels hold
+    InputError
+        For more quadrature points than the kernels hold.
     """
     points = np.ascontiguousarray(points, dtype=float)
     patches, fields = np.atleast_1d(patch), np.ascontiguousarray(field, dtype=FIELD)[None]
@@ -204,10 +216,14 @@ def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=0.0) ->
 
     Parameters
     ----------
-    ellipse, slip : patches and their kinematics, arrays (n,)
-    friction : coefficient mu, (n,) [1]
-    spin_model : number of the paper's assumption, 0, 1 or 2
-    fixed_direction : +-1 for a traction along +-y_C (full slip), 0 where the slip decides; (n,) or scalar
+    ellipse, slip : Ellipse, Slip
+        Patches and their kinematics, arrays (n,).
+    friction : array_like, shape (n,)
+        Coefficient mu [1].
+    spin_model : int
+        Number of the paper's assumption, 0, 1 or 2.
+    fixed_direction : array_like, shape (n,) or ()
+        +-1 for a traction along +-y_C (full slip), 0 where the slip gives the direction.
     """
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     fixed = np.broadcast_to(np.asarray(fixed_direction, dtype=float), a.shape)

@@ -202,14 +202,19 @@ def find_grid_peaks(
 
     Parameters
     ----------
-    loads : tractions of n patches on the roller, with even numbers of elements; (-q_x, -q_y, p) act on the guide
-    poisson_ratio : of roller and guide, (n, 2) [1]
-    seeds : number of places on the surface, and below it, from which the search climbs
-    smallest : last step of a climb over its first step, which is half an element of twice the size
+    loads : sequence of GridLoad
+        Tractions of n patches on the roller, with even numbers of elements; (-q_x, -q_y, p) act on the guide.
+    poisson_ratio : numpy.ndarray, shape (n, 2)
+        Poisson's ratios of roller and guide [1].
+    seeds : int
+        Number of places on the surface, and below it, from which the search climbs.
+    smallest : float
+        Last step of a climb over its first step, which is half an element of twice the size.
 
     Returns
     -------
-    Peak with stresses in MPa and places in mm, arrays (n, 2)
+    Peak
+        Stresses [MPa] and places [mm], arrays (n, 2).
 
     Notes
     -----

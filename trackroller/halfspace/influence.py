@@ -85,9 +85,12 @@ def corner_loads(x: Array, y: Array, tractions: Array, bilinear: bool = True) ->
 
     Parameters
     ----------
-    x, y : node coordinates, (nx,) and (ny,) [mm]
-    tractions : q_x, q_y, p at the nodes, (ny, nx, 3) [MPa]
-    bilinear : True for bilinear interpolation between the nodes, False for uniform cells around them
+    x, y : numpy.ndarray, shape (nx,) and (ny,)
+        Node coordinates [mm].
+    tractions : numpy.ndarray, shape (ny, nx, 3)
+        q_x, q_y, p at the nodes [MPa].
+    bilinear : bool
+        True for bilinear interpolation between the nodes, False for uniform cells around them.
     """
     hx, hy = (x[-1] - x[0]) / (x.size - 1), (y[-1] - y[0]) / (y.size - 1)
     length = float(max(hx, hy))
@@ -152,12 +155,15 @@ def stress_parts(loads: CornerLoads, points: Array) -> Array:
 
     Parameters
     ----------
-    loads : see `corner_loads`
-    points : (n, 3) coordinates, z >= 0 [mm]
+    loads : CornerLoads
+        See `corner_loads`.
+    points : numpy.ndarray, shape (n, 3)
+        Coordinates, z >= 0 [mm].
 
     Returns
     -------
-    (n, 4, 6) array [MPa]
+    numpy.ndarray, shape (n, 4, 6)
+        Stress parts [MPa].
     """
     out = np.zeros((len(points), 4, 6))
     _sum_points(loads, np.ascontiguousarray(points), out)
@@ -183,14 +189,19 @@ def hat_influence(hx: float, hy: float, nx: int, ny: int, depth: float, poisson_
 
     Parameters
     ----------
-    hx, hy : grid spacings [mm]
-    nx, ny : numbers of nodes
-    depth : z >= 0 [mm]
-    poisson_ratio : of the body [1]
+    hx, hy : float
+        Grid spacings [mm].
+    nx, ny : int
+        Numbers of nodes.
+    depth : float
+        z >= 0 [mm].
+    poisson_ratio : float
+        Poisson's ratio of the body [1].
 
     Yields
     ------
-    (6, 2 ny - 1, 2 nx - 1) array at node offsets -(n - 1) to n - 1 [1]
+    numpy.ndarray, shape (6, 2 ny - 1, 2 nx - 1)
+        Stresses at node offsets -(n - 1) to n - 1 [1].
     """
     length = max(hx, hy)
     gx, gy = hx / length, hy / length

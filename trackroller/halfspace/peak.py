@@ -28,10 +28,14 @@ class PeakSettings:
 
     Attributes
     ----------
-    scan, climb, polish, summit : quadrature points of the four steps
-    seeds, finalists : number of seeds that climb, and of climbs that are polished
-    step : smallest step of the polish
-    floor : scale of the relative error that shows in no change of the result
+    scan, climb, polish, summit : int
+        Quadrature points of the four steps.
+    seeds, finalists : int
+        Number of seeds that climb, and of climbs that are polished.
+    step : float
+        Smallest step of the polish, in normalised coordinates.
+    floor : float
+        Scale of the part of the relative error that the changes between the steps do not show.
     """
 
     scan: int
@@ -165,15 +169,21 @@ def find_peaks(
 
     Parameters
     ----------
-    patches : records of `ellipse.patch_rows`, (n,)
-    poisson_ratio : of roller and guide, (n, 2) [1]
-    settings : quadrature and search effort
-    fields : traction over its bound at element centres, (n, 2, ny, nx); full sliding if not given
-    coarse : the same on a coarser grid, for the estimated error; means over 2 x 2 elements if not given
+    patches : numpy.ndarray, shape (n,)
+        Records of `ellipse.patch_rows`.
+    poisson_ratio : numpy.ndarray, shape (n, 2)
+        Poisson's ratios of roller and guide [1].
+    settings : PeakSettings
+        Quadrature and search effort.
+    fields : numpy.ndarray, shape (n, 2, ny, nx), optional
+        Traction over its bound at element centres; full sliding if not given.
+    coarse : numpy.ndarray, optional
+        The same on a coarser grid, for the estimated error; means over 2 x 2 elements if not given.
 
     Returns
     -------
-    Peak with stresses per unit p_max and places in mm, arrays (n, 2)
+    Peak
+        Stresses per unit p_max and places [mm], arrays (n, 2).
 
     Notes
     -----
@@ -202,7 +212,7 @@ def find_peaks(
 
 
 def _hidden_error(patches: np.ndarray, settings: PeakSettings, stress: np.ndarray, slides: bool) -> np.ndarray:
-    """Return the part of the relative error (n, 2) that no change of the result shows."""
+    """Return the part of the relative error (n, 2) that the changes between the steps do not show."""
     a, b, friction = patches["a"], patches["b"], patches["friction"]
     slenderness = np.maximum(a, b) / np.minimum(a, b)
     # a ridge that the search misses shows nowhere; this error was measured to grow with friction and slenderness

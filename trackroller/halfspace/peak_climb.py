@@ -1,4 +1,4 @@
-"""Climbs from seeds to the highest von Mises stress below ellipses: a pattern search with parabolas.
+"""Climb from seeds to the highest von Mises stress below ellipses by a pattern search with parabolas.
 
 Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis. Stresses are per unit p_max.
 """
@@ -23,9 +23,14 @@ class Patches:
 
     Attributes
     ----------
-    rows, fields : records of `ellipse.patch_rows`, (n,), and traction fields (n, 2, ny, nx)
-    poisson_ratio : of roller and guide, (n, 2) [1]
-    slender : True if the rules of these patches are refined
+    rows : numpy.ndarray, shape (n,)
+        Records of `ellipse.patch_rows`.
+    fields : numpy.ndarray, shape (n, 2, ny, nx)
+        Traction fields.
+    poisson_ratio : numpy.ndarray, shape (n, 2)
+        Poisson's ratios of roller and guide [1].
+    slender : bool
+        True if the quadrature rules of these patches are refined.
     """
 
     rows: np.ndarray
@@ -96,11 +101,18 @@ class Climbs:
 
     Attributes
     ----------
-    patches, of, body : the patches, and the patch and the body of each climb, (m,)
-    u, f : normalised points (m, 3) and their stress (m,)
-    gained : increase of the stress in the last sweep, (m,)
-    step : steps along radius, circumference and depth, (m, 3)
-    along : direction of the first axis, (m, 2)
+    patches : Patches
+        The patches.
+    of, body : numpy.ndarray of int, shape (m,)
+        Patch and body of each climb.
+    u, f : numpy.ndarray, shape (m, 3) and (m,)
+        Normalised points and their stress.
+    gained : numpy.ndarray, shape (m,)
+        Increase of the stress in the last sweep.
+    step : numpy.ndarray, shape (m, 3)
+        Steps along radius, circumference and depth.
+    along : numpy.ndarray, shape (m, 2)
+        Direction of the first axis.
     """
 
     patches: Patches
@@ -126,7 +138,7 @@ class Climbs:
     def sweep(self, rows: np.ndarray, waves, rule, smallest: float, ridge: bool) -> np.ndarray:
         """Search along radius, circumference and depth in turn; return the climbs of `rows` that still move.
 
-        With `ridge` a further step continues the whole move of this sweep: it follows ridges askew to the axes.
+        With `ridge` a further step repeats the whole move of this sweep, which follows ridges oblique to the axes.
         """
         before, start = self.f[rows], self.u[rows]
         axes = self._axes(rows)

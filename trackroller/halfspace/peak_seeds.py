@@ -1,4 +1,4 @@
-"""Starting points of the search for the peak stress: points of the scan, and the best of them as seeds.
+"""Choose the starting points of the search for the peak stress: scan the patch and take the best points as seeds.
 
 Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis.
 """
@@ -46,8 +46,10 @@ def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
 
     Parameters
     ----------
-    patches : records of `ellipse.patch_rows`, (n,)
-    slender : True for slender patches
+    patches : numpy.ndarray, shape (n,)
+        Records of `ellipse.patch_rows`.
+    slender : bool
+        True for slender patches.
     """
     pole = np.clip(patches["pole_x"] / patches["a"], -1.0, 1.0)[:, None]
     share = np.array([0.15, 0.4, 0.6, 0.85])
@@ -99,7 +101,7 @@ def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarra
 
 
 def along_turn(patch: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return unit vectors (m, 2) along which the slip turns slowest at points u (m, 3) of m patches.
+    """Return unit vectors (m, 2) along which the slip changes its direction least at points u (m, 3) of m patches.
 
     In a patch long in x this is the direction of y; in a patch long in y it is the line without lateral slip.
     """

@@ -1,7 +1,7 @@
 """Rigid slip of a roller on its guide in full sliding: the formulas of eqs (20)-(25), each once.
 
-`trackroller.contact.slip` is the public face of this module. The formulas stand here because the stress kernels of
-this room need them as well, and a room imports only from the rooms below it. Every function takes floats in compiled
+Other rooms import these formulas from `trackroller.contact.slip`. They stand here because the stress kernels of this
+room need them as well, and a room imports only from the rooms below it. Every function takes floats in compiled
 code and floats or arrays in plain Python, with the same digits.
 
 Frame: x_C lateral, y_C in the rolling direction (Kalker and CONTACT use x for rolling). Slip is the velocity of the

@@ -210,13 +210,17 @@ def body_stress(parts: Array, poisson_ratio: ArrayLike, sign: ArrayLike) -> Arra
 
     Parameters
     ----------
-    parts : (..., 4, 6) stresses of the pressure A_p, B_p and of the shear A_q, B_q
-    poisson_ratio : nu of the body, (...) or scalar [1]
-    sign : +1 if the shear acts on the body as given (roller), -1 if it acts the other way (guide), (...) or scalar
+    parts : numpy.ndarray, shape (..., 4, 6)
+        Stresses A_p, B_p of the pressure and A_q, B_q of the shear.
+    poisson_ratio : array_like, shape (...) or ()
+        Poisson's ratio nu of the body [1].
+    sign : array_like, shape (...) or ()
+        +1 if the shear acts on the body as given (roller), -1 if it acts in the opposite direction (guide).
 
     Returns
     -------
-    (..., 6) stresses A_p + nu B_p + sign (A_q + nu B_q)
+    numpy.ndarray, shape (..., 6)
+        Stresses A_p + nu B_p + sign (A_q + nu B_q).
     """
     nu, s = (np.asarray(v, dtype=float)[..., None] for v in (poisson_ratio, sign))
     pressed, pressed_nu, sheared, sheared_nu = np.moveaxis(parts, -2, 0)

@@ -19,9 +19,8 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keep
 def inner(function: Callable[..., Any]) -> Any:
     """Compile a function that only compiled functions call, without the wrappers for callers in Python.
 
-    The function is always inlined. Otherwise the first compilation of a callee would be linked everywhere; fast
-    arithmetic rounds differently there, so that the process that compiles would compute other last digits than later
-    processes.
+    The function is always inlined. If numba linked it instead, the process that compiles and the processes that read
+    the cache would round the last digit differently.
     """
     options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
     return njit(cache=True, fastmath=FAST, error_model="numpy", **options)(function)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from trackroller.errors import InputError
 from trackroller.materials.properties import PROPERTIES, Value, check_number
+from trackroller.materials.sn_curve import curve_exponent
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class Material:
     def woehler_exponent(self) -> float:
         """Return the exponent k > 0 of the S-N curve [1]."""
         cycles = self.cycles_at_fatigue_limit / self.cycles_at_tensile_strength
-        return -math.log(cycles) / math.log(self.fatigue_strength_ratio)
+        return float(curve_exponent(cycles, 1.0 / self.fatigue_strength_ratio))
 
     @property
     def shear_modulus(self) -> float:

@@ -12,12 +12,35 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from trackroller.errors import InputError
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, Value
 
 CURVE = ("fatigue_strength_ratio", "cycles_at_tensile_strength", "cycles_at_fatigue_limit", "woehler_exponent")
 AGREE = 0.01  # relative difference up to which values that say the same thing twice agree
 _ALL = PROPERTIES | ALTERNATIVES
+
+
+def curve_exponent(cycles, stresses):
+    """Return the exponent of an S-N curve, k = ln(N_k/N_Rm) / ln(R_m/sigma_D).
+
+    Parameters
+    ----------
+    cycles, stresses : float or numpy.ndarray
+        N_k/N_Rm and R_m/sigma_D, both > 1 [1].
+
+    Returns
+    -------
+    float or numpy.ndarray
+        k > 0 [1].
+
+    Examples
+    --------
+    >>> round(float(curve_exponent(5e6 / 1e4, 2.0)), 3)
+    8.966
+    """
+    return np.log(cycles) / np.log(stresses)
 
 
 def complete_curve(given: Mapping[str, Value], inherited: Mapping[str, Value], where: str) -> dict[str, Value]:
@@ -100,9 +123,8 @@ def _solve(known: dict[str, Value], where: str) -> None:
 
 def _check(known: Mapping[str, Value], where: str) -> None:
     ratio, low, high, k = (known[name].value for name in CURVE)
-    _refuse_apart(
-        "woehler_exponent", k, math.log(high / low) / math.log(1.0 / ratio) if low < high else math.nan, where
-    )
+    follows = float(curve_exponent(high / low, 1.0 / ratio)) if low < high else math.nan
+    _refuse_apart("woehler_exponent", k, follows, where)
 
 
 def _refuse_apart(name: str, value: float, follows: float, where: str) -> None:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.damage import fatigue
-from trackroller.parameters import REGIMES
+from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.report.flags import Flag, flags_of
 from trackroller.report.inputs import material_source
 from trackroller.report.numbers import life, number, rounded
@@ -255,5 +255,4 @@ def _weakest(ds: xr.Dataset) -> int:
 
 
 def _options(ds: xr.Dataset) -> str:
-    names = ("contact_model", "spin_model", "accuracy", "normal", "hertz", "stress_bodies", "life_rule", "slip_terms")
-    return ", ".join(f"{name.replace('_', ' ')} {ds.attrs[name]}" for name in names if ds.attrs.get(name))
+    return ", ".join(f"{name.replace('_', ' ')} {ds.attrs[name]}" for name in OPTIONS if ds.attrs.get(name))

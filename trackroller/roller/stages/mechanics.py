@@ -79,6 +79,7 @@ def forces(results: Results) -> None:
     v["rolling_radius_shift"], v["slip"] = b.shift, b.shift / loads.rolling_radius
     h_n, h_t = lever_arms(results.scene.table.axis_distance, loads.guide_profile_radius, loads.contact_angle)
     m, a, t, n = f.spin_moment, f.driving_force, f.lateral_force, b.normal_force
+    # eqs (10), (11), (12)
     v["drilling_torque"] = (m[:, 0] - m[:, 1]) * loads.sine
     tilting = h_n * (n[:, 0] - n[:, 1]) + h_t * (t[:, 0] + t[:, 1])
     v["tilting_moment"] = tilting + (n * offset).sum(axis=1)
@@ -87,10 +88,10 @@ def forces(results: Results) -> None:
 
 
 def force_error(results: Results, options: Options) -> None:
-    """Add the estimated error of the friction forces over mu F_N; models without one tell the measured bound.
+    """Add the estimated error of the friction forces over mu F_N; models without an estimate give the measured bound.
 
-    The error of F_T in one contact changes F_N of the other by up to its 1/sin(2 alpha) fold. A contact near lift-off
-    feels it most.
+    An error of F_T in one contact changes F_N of the other by up to 1/sin(2 alpha) times this error. The relative
+    change is largest in a contact near lift-off.
     """
     scene, v = results.scene, results.values
     found = scene.model.force_error(scene.n)
