@@ -10,7 +10,7 @@ import xarray as xr
 from trackroller.errors import InputError, nearest
 from trackroller.numerics.expressions import condition
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
-from trackroller.study.design.factors import label
+from trackroller.study.design.factors import readable
 from trackroller.study.goals import names_in
 from trackroller.study.outputs import flat, outputs, read_study, regimes
 
@@ -37,12 +37,10 @@ def column(ds: xr.Dataset, dims: tuple[str, ...], name: str, factors: Iterable[s
     """
     if name == "regime":
         return np.array(REGIMES, dtype=object)[regimes(ds, dims)], "", "regime"
-    given = name in ds.variables and bool(ds[name].ndim)
+    given = name in ds.variables
     if name in PARAMETERS or name in MATERIAL_FIELDS or (given and (name in ds.coords or name in factors)):
         rows = int(np.prod([ds.sizes[d] for d in dims]))
-        values = flat(ds, name, dims) if given else _constant(ds, name, rows)
-        if values.dtype.kind in "OSU":
-            values = np.array([label(v) for v in values], dtype=object)
+        values = readable(flat(ds, name, dims) if given else _constant(ds, name, rows))
         known = PARAMETERS.get(name)
         return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
     try:
@@ -55,9 +53,7 @@ def column(ds: xr.Dataset, dims: tuple[str, ...], name: str, factors: Iterable[s
 
 
 def _constant(ds: xr.Dataset, name: str, rows: int) -> np.ndarray:
-    """Return a parameter that is the same in all cases, from the result or else from its study file."""
-    if name in ds.variables:
-        return np.full(rows, ds[name].item())
+    """Return a parameter that the result lacks from its study file."""
     base = read_study(ds).get("base", {})
     value = base.get(name, PARAMETERS[name].default if name in PARAMETERS else "")
     return np.full(rows, np.nan if value is None else value)

@@ -12,7 +12,7 @@ from trackroller.analysis.limits import Column, column, meeting
 from trackroller.analysis.restore import design_of
 from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.study.design.factors import label
+from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign, current_name
 from trackroller.study.goals import names_in, statistic
 from trackroller.study.outputs import case_dims, read_study, regimes
@@ -133,7 +133,7 @@ def _front(
     """Return the allowed rows with their factors, goals and `optimal`; see `pareto`."""
     goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in objectives], axis=1)
     optimal = pareto_mask(goals, objectives.values(), allowed)
-    data: dict[str, Any] = {name: ("row", _labels(values)[allowed]) for name, values in factors.items()}
+    data: dict[str, Any] = {name: ("row", readable(values)[allowed]) for name, values in factors.items()}
     for name, (value, units, long_name) in columns.items():
         data[name] = ("row", value[allowed], {"units": units, "long_name": long_name})
     data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
@@ -155,10 +155,6 @@ def _allowed(
         excluded[reason] = int((allowed & ~good).sum())
         allowed &= good
     return allowed, excluded
-
-
-def _labels(values: np.ndarray) -> np.ndarray:
-    return np.array([label(v) for v in values], dtype=object) if values.dtype == object else values
 
 
 def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:

@@ -23,7 +23,7 @@ from trackroller.analysis.targets import body_of, inner_sample
 from trackroller.damage.fatigue import DECADES, curve_of, scatter_ranges, woehler_exponent
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
-from trackroller.study.design.factors import label
+from trackroller.study.design.factors import readable
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.goals import statistic
@@ -133,7 +133,7 @@ def material_deviations(ds: xr.Dataset, wanted: bool | float) -> dict[str, np.nd
         if wanted is not True:
             out[body] = np.full(int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DECADES)
         elif field in ds.variables:
-            names = flat(ds, field, dims) if ds[field].ndim else np.full(regimes(ds, dims).size, ds[field].item())
+            names = flat(ds, field, dims)
             of = {str(n): deviation(known.get(str(n), {})) for n in np.unique(names.astype(str))}
             out[body] = np.array([of[str(n)] for n in names])
     return out
@@ -159,12 +159,7 @@ def deviation(material: Mapping[str, float]) -> float:
 
 def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list[Output]) -> dict:
     first = np.arange(shape[0]) * shape[1]
-    outer = {}
-    for name in design.meta["outer"]:
-        values = design.columns[name][first]
-        if values.dtype == object:
-            values = np.array([label(v) for v in values], dtype=object)
-        outer[name] = ("point", values)
+    outer = {name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]}
     point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(shape[0])]
     return {
         **output_labels(columns),

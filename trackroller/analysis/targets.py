@@ -154,11 +154,7 @@ def inner_sample(design: SampledDesign) -> tuple[np.ndarray, np.ndarray] | tuple
         return ()
     names = list(design.factors)
     chosen = [names.index(name) for name in design.meta["inner"]]
-    unit = design.unit[: design.meta["inner_samples"], chosen].copy()
-    for j, name in enumerate(design.meta["inner"]):
-        if design.factors[name].discrete:
-            unit[:, j] = design.factors[name].bin(unit[:, j])
-    return unit, design.ordered[chosen]
+    return design.places[: design.meta["inner_samples"], chosen], design.ordered[chosen]
 
 
 def _levels(factor: Factor, values: np.ndarray) -> Iterator[Level]:

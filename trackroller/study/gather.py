@@ -14,7 +14,7 @@ from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.roller.dataset import file_attributes
 from trackroller.study import provenance, store
-from trackroller.study.design.factors import Factor, label
+from trackroller.study.design.factors import Factor, readable
 from trackroller.study.files import StudyFolder, Tell, WorkError, record_checksum, write_whole
 from trackroller.study.inventory import Inventory, take_inventory
 from trackroller.study.plan import Plan, identify
@@ -150,7 +150,7 @@ def _labels(study: Study, design: xr.Dataset, sizes: dict[str, int], grid: dict[
         labels.setdefault(name, _variable(dims, values, attrs, coordinate=True))
 
     for dim, factor in grid.items():
-        add(dim, (dim,), factor.take(np.arange(sizes[dim])) if factor.numeric else _texts(factor.levels))
+        add(dim, (dim,), readable(factor.take(np.arange(sizes[dim]))))
         if dim == "material_pair":
             for i, name in enumerate(MATERIAL_FIELDS):
                 add(name, (dim,), np.array([pair[i] for pair in factor.levels], dtype=object))
@@ -159,16 +159,12 @@ def _labels(study: Study, design: xr.Dataset, sizes: dict[str, int], grid: dict[
     labels["case"] = _variable(tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True)
     columns = {str(name): column.values for name, column in design.variables.items() if name != "case"}
     if "material_pair" in study.drawn.columns and "material_pair" not in grid:
-        columns["material_pair"] = _texts(study.drawn.columns["material_pair"])
+        columns["material_pair"] = readable(study.drawn.columns["material_pair"])
     for name, values in columns.items():
         if name in grid and set(grid[name].levels) & {*FRICTION_LEVELS, None}:
             name = f"{name}_value"
         add(name, *_varying(values.reshape(*sizes.values()), list(sizes)))
     return labels
-
-
-def _texts(values: Any) -> np.ndarray:
-    return np.array([label(value) for value in values], dtype=object)
 
 
 def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.ndarray]:

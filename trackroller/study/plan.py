@@ -115,11 +115,7 @@ def identify(study: Study, design: xr.Dataset) -> np.ndarray:
     """
     options, group = case_options(study, design)
     table = to_table(design.drop_vars(list(design.coords)), study.materials)
-    cases = np.empty(len(group), dtype="S32")
-    for number, told in enumerate(options):
-        rows = np.flatnonzero(group == number)
-        cases[rows] = fingerprints(table.take(rows) if len(options) > 1 else table, told)
-    return cases
+    return fingerprints(table, [options[number] for number in group.tolist()])
 
 
 def chunk_size(study: Study, cases: int) -> int:

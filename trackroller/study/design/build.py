@@ -19,7 +19,7 @@ from trackroller.roller.fields import own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
-from trackroller.study.design.factors import label
+from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign, sample
 from trackroller.study.goals import check_scatter
 
@@ -129,9 +129,7 @@ def build(study: Study, design: SampledDesign | None = None) -> xr.Dataset:
         data[name] = ("case", np.array([str(v) for v in columns.pop(name)], dtype=object), attrs)
     coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
     for name, values in columns.items():
-        if values.dtype == object:
-            values = np.array([label(v) for v in values], dtype=object)
-        coords[name] = ("case", values, {"long_name": name.replace("_", " ")})
+        coords[name] = ("case", readable(values), {"long_name": name.replace("_", " ")})
     dataset = xr.Dataset(data, coords)
     shape = design.meta.get("shape") if design.method == "grid" else None
     dataset.attrs = {

@@ -163,6 +163,11 @@ def label(value: Any) -> str:
     return f"{value:g}" if _is_number(value) else "not given" if value is None else str(value)
 
 
+def readable(values: np.ndarray) -> np.ndarray:
+    """Return a column (n,) with its categories as texts, see `label`; a column of numbers stays as it is."""
+    return np.array([label(v) for v in values], dtype=object) if values.dtype.kind in "OSU" else values
+
+
 def parse(name: str, spec: Any) -> Factor:
     """Check the dictionary of a factor.
 

@@ -64,6 +64,11 @@ def current_name(method: str, warn: bool = False) -> str:
     return new
 
 
+def is_random(factor: Factor, method: str) -> bool:
+    """Return whether a design draws the values of a factor at random."""
+    return method in WEIGHING or (method == "inner_outer" and factor.scatter)
+
+
 @dataclass(frozen=True)
 class SampledDesign:
     """The rows of a design and the facts that an analysis needs.
@@ -92,11 +97,9 @@ class SampledDesign:
     @property
     def places(self) -> np.ndarray:
         """Return `unit` with the index of the listed value for every list, also in random samples."""
-        if self.method not in ("lhs", "sobol", "saltelli"):
-            return self.unit
         places = self.unit.copy()
         for j, factor in enumerate(self.factors.values()):
-            if factor.discrete:
+            if factor.discrete and is_random(factor, self.method):
                 places[:, j] = factor.bin(self.unit[:, j])
         return places
 
@@ -193,8 +196,7 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
 def _check_weights(free: Mapping[str, Factor], method: str) -> None:
     """Refuse weights in a design that does not draw the values of a list at random."""
     for name, factor in free.items():
-        random = method in WEIGHING or (method == "inner_outer" and factor.scatter)
-        if factor.weights and not random:
+        if factor.weights and not is_random(factor, method):
             where = "the outer array of inner_outer" if method == "inner_outer" else f"design {method}"
             raise InputError(
                 f"factors.{name}.weights",
