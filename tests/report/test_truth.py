@@ -89,7 +89,7 @@ def check_valid(raw, said):
     assert (value(rolls), value(total)) == (raw.rolling.sum(), raw.n)
     if "stay inside" in said.text:
         assert value(first(rf"; {NUMBER} of them stay", said.text)[0]) == raw.inside.sum() > 0
-    if "leaves the range" in said.text:
+    if "all of them lie inside" in said.text:
         assert raw.inside.sum() == raw.rolling.sum()
     if "none of them stays" in said.text:
         assert raw.inside.sum() == 0
@@ -281,7 +281,8 @@ def check_others(raw, view):
         shown = findings.extremes(view, *view.life, list(view.factors)[:2], view.valid)
         finite = life[raw.valid & np.isfinite(life)]
         if shown.kind == "extremes":
-            low, high = first(rf"between {NUMBER} h.* and {NUMBER} h", shown.text)
+            only = first(rf"One .*: {NUMBER} h", shown.text) * 2 if finite.size == 1 else ()
+            low, high = only or first(rf"between {NUMBER} h.* and {NUMBER} h", shown.text)
             assert close(low, finite.min()) and close(high, finite.max())
             assert shown.values["unlimited"] == (raw.valid & np.isposinf(life)).sum()
         else:

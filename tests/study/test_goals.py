@@ -20,6 +20,7 @@ from trackroller.materials import load_database
 from trackroller.numerics import expressions
 from trackroller.report import sentences as words
 from trackroller.report.figures.sn_diagram import curve, sn_diagram
+from trackroller.report.inputs import as_material
 from trackroller.report.numbers import share
 from trackroller.report.page import contents
 from trackroller.report.view import StudyView
@@ -298,7 +299,7 @@ def test_lines_of_the_diagram_are_those_of_pylife():
     cycles = np.geomspace(1e4, 1e7, 7)
     for probability in (0.1, 0.5, 0.9):
         expected = line.woehler.load(cycles, failure_probability=probability)
-        found = curve(STEEL | {"scatter_in_cycles": 4.0}, "elementary", probability, cycles)
+        found = curve(as_material(STEEL | {"scatter_in_cycles": 4.0}), "elementary", probability, cycles)
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 

@@ -83,5 +83,6 @@ def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
 def advice(times: float) -> str:
     """Return a sentence for the result of `take_times`."""
     if math.isnan(times):
-        return "too few usable samples to judge convergence"
-    return "converged" if times <= 1 else f"not converged: take {times:.0f}x more samples"
+        return "There are too few usable samples to judge convergence."
+    more = f"The indices have not converged: take {times:.0f} times as many samples."
+    return "The indices have converged." if times <= 1 else more

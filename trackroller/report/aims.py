@@ -6,12 +6,13 @@ import numpy as np
 import xarray as xr
 
 from trackroller.report.choices import chance, point_words
-from trackroller.report.claims import Sentence
+from trackroller.report.claims import Sentence, estimate
 from trackroller.report.numbers import capital, count, level_text, long_name, number, quantity, setting
 from trackroller.report.tables import Table
 
 SAME = 1e-6  # probabilities that differ by less are called the same
 MAX_POINTS = 24  # rows of the table of design points
+INTERVAL = "95 % interval "
 WHOLE = {"grid": "designs of the grid", "table": "rows of the table"}  # designs without an interval
 
 
@@ -38,23 +39,23 @@ def target(table: xr.Dataset, number: int) -> Sentence:
     number : of the target
     """
     part, what = table.isel(target=number), capital(target_words(table, number))
-    share, low, high = (part[f"target_probability{end}"].values for end in ("", "_low", "_high"))
+    share, low, high = estimate(part, "target_probability")
     values = {"target": number, "share": share.tolist(), "low": low.tolist(), "high": high.tolist()}
     if share.ndim:
         best, worst = int(np.argmax(share)), int(np.argmin(share))
         values |= {"best": best, "worst": worst}
-        told = _with_interval(share[best], low[best], high[best])
+        told = chance(share[best], low[best], high[best], INTERVAL)
         text = f"{what}: probability {told} at {point_words(table, best)}"
         if len(share) > 1 and share[best] - share[worst] < SAME:
             text += f", and the same at all {len(share)} design points"
         elif len(share) > 1:
             text += f"; no other of the {count(len(share))} design points has more. The least, "
-            text += f"{_with_interval(share[worst], low[worst], high[worst])}, is at {point_words(table, worst)}"
-    elif np.isfinite(float(low)):
-        text = f"{what}: probability {_with_interval(float(share), float(low), float(high))} over all cases"
+            text += f"{chance(share[worst], low[worst], high[worst], INTERVAL)}, is at {point_words(table, worst)}"
+    elif np.isfinite(low):
+        text = f"{what}: probability {chance(share, low, high, INTERVAL)} over all cases"
     else:
         of = WHOLE.get(str(table.attrs.get("method")), "cases")
-        text = f"{what}: met by {chance(float(share))} of the {of}"
+        text = f"{what}: met by {chance(share)} of the {of}"
     most = _widest(part)
     if most is not None:
         values["levels"] = most
@@ -72,7 +73,7 @@ def _widest(part: xr.Dataset) -> tuple[int, int] | None:
     best: tuple[float, int, int] | None = None
     if "level_probability" not in part:
         return None
-    share, low, high = (part[f"level_probability{end}"].values for end in ("", "_low", "_high"))
+    share, low, high = estimate(part, "level_probability")
     for name in dict.fromkeys(part["level_factor"].values.tolist()):
         own = np.flatnonzero(part["level_factor"].values == name)
         least, most = int(own[np.argmin(share[own])]), int(own[np.argmax(share[own])])
@@ -82,13 +83,9 @@ def _widest(part: xr.Dataset) -> tuple[int, int] | None:
     return None if best is None else best[1:]
 
 
-def _with_interval(share: float, low: float, high: float) -> str:
-    return f"{chance(share)} (95 % interval {chance(low)} to {chance(high)})" if np.isfinite(low) else chance(share)
-
-
-def _cell(part: xr.Dataset, kind: str, place: int | tuple[()]) -> str:
-    share, low, high = (float(part[f"{kind}_probability{end}"].values[place]) for end in ("", "_low", "_high"))
-    return f"{chance(share)} ({chance(low)} to {chance(high)})" if np.isfinite(low) else chance(share)
+def _cell(part: xr.Dataset, kind: str, place: int | None) -> str:
+    found = estimate(part, f"{kind}_probability")
+    return chance(*(found if place is None else found[:, place]))
 
 
 def _level_words(part: xr.Dataset, level: int) -> str:
@@ -97,7 +94,7 @@ def _level_words(part: xr.Dataset, level: int) -> str:
     low, high = float(part["level_low"][level]), float(part["level_high"][level])
     if text or low == high:
         return setting(name, text or low)
-    return f"{long_name(name)} {number(low)} to {level_text(name, high)}"
+    return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
 
 
 def target_tables(table: xr.Dataset) -> list[Table]:
@@ -114,15 +111,8 @@ def target_tables(table: xr.Dataset) -> list[Table]:
     levels = [[capital(_level_words(table, i)), *_cells(table, "level", i)] for i in places]
     title = "Targets: probability by level of a factor"
     if table["target_probability"].ndim == 1:
-        return [
-            Table(
-                "targets",
-                title,
-                ["Level", *heads],
-                [["All cases", *_cells(table, "target", ())], *levels],
-                " ".join(said),
-            )
-        ]
+        every = ["All cases", *_cells(table, "target")]
+        return [Table("targets", title, ["Level", *heads], [every, *levels], " ".join(said))]
     order = np.argsort(-table["target_probability"].values[-1], kind="stable")
     rows = [[capital(point_words(table, int(p))), *_cells(table, "target", int(p))] for p in order[:MAX_POINTS]]
     said.append(f"Every design point has the same {count(int(table.attrs['inner_samples']))} samples.")
@@ -133,5 +123,5 @@ def target_tables(table: xr.Dataset) -> list[Table]:
     return [*found, Table("targets_levels", title, ["Level", *heads], levels, note)] if levels else found
 
 
-def _cells(table: xr.Dataset, kind: str, place: int | tuple[()]) -> list[str]:
+def _cells(table: xr.Dataset, kind: str, place: int | None = None) -> list[str]:
     return [_cell(table.isel(target=t), kind, place) for t in range(table.sizes["target"])]

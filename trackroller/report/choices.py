@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import xarray as xr
 
-from trackroller.report.claims import Sentence
-from trackroller.report.numbers import count, listing, quantity, rounded, setting, share
+from trackroller.report.claims import Sentence, estimate
+from trackroller.report.numbers import count, listing, long_name, quantity, rounded, setting, share
 from trackroller.report.view import StudyView
 
 
@@ -36,15 +38,16 @@ def pareto(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
         at = int(best[np.argmax(table) if way == "max" else np.argmin(table)])
         ends.append((name, int(front["row"][at]), {g: float(front[g].values[at]) for g, _ in goals}))
     if len(best) == 1:
-        told = [f"{_goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
+        told = [f"{goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
         text = f"One of {allowed} allowed {kind}s is best in everything: {listing(told)}."
     else:
         one, two = ends[0], ends[1]
         said = [
-            listing([f"{_goal_value(front, g, end[2][g])} {_goal_words(front, g)}" for g, _ in goals])
+            listing([f"{_goal_value(front, g, end[2][g])} {goal_words(front, g)}" for g, _ in goals])
             for end in (one, two)
         ]
-        text = f"{count(len(best))} of {allowed} allowed {kind}s are Pareto-optimal: from {said[0]} to {said[1]}."
+        span = f"from {said[0]} to {said[1]}" if one[2] != two[2] else f"all with {said[0]}"
+        text = f"{count(len(best))} of {allowed} allowed {kind}s are Pareto-optimal: {span}."
     if view is not None and kind == "design":
         outside = int((~view.valid[front["row"].values[best]]).sum())
         values["outside"] = outside
@@ -52,8 +55,9 @@ def pareto(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
     return Sentence("pareto", f"{text} {left}{model}", values | {"ends": ends})
 
 
-def _goal_words(front: xr.Dataset, name: str) -> str:
-    return str(front[name].attrs.get("long_name", name))
+def goal_words(front: xr.Dataset, name: str) -> str:
+    """Name a goal or a factor of a Pareto set."""
+    return str(front[name].attrs.get("long_name") or long_name(name))
 
 
 def _goal_value(front: xr.Dataset, name: str, value: float) -> str:
@@ -70,7 +74,7 @@ def robustness(table: xr.Dataset, output: str) -> Sentence:
     key = np.lexsort((-b10s, -np.nan_to_num(safe, nan=-1.0)))
     best = int(key[0])
     slip, lift = (table["probability"].sel(regime=r).values for r in ("full_slip", "lift_off"))
-    b10, low, high = (float(part[n].values[best]) for n in ("b10", "b10_low", "b10_high"))
+    b10, low, high = map(float, estimate(part, "b10")[:, best])
     unit = "overrollings" if words.endswith("overrollings") else str(part["output_units"].item())
     limited = bool(table.attrs.get("constrained", 0))
     still = float(table["probability"].sel(regime="rolling").values[best]) == 1.0 and not limited
@@ -92,10 +96,11 @@ def robustness(table: xr.Dataset, output: str) -> Sentence:
     return Sentence("robust", f"{text}.", values)
 
 
-def chance(value: float) -> str:
-    """Write a probability: '97 %', with more figures near 0 and 100 %, which stand for never and always."""
+def chance(value: float, low: float = math.nan, high: float = math.nan, words: str = "") -> str:
+    """Write a probability: '97 %' or '97 % (95 % to 98 %)', with more figures near 0 (never) and 100 % (always)."""
     whole = 10**6
-    return share(round(value * whole), whole)
+    text, *ends = (share(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v))
+    return f"{text} ({words}{' to '.join(ends)})" if ends else text
 
 
 def point_words(table: xr.Dataset, point: int) -> str:

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trackroller.report.view import MOST_LEVELS, StudyView
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FEW = 20  # events below this number are named one by one and attributed to nothing
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
@@ -20,6 +23,7 @@ FEWEST_ROWS = 20  # rows of a class below which its median is not compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
 COVERED = 0.8  # share of a class that must lie in levels with rows enough, so that pooling can be checked
 UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change
+ENDS = ("low", "high")
 MOST = 0.9  # share of pairs that must agree in the direction of an effect
 
 
@@ -62,6 +66,13 @@ class Effect:
     size: int
     rising: int = 0
     falling: int = 0
+
+
+def estimate(part: xr.Dataset, name: str) -> np.ndarray:
+    """Return a value of an analysis and the bounds of its interval, shape (3, ...), NaN for bounds that are missing."""
+    value = part[name].values.astype(float)
+    bounds = (part[f"{name}_{end}"].values if f"{name}_{end}" in part else np.full_like(value, np.nan) for end in ENDS)
+    return np.stack([value, *bounds])
 
 
 def median_interval(values: np.ndarray) -> tuple[float, float]:
@@ -138,9 +149,7 @@ def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -
     found = []
     for j in range(len(levels)):
         for i in range(j):
-            with np.errstate(invalid="ignore"):
-                steps = matrix[:, j] - matrix[:, i]
-            steps = steps[~np.isnan(steps)]
+            steps = _steps(matrix, i, j)
             if steps.size >= FEWEST_PAIRS and np.isfinite(np.median(steps)):
                 found.append((abs(float(np.median(steps))), i, j, steps))
     if not found:
@@ -151,9 +160,19 @@ def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -
         _, i, j, steps = max(found, key=lambda item: item[0])
         if np.median(steps) < 0:
             i, j, steps = j, i, -steps
+    return _of_steps(factor, levels[i], levels[j], steps)
+
+
+def _steps(matrix: np.ndarray, i: int, j: int) -> np.ndarray:
+    """Return the change of the logarithm from level i to level j in every pair that has both."""
+    with np.errstate(invalid="ignore"):
+        steps = matrix[:, j] - matrix[:, i]
+    return np.asarray(steps[~np.isnan(steps)])
+
+
+def _of_steps(factor: str, low: Any, high: Any, steps: np.ndarray) -> Effect:
     rising, falling = int((steps > 0).sum()), int((steps < 0).sum())
-    ratio = float(10 ** np.median(steps))
-    return Effect(factor, levels[i], levels[j], ratio, (np.nan, np.nan), steps.size, rising, falling)
+    return Effect(factor, low, high, float(10 ** np.median(steps)), (np.nan, np.nan), steps.size, rising, falling)
 
 
 def class_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:
@@ -227,14 +246,10 @@ def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) ->
     matrix, levels = pair_matrix(view, column, effect.factor, rows)
     if not len(matrix):
         return None
-    with np.errstate(invalid="ignore"):
-        steps = matrix[:, levels.index(effect.high)] - matrix[:, levels.index(effect.low)]
-    steps = steps[~np.isnan(steps)]
+    steps = _steps(matrix, levels.index(effect.low), levels.index(effect.high))
     if not steps.size or not np.isfinite(np.median(steps)):
         return None
-    up, down = int((steps > 0).sum()), int((steps < 0).sum())
-    nothing = (np.nan, np.nan)
-    return Effect(effect.factor, effect.low, effect.high, float(10 ** np.median(steps)), nothing, steps.size, up, down)
+    return _of_steps(effect.factor, effect.low, effect.high, steps)
 
 
 def leading_factor(view: StudyView, column: str, rows: np.ndarray, among: tuple[str, ...] | None = None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import PARAMETERS
-from trackroller.study.outputs import read_study
+from trackroller.study.outputs import flat, read_study
 
 INNER = ("contact", "body", "y", "x", "n", "section_x", "section_y", "section_z", "component")
 CATEGORIES = ("material_pair", "roller_material", "guide_material")
@@ -41,84 +41,55 @@ PLAIN_RESULTS = (
 SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lying at the surface
 
 
-def any_with(ds: xr.Dataset, dim: str) -> str:
-    """Name a variable that has a dimension."""
-    return next(str(n) for n, v in ds.variables.items() if dim in v.dims)
-
-
 def study_dims(ds: xr.Dataset) -> list[str]:
     """Name the dimensions that count cases, in the order of the data set: `case`, or the factors of a grid."""
-    dims = [str(d) for d in ds.dims if d not in INNER and ds[any_with(ds, str(d))].ndim]
-    return [d for d in dims if d == "case" or d in ds.coords or d in PARAMETERS]
+    return [d for d in map(str, ds.dims) if d not in INNER and (d == "case" or d in ds.coords or d in PARAMETERS)]
 
 
 def case_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
     """Flatten every wanted quantity over `dims` in one common order."""
-    columns: dict[str, np.ndarray] = {}
-    sizes = tuple(ds.sizes[d] for d in dims)
+    ds = ds.transpose(..., "contact", "body", missing_dims="ignore")
 
-    def flat(da: xr.DataArray) -> np.ndarray:
-        missing = [d for d in dims if d not in da.dims]
-        values = da.expand_dims({d: ds.sizes[d] for d in missing}).transpose(*dims).values
-        values = np.broadcast_to(values, sizes).reshape(-1)
+    def column(name: str) -> np.ndarray:
+        values = flat(ds, name, tuple(dims))
         return values.astype(str) if values.dtype.kind in "OSU" else values.astype(float)
 
-    case_names = [
-        n
-        for n, v in ds.variables.items()
-        if v.dims == ("case",) and n not in ("case", "reason") and n not in ds.data_vars
-    ]
-    wanted = [*(d for d in dims if d != "case"), *case_names, *PARAMETERS, *CATEGORIES, *PLAIN_RESULTS]
-    for name in dict.fromkeys(map(str, wanted)):
-        if name in ds.variables and ds[name].ndim and set(ds[name].dims) <= set(dims):
-            columns[name] = flat(ds[name])
-    for name in CONTACT_RESULTS:
-        if name in ds and "contact" in ds[name].dims:
-            for i in range(ds.sizes["contact"]):
-                columns[f"{name}_{i + 1}"] = flat(ds[name].isel(contact=i))
-    if "validity_body" in ds:
-        for i, body in enumerate(map(str, ds["body"].values)):
-            columns[f"validity_{body}"] = flat(ds["validity_body"].isel(body=i))
-    return columns | dict(_body_columns(ds, flat))
+    own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
+    wanted = [*(d for d in dims if d != "case"), *own, *PARAMETERS, *CATEGORIES, *PLAIN_RESULTS]
+    names = [n for n in dict.fromkeys(map(str, wanted)) if n in ds.variables and ds[n].ndim]
+    columns = {n: column(n) for n in names if set(ds[n].dims) <= set(dims)}
+    for name in (n for n in CONTACT_RESULTS if n in ds and "contact" in ds[n].dims):
+        columns |= {f"{name}_{i}": values for i, values in enumerate(column(name).T, 1)}
+    needed = {n: {"contact", "body"} for n in BODY_RESULTS} | {"validity_body": {"body"}}
+    needed |= {n: {"contact"} for n in ("semi_axis_lateral", "semi_axis_rolling")}
+    found = {n: column(n) for n, inner in needed.items() if n in ds and inner <= set(ds[n].dims)}
+    for name, table in _of_bodies(found).items():
+        columns |= {f"{name}_{body}": values for body, values in zip(ds["body"].values, table.T, strict=True)}
+    return columns
 
 
-def _body_columns(ds: xr.Dataset, flat: Any) -> Iterator[tuple[str, np.ndarray]]:
-    """Peak (with its depth and contact) and life of the worse contact of each body; fit and where it peaks."""
-    if "body" not in ds.dims or "contact" not in ds.dims:
-        return
-    for i, body in enumerate(map(str, ds["body"].values)):
-        parts = {
-            n: np.stack([flat(ds[n].isel(body=i, contact=c)) for c in range(ds.sizes["contact"])])
-            for n in BODY_RESULTS
-            if n in ds and {"contact", "body"} <= set(ds[n].dims)
-        }
-        if "peak_stress" in parts:
-            peak = parts["peak_stress"]
-            worse = np.argmax(np.where(np.isnan(peak), -np.inf, peak), axis=0)[None]
-            yield f"peak_stress_{body}", np.take_along_axis(peak, worse, 0)[0]
-            yield f"peak_contact_{body}", worse[0] + 1.0
-            if "error_estimate" in parts:
-                yield f"error_estimate_{body}", np.take_along_axis(parts["error_estimate"], worse, 0)[0]
-            if "peak_z" in parts:
-                depth = np.take_along_axis(parts["peak_z"], worse, 0)[0]
-                yield f"at_surface_{body}", _at_surface(ds, flat, worse, depth)
-        if "life_cycles" in parts:
-            lives = parts["life_cycles"]
-            lowest = np.where(np.isnan(lives), np.inf, lives).min(axis=0)
-            yield f"life_cycles_{body}", np.where(np.isnan(lives).all(axis=0), np.nan, lowest)
+def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return flags, peak stress of the worse contact, its error and place, and the shorter life, shape (n, bodies).
 
-
-def _at_surface(ds: xr.Dataset, flat: Any, worse: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    limit = np.full(depth.shape, 1e-3)  # mm, when the study has no semi-axes
-    if "semi_axis_lateral" in ds and "semi_axis_rolling" in ds:
-        smaller = np.stack(
-            [
-                np.minimum(*(flat(ds[f"semi_axis_{n}"].isel(contact=c)) for n in ("lateral", "rolling")))
-                for c in range(ds.sizes["contact"])
-            ]
-        )
-        limit = SURFACE_SHARE * np.take_along_axis(smaller, worse, 0)[0]
-    return np.where(np.isnan(depth), np.nan, (depth <= limit).astype(float))
+    Parameters
+    ----------
+    found : results by name, shape (n, contacts, bodies), (n, contacts) or (n, bodies)
+    """
+    told = {"validity": found["validity_body"]} if "validity_body" in found else {}
+    if "peak_stress" in found:
+        peak = found["peak_stress"]
+        worse = np.argmax(np.where(np.isnan(peak), -np.inf, peak), axis=1)[:, None]
+        at = {n: np.take_along_axis(v, worse, axis=1)[:, 0] for n, v in found.items() if v.shape == peak.shape}
+        told |= {n: at[n] for n in ("peak_stress", "error_estimate") if n in at}
+        if "peak_z" in at:
+            limit: Any = 1e-3  # mm, when the study has no semi-axes
+            if {"semi_axis_lateral", "semi_axis_rolling"} <= set(found):
+                smaller = np.minimum(found["semi_axis_lateral"], found["semi_axis_rolling"])
+                limit = SURFACE_SHARE * np.take_along_axis(smaller, worse[:, 0], axis=1)
+            told["at_surface"] = np.where(np.isnan(at["peak_z"]), np.nan, at["peak_z"] <= limit)
+    if "life_cycles" in found:
+        told["life_cycles"] = np.fmin.reduce(found["life_cycles"], axis=1)
+    return told
 
 
 def factor_names(ds: xr.Dataset, dims: list[str], table: pd.DataFrame) -> list[str]:

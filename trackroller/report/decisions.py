@@ -11,16 +11,16 @@ from trackroller.damage.fatigue import DECADES
 from trackroller.parameters import PARAMETERS
 from trackroller.report import choices
 from trackroller.report import sentences as words
-from trackroller.report.claims import Sentence
+from trackroller.report.aims import MAX_POINTS
+from trackroller.report.claims import Sentence, estimate
 from trackroller.report.known_errors import FRICTION_OUTPUTS
-from trackroller.report.numbers import capital, listing, long_name, plus_minus, rounded, unit_text, with_unit
+from trackroller.report.numbers import capital, listing, rounded, unit_text, with_unit
 from trackroller.report.tables import Table, factor_cell
 from trackroller.report.view import StudyView
 from trackroller.study.goals import statistic
 from trackroller.study.outputs import read_study, settings
 
 MAX_DESIGNS = 12  # rows of the table of the Pareto set
-MAX_POINTS = 24  # rows of the table of design points
 OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 MEASURES = (
     ("S1", "Sobol index, first order"),
@@ -36,7 +36,6 @@ MEASURES = (
     ("pawn", "PAWN"),
     ("prcc", "partial rank correlation"),
 )
-HALF = "± is half the 95 % interval"
 
 
 def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
@@ -44,49 +43,39 @@ def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
     index, rows = words.headline(sens), []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
-        ranks = [f"{r.name} {_value(sens, index, r.value, r.low, r.high)}" for r in words.order(sens, output)[:4]]
+        ranks = [
+            f"{r.name} {words.index_text(part.sel(factor=r.factor), index)}" for r in words.order(sens, output)[:4]
+        ]
         mark = " *" if error and output in FRICTION_OUTPUTS else ""
         rows.append([capital(words.of_output(sens, output)) + mark, "; ".join(ranks) or "–", str(part["note"].item())])
     heads = ["Output", f"Factors that matter most ({words.INDEX_WORDS[index]})", "Computed from"]
     told = str(sens.attrs.get("treatment", ""))
-    note = f"{HALF}. The method needs {sens.attrs.get('needs', 'nothing')}. {capital(told)}."
+    note = f"{words.HALF}. The method needs {sens.attrs.get('needs', 'nothing')}. {capital(told)}."
     if any(row[0].endswith("*") for row in rows) and error:
         note += f" * {error.text}"
     return Table("indices", "What decides each output", heads, rows, note)
 
 
-def _value(sens: xr.Dataset, key: str, value: float, low: float, high: float) -> str:
-    """One index with half its interval; a share of variance is not shown below 0."""
-    return plus_minus(max(0.0, value) if key in ("first", "S1", "ST", "main_share") else value, low, high)
-
-
 def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Table:
-    """List every index of every factor on one output.
-
-    Those within chance stand in brackets.
-    """
+    """List every index of every factor on one output; those within chance stand in brackets."""
     part = sens.sel(output=output)
     shown = [(key, text) for key, text in MEASURES if key in part and np.isfinite(part[key]).any()]
     rows = []
     for rank in words.order(sens, output):
         one, cells = part.sel(factor=rank.factor), []
         for key, _ in shown:
-            low, high = (float(one[f"{key}_{end}"]) if f"{key}_{end}" in one else np.nan for end in ("low", "high"))
-            text = _value(sens, key, float(one[key]), low, high)
-            noise = float(one[f"{key}_noise"]) if f"{key}_noise" in one else np.nan
+            noise = float(one.get(f"{key}_noise", np.nan))
+            text = words.index_text(one, key)
             cells.append(f"({text})" if float(one[key]) <= noise else text)
         rows.append([capital(rank.name), *cells])
     title = f"All measures: {words.of_output(sens, output)}"
-    note = f"{HALF}; in brackets: no more than a factor without influence reaches by chance."
+    note = f"{words.HALF}; an index in brackets is no larger than chance gives a factor without influence."
     note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
     return Table(f"measures_{output}", title, ["Factor", *(text for _, text in shown)], rows, note)
 
 
 def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
-    """List every analysed output of an inner/outer design by design point.
-
-    Lives first, the best point on top.
-    """
+    """List every analysed output of an inner/outer design by design point: lives first, the best point on top."""
     names = [str(n) for n in table["output"].values]
     asked = settings(read_study(table)).get("outputs")
     lives = [n for n in names if "life" in n and np.isfinite(table["percentile_value"].sel(output=n)).any()]
@@ -105,30 +94,22 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
     heads += [f"{capital(OTHERS[r])} (95 % interval)" for r in seen]
     rows = []
     for p in map(int, points):
-        b10, low, high = (float(part[n][p]) for n in ("b10", "b10_low", "b10_high"))
+        b10, low, high = map(float, estimate(part, "b10")[:, p])
         span = f"{rounded(low)} to {rounded(high)}" if np.isfinite(high) else "–"
-        chances = [_chance(table, regime, p) for regime in seen]
+        chances = [choices.chance(*estimate(table.sel(regime=r), "probability")[:, p]) for r in seen]
         rows.append([capital(choices.point_words(table, p)), b10, span, float(part["b10_safe"][p]), *chances])
     unit = unit_text(str(part["output_units"].item()))
     name = capital(str(part["output_name"].item()))
     own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DECADES * scatter))}."
     note = own if scatter > 0 else "B10 holds the scatter of the study's factors alone, not that of the material."
-    note = " ".join(t for t in (note, _never(table, seen), _left(table)) if t)
+    if never := [r for r in OTHERS if r not in seen]:
+        high = 100 * float(table["probability_high"].sel(regime=never).max())
+        shown = listing([OTHERS[r] for r in never], "or")
+        note += f" No case of any point shows {shown}: below {high:.2g} % at each (95 %)."
+    if (left := table.sizes["point"] - MAX_POINTS) > 0:
+        note += f" {left} more design points are in sensitivity.nc."
     first = Table(f"b10_{output}", f"{name}: B10 [{unit}], best design points first", heads, rows, note)
     return [first, _point_table(table, output, None, points)]
-
-
-def _never(table: xr.Dataset, seen: list[str]) -> str:
-    never = [r for r in OTHERS if r not in seen]
-    if not never:
-        return ""
-    high = 100 * float(table["probability_high"].sel(regime=never).max())
-    return f"No case of any point shows {listing([OTHERS[r] for r in never], 'or')}: below {high:.2g} % at each (95 %)."
-
-
-def _left(table: xr.Dataset) -> str:
-    left = table.sizes["point"] - MAX_POINTS
-    return f"{left} more design points are in sensitivity.nc." if left > 0 else ""
 
 
 def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points: np.ndarray | None = None) -> Table:
@@ -147,13 +128,6 @@ def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points:
     return Table(f"percentiles_{output}", f"{name} [{unit}]: mean and percentiles", heads, rows, note)
 
 
-def _chance(table: xr.Dataset, regime: str, point: int) -> str:
-    value, low, high = (
-        100 * float(table[n].sel(regime=regime)[point]) for n in ("probability", "probability_low", "probability_high")
-    )
-    return f"{value:.3g} % ({low:.2g} to {high:.2g})" if value else f"0 (below {high:.2g} %)"
-
-
 def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> Table | None:
     """List Pareto-optimal designs along the first goal, with a column that says which lie outside the model."""
     goals = choices.goals_of(front)
@@ -165,15 +139,15 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     shown = best[np.unique(np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int))]
     names = [n for n, _ in goals] + [str(n) for n in front.data_vars if n not in (*dict(goals), "optimal")]
     arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
-    rows: list[list[Any]] = [
-        [int(front["row"][i]), *(_front_cell(n, front[n].values[i]) for n in names)] for i in shown
-    ]
+    cells = [[v if isinstance(v, str) else float(v) + 0.0 for v in front[n].values[shown]] for n in names]  # -0 is 0
+    columns = [[factor_cell(n, v) for v in values] for n, values in zip(names, cells, strict=True)]
+    rows: list[list[Any]] = [list(row) for row in zip(front["row"].values[shown].tolist(), *columns, strict=True)]
     kind = str(front.attrs.get("kind", "design"))
     heads = [capital(kind), *(_heading(front, n) + arrows.get(n, "") for n in names)]
     if kind == "design":
         heads = ["Case", *heads[1:], "Model"]
         rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
-    told = [f"{_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
+    told = [f"{choices.goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
     note = f"{capital('; '.join(told))}."
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
     if len(best) > len(rows):
@@ -182,15 +156,7 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
 
 
-def _words(front: xr.Dataset, name: str) -> str:
-    return str(front[name].attrs.get("long_name") or long_name(name))
-
-
 def _heading(front: xr.Dataset, name: str) -> str:
     units = str(front[name].attrs.get("units", "")) or (PARAMETERS[name].unit if name in PARAMETERS else "")
-    text = capital(_words(front, name))
+    text = capital(choices.goal_words(front, name))
     return with_unit(text, units) if units and units not in ("1", "-") else text
-
-
-def _front_cell(name: str, value: Any) -> Any:
-    return factor_cell(name, value if isinstance(value, str) else float(value) + 0.0)  # -0 is 0

@@ -21,6 +21,8 @@ from trackroller.report.claims import (
 from trackroller.report.numbers import SPOKEN, capital, count, level_text, listing, long_name, rounded, setting, times
 from trackroller.report.view import StudyView
 
+Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
+
 
 def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.ndarray) -> Sentence | None:
     """Say how an output changes with a factor.
@@ -43,20 +45,12 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
     if effect is None or (not paired and not comparable(view, effect, column, rows)):
         return None
     parts = strata(view, column, effect, rows)
-    values: dict[str, Any] = {
-        "column": column,
-        "factor": factor,
-        "low": effect.low,
-        "high": effect.high,
-        "ratio": effect.ratio,
-        "size": effect.size,
-    }
+    values = {"column": column, **vars(effect)}
+    said = (_of_pairs if paired else _of_classes)(view, effect, parts, words, values, rows)
     if paired:
-        return _of_pairs(
-            view, effect, parts, words, values | {"rising": effect.rising, "falling": effect.falling}, rows
-        )
-    said = _of_classes(view, effect, parts, words, values | {"interval": effect.interval}, rows)
-    tied = [next(n for n in pair[:2] if n != factor) for pair in _correlations(view, factor)]
+        return said
+    pairs = [pair for pair in view.study.get("rank_correlations", ()) if factor in pair[:2] and pair[2]]
+    tied = [one if other == factor else other for one, other, _ in pairs]
     if not tied:
         return said
     text = f"{said.text} {capital(listing([long_name(n) for n in tied]))} changes with it: the factors are correlated."
@@ -65,12 +59,18 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
 
 def _span(view: StudyView, effect: Effect) -> str:
     """'Friction coefficient 0 → 0.4', or the two levels of a list."""
-    low, high = level_text(effect.factor, effect.low), level_text(effect.factor, effect.high)
     if view.ordered(effect.factor):
-        return f"{capital(long_name(effect.factor))} {level_text(effect.factor, effect.low, unit=False)} → {high}"
+        low = level_text(effect.factor, effect.low, unit=False)
+        high = level_text(effect.factor, effect.high, words=False)
+        return f"{capital(long_name(effect.factor))} {low} → {high}"
+    low, high = level_text(effect.factor, effect.low), level_text(effect.factor, effect.high)
     if effect.factor in SPOKEN:
         return f"{capital(high)} instead of {low}"
     return f"{capital(long_name(effect.factor))} {high} instead of {low}"
+
+
+def _fold(effect: Effect) -> str:
+    return times(max(effect.ratio, 1 / effect.ratio))
 
 
 def _verb(words: str, up: bool) -> str:
@@ -78,12 +78,7 @@ def _verb(words: str, up: bool) -> str:
 
 
 def _of_pairs(
-    view: StudyView,
-    effect: Effect,
-    parts: list[tuple[str, Any, Effect]],
-    words: str,
-    values: dict[str, Any],
-    rows: np.ndarray,
+    view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
 ) -> Sentence:
     """State the median change of designs that differ in one factor only."""
     pairs = f"{count(effect.size)} pairs of valid designs that differ in nothing else"
@@ -103,13 +98,13 @@ def _of_pairs(
         values["strata"] = [(c, v, e.ratio) for c, v, e in parts] if told else []
         return Sentence("pairs_both", f"{text}{'; median ' if told else ''}{', '.join(told)}.", values, rows)
     text = (
-        f"{_span(view, effect)} {_verb(words, up)} the {words} {times(max(effect.ratio, 1 / effect.ratio))} in the "
+        f"{_span(view, effect)} {_verb(words, up)} the {words} {_fold(effect)} in the "
         f"median of {pairs}, and in {'all' if same == effect.size else count(same)} of them."
     )
     return Sentence("pairs", text.replace(", and in all of them", ", in all of them"), values, rows)
 
 
-def _by_category(parts: list[tuple[str, Any, Effect]], words: str) -> list[str]:
+def _by_category(parts: Strata, words: str) -> list[str]:
     """Median change within each level of the category whose levels disagree most."""
     spread: dict[str, list[float]] = {}
     for category, _, effect in parts:
@@ -117,7 +112,7 @@ def _by_category(parts: list[tuple[str, Any, Effect]], words: str) -> list[str]:
     category = max(spread, key=lambda c: max(spread[c]) - min(spread[c]))
     ways = ("longer", "shorter") if "life" in words else ("higher", "lower")
     return [
-        f"{times(max(e.ratio, 1 / e.ratio))} {ways[0] if e.ratio > 1 else ways[1]} with {setting(c, v)}"
+        f"{_fold(e)} {ways[0] if e.ratio > 1 else ways[1]} with {setting(c, v)}"
         if e.ratio != 1
         else f"unchanged with {setting(c, v)}"
         for c, v, e in parts
@@ -126,26 +121,19 @@ def _by_category(parts: list[tuple[str, Any, Effect]], words: str) -> list[str]:
 
 
 def _of_classes(
-    view: StudyView,
-    effect: Effect,
-    parts: list[tuple[str, Any, Effect]],
-    words: str,
-    values: dict[str, Any],
-    rows: np.ndarray,
+    view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
 ) -> Sentence:
     """State the change of the median between the lowest and the highest third of a factor, with its interval."""
     name = long_name(effect.factor)
+    start, end = (level_text(effect.factor, v, words=False) for v in (effect.low, effect.high))
     low, high = effect.interval
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in parts if p[2].interval[0] > 1 or p[2].interval[1] < 1]
     ways = {e.ratio > 1 for _, _, e in opposed}
     values["strata"] = [(c, v, e.ratio, e.interval) for c, v, e in parts]
-    ends = f"{level_text(effect.factor, effect.low)} and from {level_text(effect.factor, effect.high)}"
+    ends = f"{start} and from {end}"
     if len(ways) == 2:
-        told = [
-            f"{times(max(e.ratio, 1 / e.ratio))} {'up' if e.ratio > 1 else 'down'} with {setting(c, v)}"
-            for c, v, e in opposed
-        ]
+        told = [f"{_fold(e)} {'up' if e.ratio > 1 else 'down'} with {setting(c, v)}" for c, v, e in opposed]
         text = f"Between the thirds of the valid designs with {name} up to {ends} the median {words} goes "
         return Sentence("classes_both", f"{text}{listing(told)}.", values, rows)
     if low <= 1 <= high or against:
@@ -158,14 +146,8 @@ def _of_classes(
     up = effect.ratio > 1
     bounds = (low, high) if up else (1 / high, 1 / low)
     text = (
-        f"A {name} from {level_text(effect.factor, effect.high)} up, instead of one up to "
-        f"{level_text(effect.factor, effect.low)}, {_verb(words, up)} the median {words} "
-        f"{times(max(effect.ratio, 1 / effect.ratio))} (95 % interval {rounded(bounds[0])} to {rounded(bounds[1])}; "
+        f"A {name} from {end} up, instead of one up to {start}, {_verb(words, up)} the median {words} "
+        f"{_fold(effect)} (95 % interval {rounded(bounds[0])} to {rounded(bounds[1])}; "
         f"the outer thirds of the valid designs, {count(effect.size)} or more in each)."
     ).replace("A a", "An a")
     return Sentence("classes", text, values, rows)
-
-
-def _correlations(view: StudyView, factor: str) -> list[tuple[str, str, float]]:
-    """Return the rank correlations of the study file that a factor has."""
-    return [pair for pair in view.study.get("rank_correlations", ()) if factor in pair[:2] and pair[2]]

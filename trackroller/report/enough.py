@@ -11,11 +11,11 @@ from trackroller.analysis.convergence import HALF_WIDTH
 from trackroller.parameters import REGIMES
 from trackroller.report.aims import target_words
 from trackroller.report.choices import robustness
-from trackroller.report.claims import Sentence
+from trackroller.report.claims import Sentence, estimate
 from trackroller.report.numbers import rounded
 from trackroller.report.sentences import of_output
+from trackroller.study.design.sampling import ARRAYS
 
-DRAWN = ("lhs", "sobol", "saltelli", "morris")  # designs that `samples` counts for, besides inner_outer
 HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
 FEWEST = 64  # samples that give a B10 an interval: the bound is an order statistic, not the shortest life
 
@@ -40,7 +40,7 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
     method = str(sens.attrs.get("method"))
     if method == "inner_outer":
         return _of_points(sens, asked)
-    if method not in (*DRAWN, "table") or "take_times" not in sens:
+    if method in ARRAYS or "take_times" not in sens:
         return None
     asked = 1 << max(0, asked - 1).bit_length() if method == "saltelli" else asked
     needed = {str(o): float(sens["take_times"].sel(output=o)) for o in sens["output"].values if str(o) not in REGIMES}
@@ -74,11 +74,11 @@ def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
         part = sens.sel(output=output).isel(point=best) if best is not None else sens
         if best is None or not 0 < float(part["b10"]) < np.inf or not np.isfinite(float(part["b10_high"])):
             continue
-        half = (float(part["b10_high"]) - float(part["b10_low"])) / 2 / float(part["b10"])
+        half = float(np.ptp(estimate(part, "b10")[1:])) / 2 / float(part["b10"])
         found.append((half, HALF_B10, f"B10 of the {part['output_name'].item()} at the best design point"))
     for t in range(sens.sizes.get("target", 0)):
         own = sens.isel(target=t)
-        half = float((own["target_probability_high"] - own["target_probability_low"]).max()) / 2
+        half = float(np.ptp(estimate(own, "target_probability")[1:], axis=0).max()) / 2
         found.append((half, HALF_WIDTH, f"the probability of {target_words(sens, t)}"))
     if not found:
         return None

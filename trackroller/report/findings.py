@@ -22,14 +22,14 @@ def valid_designs(view: StudyView) -> Sentence:
     lost = {REGIME_LABELS[c]: int((view.regime == c).sum()) for c in (1, 2, 3)}
     lost["not converged"] = int(((view.regime == 0) & ~view.rolling).sum())
     why = ", ".join(f"{count(n)} {words}" for words, n in lost.items() if n)
-    text = f"{count(rolls)} of {count(total)} designs roll{f' ({why})' if why else ''}"
+    text = f"{count(rolls)} of {count(total)} designs roll{f' (the others: {why})' if why else ''}"
     reasons = [(flag, body, int(hit.sum())) for flag, body, hit in _outside(view) if hit.any()]
     if not rolls:
         text += "."
     elif not view.flags:
         text += "; the data set carries no validity flags."
     elif inside == rolls:
-        text += "; none of them leaves the range of the model."
+        text += "; all of them lie inside the model."
     else:
         kept = f"{count(inside)} of them stay" if inside else "none of them stays"
         text += f"; {kept} inside the model: elsewhere {_reason_words(reasons)}."
@@ -140,10 +140,10 @@ def _levels_words(view: StudyView, name: str, levels: Any) -> str:
         own = view.table[name]
         low, high = levels
         if low <= own.min():
-            return f"{long_name(name)} up to {level_text(name, high)}"
+            return f"{long_name(name)} up to {level_text(name, high, words=False)}"
         if high >= own.max():
-            return f"{long_name(name)} from {level_text(name, low)}"
-        return f"{long_name(name)} {number(low)} to {level_text(name, high)}"
+            return f"{long_name(name)} from {level_text(name, low, words=False)} up"
+        return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
     first = setting(name, levels[0])
     return listing([first, *(level_text(name, v) for v in levels[1:])], "or")
 
@@ -243,10 +243,10 @@ def extremes(view: StudyView, column: str, words: str, unit: str, shown: Sequenc
         return Sentence("none", "No valid design shown here has a finite life.", {}, rows)
     low, high = int(good[np.argmin(values[good])]), int(good[np.argmax(values[good])])
     at = [listing([setting(f, view.table[f].iloc[i]) for f in shown]) for i in (low, high)]
-    text = (
-        f"The {words} of the valid designs shown lies between {quantity(values[low], unit)} at {at[0]} and "
-        f"{quantity(values[high], unit)} at {at[1]}."
-    )
+    ends = [f"{quantity(values[i], unit)} at {place}" for i, place in zip((low, high), at, strict=True)]
+    text = f"The {words} of the valid designs shown lies between {' and '.join(ends)}."
+    if good.size == 1:
+        text = f"One valid design shown here has a finite {words}: {ends[0]}."
     endless = int((rows & np.isposinf(values)).sum())
     text += f" {count(endless)} more designs have an unlimited life." if endless else ""
     told = {"column": column, "low": low, "high": high, "unlimited": endless}

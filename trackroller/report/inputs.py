@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, unit_text
@@ -66,18 +67,27 @@ def base_rows(view: StudyView) -> list[Row]:
 
 
 def materials_table(attrs: Mapping[str, Any]) -> Table | None:
-    """List the values of the materials used, as stored in the result."""
-    try:
-        stored = json.loads(str(attrs.get("materials", "{}")))
-    except ValueError:
-        return None
-    used = {n: v for n, v in stored.items() if isinstance(v, Mapping)} if isinstance(stored, Mapping) else {}
+    """List the values of the materials used."""
     heads = ["Name", *(f"{PROPERTIES[n].symbol} [{unit_text(PROPERTIES[n].unit)}]" for n in REQUIRED), "Source"]
     rows = [
         [name, *(float(values[n]) if n in values else "–" for n in REQUIRED), material_source(values)]
-        for name, values in used.items()
+        for name, values in stored_materials(attrs).items()
     ]
     return Table("materials", "Materials", heads, rows) if rows else None
+
+
+def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return the values of the materials that a result stores, by name; none of another program's result."""
+    try:
+        stored = json.loads(str(attrs.get("materials", "{}")))
+    except ValueError:
+        return {}
+    return {n: v for n, v in stored.items() if isinstance(v, dict)} if isinstance(stored, dict) else {}
+
+
+def as_material(values: Mapping[str, Any]) -> Material:
+    """Return the material that a result stores with its sources."""
+    return Material(**{key: value for key, value in values.items() if key not in ("sources", "guesses")})
 
 
 def material_source(values: Mapping[str, Any]) -> str:

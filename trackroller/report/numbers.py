@@ -19,19 +19,6 @@ UNITS = {
     "J m-1": "J/m",
     "N mm": "N·mm",
 }
-SYMBOLS = {
-    "A_T": r"$A_\mathrm{T}$",
-    "r_C,G": r"$r_\mathrm{C,G}$",
-    "r_C,TR": r"$r_\mathrm{C,TR}$",
-    "r_Curve": r"$r_\mathrm{Curve}$",
-    "alpha": r"$\alpha$",
-    "F_rad": r"$F_\mathrm{rad}$",
-    "F_ax": r"$F_\mathrm{ax}$",
-    "F_Motor": r"$F_\mathrm{Motor}$",
-    "mu": r"$\mu$",
-    "v": r"$v$",
-    "n_G": r"$n_\mathrm{G}$",
-}
 SPOKEN = ("motor_force", "guide_curve_radius", "material_pair", "roller_material", "guide_material")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -182,24 +169,33 @@ def long_name(name: str) -> str:
     return PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
 
 
-def factor_label(name: str, units: str | None = None) -> str:
+def symbol(text: str) -> str:
+    """Write a symbol such as r_C,TR for a figure, with its index below the line."""
+    letter, _, index = text.partition("_")
+    letter = f"\\{letter}" if len(letter) > 1 else letter  # alpha, mu
+    return f"${letter}_\\mathrm{{{index}}}$" if index else f"${letter}$"
+
+
+def factor_label(name: str) -> str:
     """Label the axis of a factor: long name, symbol, unit."""
-    parameter = PARAMETERS.get(name)
-    if parameter is None:
-        return with_unit(capital(plain(name)), units) if units else capital(plain(name))
-    return with_unit(
-        f"{capital(parameter.long_name)} {SYMBOLS.get(parameter.symbol, parameter.symbol)}", parameter.unit
-    )
+    if name not in PARAMETERS:
+        return capital(plain(name))
+    parameter = PARAMETERS[name]
+    return with_unit(f"{capital(parameter.long_name)} {symbol(parameter.symbol)}", parameter.unit)
 
 
-def level_text(name: str, value: Any, unit: bool = True) -> str:
-    """Write a level of a factor: 'straight' for an infinite curve, 'driven −30 N' for a motor force."""
+def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> str:
+    """Write a level of a factor: 'straight' for an infinite curve, 'driven −30 N' for a motor force.
+
+    Without `words`, as for the ends of a range, a number with its unit; without `unit` the number alone.
+    """
     if isinstance(value, str):
         return short(name, value) if name in MAPPING_FIELDS else _pair(value)
     value = float(value)
-    if name == "motor_force" and unit:
+    words = words and unit
+    if name == "motor_force" and words:
         return "free rolling" if value == 0 else f"{'driven' if value < 0 else 'braked'} {number(value)} N"
-    if name == "guide_curve_radius" and unit:
+    if name == "guide_curve_radius" and words:
         if math.isinf(value):
             return "straight"
         return f"{'outer' if value > 0 else 'inner'} curve {number(abs(value))} mm"

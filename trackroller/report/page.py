@@ -23,18 +23,19 @@ from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.inputs import base_rows, correlation_row, factor_table, materials_table, record_rows
 from trackroller.report.known_errors import friction_error
-from trackroller.report.numbers import capital, count, long_name, percent, plain, rounded
+from trackroller.report.numbers import capital, count, long_name, percent, rounded
 from trackroller.report.sheet.rows import Row
 from trackroller.report.summary import in_short
 from trackroller.report.tables import Table, best_table, cell, reason_table, regime_table, validity_table
 from trackroller.report.view import StudyView
 from trackroller.report.workbook import export
+from trackroller.study.design.sampling import ARRAYS
 from trackroller.study.files import write_text
 
 log = logging.getLogger(__name__)
-SAMPLED = ("lhs", "sobol", "morris", "saltelli", "inner_outer")  # designs that `samples` counts for
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
+PLACES = ("decide", "why", "ends", "models")  # sections with tables and figures
 SECTIONS = {  # where a figure stands, by the beginning of its name
     "decide": ("pareto-front", "robustness-"),
     "ends": ("regime_map", "forces_against"),
@@ -62,7 +63,7 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     study_nc : pathlib.Path
         Gathered study.
     figures_dir : pathlib.Path
-        Folder with the figures and their `index*.json`; it may be empty or missing.
+        Folder with the figures and their `index.json`; it may be empty or missing.
     out_html : pathlib.Path
         File to write, completely or not at all. The tables are written to the folder `tables` beside it.
     sensitivity_nc : pathlib.Path, optional
@@ -76,10 +77,10 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     ds = xr.load_dataset(study_nc)
     sens = xr.load_dataset(sensitivity_nc) if sensitivity_nc is not None and sensitivity_nc.is_file() else None
     content = contents(ds, sens)
-    content["figures"] = _placed(figures(Path(figures_dir)))
+    content["figures"] = _guarded(lambda: dict.fromkeys(PLACES, ()), figures, Path(figures_dir))
     content["explorer"] = _guarded(lambda: None, explorer, ds, None, sens)
     write_text(Path(out_html), secured(render("report.html.j2", content, cell=cell)))
-    export([t for key in ("decide", "why", "ends", "models") for t in content[key]], Path(out_html).parent / "tables")
+    export([t for key in PLACES for t in content[key]], Path(out_html).parent / "tables")
     return Path(out_html)
 
 
@@ -135,7 +136,9 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
         said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
         why = [index_table(sens, error), *parts.tables(sens)]
-        why += [measure_table(sens, name, error) for name in _leading_outputs(sens)]
+        index, names = words.headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
+        known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
+        why += [measure_table(sens, name, error) for name in known[:1]]  # a life if there is one
     return {
         "decide": [t for t in decide if t],
         "decide_said": said,
@@ -143,13 +146,6 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
         "ends": [t for t in (regime_table(view), validity_table(view), reason_table(ds)) if t],
         "models": models.get("tables", []),
     }
-
-
-def _leading_outputs(sens: xr.Dataset, most: int = 1) -> list[str]:
-    """Lives first, then the other outputs that have an index."""
-    index = words.headline(sens)
-    names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
-    return sorted(names, key=lambda n: "life" not in n)[:most]
 
 
 def _guarded(empty: Callable[[], Any], make: Callable[..., Any], *arguments: Any) -> Any:
@@ -164,7 +160,7 @@ def _guarded(empty: Callable[[], Any], make: Callable[..., Any], *arguments: Any
 def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     """The line under the title: date, design, size, model, accuracy."""
     design = str(merged.get("design", "grid" if view.grid else "sample")).replace("_", " ")
-    samples = view.study.get("samples") if design.replace(" ", "_") in SAMPLED else None
+    samples = view.study.get("samples") if design.replace(" ", "_") not in (*ARRAYS, "table", "sample") else None
     date = str(merged.get("date_created") or merged.get("date") or merged.get("created") or "")
     parts = [
         date[:10],
@@ -211,37 +207,21 @@ def solution_facts(ds: xr.Dataset, view: StudyView) -> list[Row]:
     return rows
 
 
-def figures(folder: Path) -> list[dict[str, str]]:
-    """Return the figures of a folder as data URIs with captions.
+def figures(folder: Path) -> dict[str, list[dict[str, Any]]]:
+    """Return the figures that `index.json` of a folder lists, as data URIs with their texts, by section of the page.
 
-    Those of its indices first, then other files.
+    They are numbered in the order of the page.
     """
     listed: list[dict[str, Any]] = []
-    for index in sorted(folder.glob("index*.json"), key=lambda p: (p.name != "index.json", p.name)):
-        try:
-            listed += json.loads(index.read_text(encoding="utf-8"))
-        except (ValueError, OSError) as problem:
-            log.warning("%s cannot be read: %s", index, problem)
-    names = {str(item.get("name")) for item in listed}
-    stems = sorted({p.stem for p in folder.glob("*.[sp][vn]g") if not p.name.startswith(".")} - names)
-    listed += [{"name": s, "caption": plain(s), "sentence": ""} for s in stems]
-    found = []
+    if (folder / "index.json").is_file():
+        listed = json.loads((folder / "index.json").read_text(encoding="utf-8"))
+    placed: dict[str, list[dict[str, Any]]] = {key: [] for key in PLACES}
     for item in listed:
-        if source := _data_uri(folder, str(item["name"])):
-            texts = {key: str(item.get(key, "")) for key in ("name", "caption", "sentence")}
-            found.append(texts | {"source": source})
-    return found
-
-
-def _placed(found: list[dict[str, str]]) -> dict[str, list[dict[str, Any]]]:
-    """Sort figures into the sections of the report and number them in the order of the page."""
-    placed: dict[str, list[dict[str, Any]]] = {key: [] for key in ("decide", "why", "ends", "models")}
-    for item in found:
         section = next((key for key, starts in SECTIONS.items() if item["name"].startswith(starts)), "why")
-        placed[section].append(item)
-    every = [item for items in placed.values() for item in items]
-    for number, item in enumerate(every, 1):
-        item["number"] = number  # type: ignore[assignment]
+        if source := _data_uri(folder, item["name"]):
+            placed[section].append(item | {"source": source})
+    for number, item in enumerate((item for items in placed.values() for item in items), 1):
+        item["number"] = number
     return placed
 
 

@@ -6,12 +6,10 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.labels import factor_name
-from trackroller.report.claims import Sentence
-from trackroller.report.numbers import capital, count, listing, percent, plus_minus
-from trackroller.report.sentences import INDEX_WORDS, of_output
+from trackroller.report.claims import Sentence, estimate
+from trackroller.report.numbers import capital, count, level_text, listing, percent
+from trackroller.report.sentences import HALF, INDEX_WORDS, index_text, of_output
 from trackroller.report.tables import Table
-
-HALF = "± is half the 95 % interval"
 
 
 def sentences(sens: xr.Dataset, output: str) -> list[Sentence]:
@@ -25,7 +23,7 @@ def groups(sens: xr.Dataset, output: str) -> Sentence | None:
     if "group_ST" not in sens:
         return None
     part = sens.sel(output=output)
-    value, low, high = (_bound(part, f"group_ST{end}") for end in ("", "_low", "_high"))
+    value, low, high = estimate(part, "group_ST")
     if not np.isfinite(value).all():
         return None
     order = np.argsort(-value, kind="stable")
@@ -44,12 +42,13 @@ def levels(sens: xr.Dataset, output: str) -> Sentence | None:
         return None
     part, told, lead = sens.sel(output=output), [], {}
     for level in part["level"].values:
-        value, low, high = (_bound(part.sel(level=level), f"conditional_S1{end}") for end in ("", "_low", "_high"))
+        value, low, high = estimate(part.sel(level=level), "conditional_S1")
         if not np.isfinite(value).any():
             continue
         best = int(np.nanargmax(value))
         lead[str(level)] = str(part["factor"].values[best])
-        told.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {level}")
+        words = level_text(str(sens["level"].attrs["factor"]), level)
+        told.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {words}")
     if not told:
         return None
     what = f"{INDEX_WORDS['S1']} of the variance of {of_output(sens, output)}"
@@ -71,7 +70,7 @@ def tables(sens: xr.Dataset) -> list[Table]:
             part = sens.sel(output=output)
             for group in part["group"].values:
                 one = part.sel(group=group)
-                cells = [_value(one, name) for name in ("group_S1", "group_ST")]
+                cells = [index_text(one, name) for name in ("group_S1", "group_ST")]
                 told = [capital(str(one["group_name"].item())), str(one["group_members"].item())]
                 rows.append([capital(of_output(sens, output)), *told, *cells])
         heads = ["Output", "Group", "Factors", "First-order index", "Total index"]
@@ -91,9 +90,10 @@ def _level_table(sens: xr.Dataset) -> Table:
             part = sens.sel(output=output, level=level)
             value = part[name].values
             order = [i for i in np.argsort(-np.nan_to_num(value, nan=-1.0), kind="stable") if np.isfinite(value[i])]
-            told = [f"{part['factor_name'].values[i]} {_value(part.isel(factor=int(i)), name)}" for i in order[:4]]
+            told = [f"{part['factor_name'].values[i]} {index_text(part.isel(factor=int(i)), name)}" for i in order[:4]]
             size = count(int(part["conditional_rows"]))
-            rows.append([capital(of_output(sens, output)), str(level), "; ".join(told) or "–", size])
+            words = level_text(str(sens["level"].attrs["factor"]), level)
+            rows.append([capital(of_output(sens, output)), words, "; ".join(told) or "–", size])
     index = INDEX_WORDS["ST" if name.endswith("ST") else "S1"]
     unit = {"saltelli": "Blocks", "grid": "Cells"}.get(str(sens.attrs.get("method")), "Rows")
     heads = ["Output", capital(category(sens)), f"Factors that matter most ({index})", unit]
@@ -103,15 +103,3 @@ def _level_table(sens: xr.Dataset) -> Table:
 
 def _with_index(sens: xr.Dataset, name: str) -> list[str]:
     return [str(o) for o in sens["output"].values if np.isfinite(sens[name].sel(output=o)).any()]
-
-
-def _bound(part: xr.Dataset, name: str) -> np.ndarray:
-    """Return an index or a bound of it; NaN where the analysis has none."""
-    base = part[name.removesuffix("_low").removesuffix("_high")].values
-    return np.asarray(part[name].values if name in part else np.full_like(base, np.nan))
-
-
-def _value(one: xr.Dataset, name: str) -> str:
-    """Write one index with half its interval, not below 0."""
-    value, low, high = (float(_bound(one, f"{name}{end}")) for end in ("", "_low", "_high"))
-    return plus_minus(max(0.0, value) if np.isfinite(value) else value, low, high)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import advice
-from trackroller.report.claims import Sentence
+from trackroller.report.claims import Sentence, estimate
 from trackroller.report.numbers import (
     capital,
     count,
@@ -19,6 +20,7 @@ from trackroller.report.numbers import (
     unit_text,
 )
 
+HALF = "± is half the 95 % interval"
 SMALL = 0.02  # share of variance below which a factor is called negligible
 SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
 HEADLINES = {"saltelli": "ST", "morris": "mu_star", "grid": "main_share"}
@@ -32,8 +34,7 @@ INDEX_WORDS = {
 }
 
 
-@dataclass(frozen=True)
-class Rank:
+class Rank(NamedTuple):
     """A factor's index with its interval (NaN where there is none), as `order` puts them."""
 
     factor: str
@@ -49,10 +50,7 @@ def robust_design(sens: xr.Dataset) -> bool:
 
 
 def headline(sens: xr.Dataset) -> str:
-    """Name the index that ranks the factors of a design.
-
-    ST, mu_star, main_share, effect or first.
-    """
+    """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
     found = HEADLINES.get(str(sens.attrs.get("method")), "effect" if "effect" in sens else "first")
     if "first" in sens and (found not in sens or not np.isfinite(sens[found]).any()):
         return "first"
@@ -60,22 +58,19 @@ def headline(sens: xr.Dataset) -> str:
 
 
 def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
-    """Sort the factors of an output by falling size of an index (default.
-
-    The headline); NaN ones are left out.
-    """
+    """Sort the factors of an output by falling size of an index, by default the headline; leave out NaN."""
     index = index or headline(sens)
     part = sens.sel(output=output)
-    nan = np.full(part.sizes["factor"], np.nan)
-    low = part[f"{index}_low"].values if f"{index}_low" in part else nan
-    high = part[f"{index}_high"].values if f"{index}_high" in part else nan
     names = part["factor_name"].values if "factor_name" in part.coords else part["factor"].values
-    rows = [
-        Rank(str(f), str(n), float(v), float(a), float(b))
-        for f, n, v, a, b in zip(part["factor"].values, names, part[index].values, low, high, strict=True)
-        if np.isfinite(v)
-    ]
+    found = zip(map(str, part["factor"].values), map(str, names), *estimate(part, index).tolist(), strict=True)
+    rows = [rank for rank in map(Rank._make, found) if np.isfinite(rank.value)]
     return sorted(rows, key=lambda r: -abs(r.value) if index in SIGNED else -r.value)
+
+
+def index_text(part: xr.Dataset, name: str) -> str:
+    """Write one index with half its 95 % interval; an index without a sign is not shown below 0."""
+    value, low, high = map(float, estimate(part, name))
+    return plus_minus(value if name in SIGNED else float(np.maximum(0.0, value)), low, high)
 
 
 def of_output(sens: xr.Dataset, output: str) -> str:
@@ -100,7 +95,7 @@ def caveat(sens: xr.Dataset, output: str) -> str:
         used = float(part["used_share"]) * 100
         said.append(f"Only {used:.0f} % of the design could be used: {part['note'].item()}.")
     if np.isfinite(more):
-        said.append("The indices have converged." if more <= 1 else f"{capital(advice(more))}.")
+        said.append(advice(more))
     return " ".join(said)
 
 
@@ -164,11 +159,11 @@ def convergence(sens: xr.Dataset, output: str) -> Sentence:
     """Say how wide the widest interval is, and whether there were samples enough."""
     ranks, more = order(sens, output), _times(sens, output)
     if not ranks or not np.isfinite(more):
-        return Sentence("no_index", "There are too few usable samples to judge convergence.", {"output": output})
+        return Sentence("no_index", advice(np.nan), {"output": output})
     widest = max(ranks, key=lambda r: r.high - r.low)
     half, size = (widest.high - widest.low) / 2, int(sens["sample_size"].values[-1])
     wide = rounded(half, 2) if headline(sens) == "mu_star" else f"{100 * half:.1f} % of the variance"
-    text = f"With {count(size)} samples the widest 95 % interval, of {widest.name}, is ± {wide}: {advice(more)}."
+    text = f"With {count(size)} samples the widest 95 % interval, of {widest.name}, is ± {wide}. {advice(more)}"
     return Sentence("widest", text, {"output": output, "factor": widest.factor, "half": half, "size": size})
 
 
@@ -197,8 +192,8 @@ def interactions(sens: xr.Dataset, output: str) -> Sentence:
     if not np.isfinite(table).any():
         return Sentence("no_index", f"No interaction can be given for {what}.", {"output": output})
     i, j = np.unravel_index(np.nanargmax(np.abs(table)), table.shape)
-    names, value = part["factor_name"].values, float(table[i, j])
-    low, high = (float(part[f"{name}{e}"].values[i, j]) if f"{name}{e}" in part else np.nan for e in ("_low", "_high"))
+    names = part["factor_name"].values
+    value, low, high = map(float, estimate(part, name)[:, i, j])
     values = {"output": output, "index": name, "pair": (i, j), "value": value, "low": low, "high": high}
     if name == "interaction":
         text = f"The strongest interaction on {what} is {names[i]} with {names[j]}: {rounded(value)}."

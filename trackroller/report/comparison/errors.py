@@ -63,7 +63,7 @@ QUANTITIES = (
     Quantity("normal_force", "normal forces", "Normal force", _relative("normal_force"), ("normal_force",)),
     Quantity(
         "friction_force",
-        "friction forces and spin moment (over what friction can carry)",
+        "friction forces and spin moment (over mu F_N)",
         r"Friction over $\mu F_\mathrm{N}$",
         _of_capacity,
         FORCES,
@@ -78,7 +78,7 @@ QUANTITIES = (
     ),
     Quantity("peak_stress", "peak stress", "Peak stress", _relative("peak_stress"), ("peak_stress",)),
     Quantity("life", "life", "Life", _relative("life"), ("life",)),
-    Quantity("stick", "stick (share of the patch)", "Stick", _stick, ("stick_area_fraction",)),
+    Quantity("stick", "adhesion area (share of the patch)", "Stick", _stick, ("stick_area_fraction",)),
 )
 
 

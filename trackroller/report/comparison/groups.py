@@ -37,7 +37,7 @@ def factors(ds: xr.Dataset) -> list[str]:
     return list(json.loads(ds.attrs["factors"]))
 
 
-def groups(ds: xr.Dataset, name: str, most: int = MAX_LEVELS, bins: int = BINS) -> Groups:
+def groups(ds: xr.Dataset, name: str) -> Groups:
     """Sort the designs into groups along a factor, or along `spin`.
 
     Groups of numbers rise; categories stand in order of appearance.
@@ -48,8 +48,8 @@ def groups(ds: xr.Dataset, name: str, most: int = MAX_LEVELS, bins: int = BINS) 
     if name in DERIVED:
         values = np.array([float(f"{v:.3g}") for v in values])
     levels, index = np.unique(values, return_inverse=True)
-    if len(levels) > most:
-        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, bins + 1)))
+    if len(levels) > MAX_LEVELS:
+        edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, BINS + 1)))
         index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
         parts = [values[index == i] for i in range(len(edges) - 1)]
         parts = [p for p in parts if p.size]
@@ -77,7 +77,7 @@ def span(name: str, low: float, high: float) -> str:
     low, high = float(f"{low:.{figures}g}"), float(f"{high:.{figures}g}")
     if low == high:
         return level_text(name, low)
-    return f"{number(low)} to {level_text(name, high, unit=name not in ('guide_curve_radius',))}"
+    return f"{number(low)} to {level_text(name, high, words=False)}"
 
 
 def drives(ds: xr.Dataset) -> Groups:

@@ -51,14 +51,14 @@ def pairs(ds: xr.Dataset) -> xr.Dataset | None:
     if MODEL in order:
         order = (MODEL, *(d for d in order if d != MODEL))
     columns = _inputs(ds, order)
-    rows = _grid_rows(ds, order, models) if MODEL in order else _matched_rows(ds, columns, models)
+    rows = _matched_rows(flat(ds, MODEL, order).astype(str), columns, models)
     return _sorted_out(ds, order, models, rows, columns)
 
 
 def _inputs(ds: xr.Dataset, order: tuple[str, ...]) -> dict[str, np.ndarray]:
     """Every input that the data set knows, one value a case, (rows,)."""
     study, found = read_study(ds), {}
-    names = [*INPUTS, *(n for n in study.get("factors", {}) if n != MODEL and n not in INPUTS)]
+    names = [n for n in dict.fromkeys((*INPUTS, *study.get("factors", {}), *order)) if n not in (MODEL, "case")]
     rows = int(np.prod([ds.sizes[d] for d in order]))
     for name in names:
         held = f"{name}_value" if f"{name}_value" in ds.variables else name  # friction by a word for its level
@@ -74,16 +74,11 @@ def _inputs(ds: xr.Dataset, order: tuple[str, ...]) -> dict[str, np.ndarray]:
     return found
 
 
-def _grid_rows(ds: xr.Dataset, order: tuple[str, ...], models: list[str]) -> np.ndarray:
-    """Row of each model and design, (models, designs), of a grid flattened in `order`."""
-    listed = ds[MODEL].values.astype(str).tolist()
-    rows = np.arange(int(np.prod([ds.sizes[d] for d in order]))).reshape(len(listed), -1)
-    return rows[[listed.index(m) for m in models]]
+def _matched_rows(own: np.ndarray, columns: Mapping[str, np.ndarray], models: list[str]) -> np.ndarray:
+    """Row of each model and design, (models, designs), -1 where the design lacks it; designs in order of rows.
 
-
-def _matched_rows(ds: xr.Dataset, columns: Mapping[str, np.ndarray], models: list[str]) -> np.ndarray:
-    """Row of each model and design, (models, designs), -1 where the design lacks it; designs in order of rows."""
-    own = ds[MODEL].values.astype(str)
+    `own` is the model of each row (n,), `columns` are its inputs.
+    """
     code = np.zeros(own.size, dtype=np.int64)
     for values in columns.values():
         if all_equal(values):
@@ -103,9 +98,7 @@ def _sorted_out(
 ) -> xr.Dataset:
     data: dict[str, Any] = {}
     lacking = rows < 0
-    for name in RESULTS:
-        if name not in ds:
-            continue
+    for name in (n for n in RESULTS if n in ds):
         values = flat(ds, name, order).astype(float)[rows]
         values[lacking] = -1.0 if name == "regime" else np.nan
         rest = [d for d in ds[name].dims if d not in order]

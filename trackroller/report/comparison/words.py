@@ -29,20 +29,19 @@ FLAT = 0.1  # a factor whose levels differ less in the share of good designs is 
 FEWEST = 3  # designs that roll in both models; of fewer nothing is said
 
 
-def sentences(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
+def sentences(paired: xr.Dataset) -> list[str]:
     """Return all sentences on the comparison of the contact models.
 
     Parameters
     ----------
     paired : dataset of `trackroller.report.comparison.pairs`
-    tolerance : error [1] up to which a model is good enough
     """
     if not paired.sizes["design"]:
-        return [overview(paired, tolerance)]
-    return [overview(paired, tolerance), *short(paired, tolerance), *details(paired, tolerance)]
+        return [overview(paired)]
+    return [overview(paired), *short(paired), *details(paired)]
 
 
-def overview(paired: xr.Dataset, tolerance: float = GOOD) -> str:
+def overview(paired: xr.Dataset) -> str:
     """Say how the models were compared, or why they cannot be compared."""
     reference, number = paired.attrs["reference"], paired.sizes["design"]
     left = f" {paired.attrs['left']} cases have no partner and are left out." if paired.attrs["left"] else ""
@@ -52,16 +51,16 @@ def overview(paired: xr.Dataset, tolerance: float = GOOD) -> str:
             "A grid, an inner/outer array or a table has such pairs; a sample that draws the model has none."
         )
     return (
-        f"Errors are taken against {_exact(reference)} where both models roll, in {_designs(number)} that differ "
-        f"in nothing but the model; good enough means within {percent(tolerance)}, at a level "
-        f"of a factor in 9 of 10 designs; in brackets the errors.{left}"
+        f"Each cheaper model is compared with {_exact(reference)} in {_designs(number)} that differ in nothing but the "
+        f"model, where both roll. A model is good enough at a level of a factor if 9 of 10 designs there err by "
+        f"{percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
     )
 
 
-def short(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
-    """Say in one sentence a model which share of the designs is within the tolerance."""
+def short(paired: xr.Dataset) -> list[str]:
+    """Say in one sentence a model which share of the designs is within 5 %."""
     if not paired.sizes["design"]:
-        return [overview(paired, tolerance)]
+        return [overview(paired)]
     found, said = errors(paired), []
     exact = paired["regime"].sel(contact_model=paired.attrs["reference"]).values
     for model in map(str, found["contact_model"].values):
@@ -71,7 +70,7 @@ def short(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
             said.append(f"{NAMES[model]}: too little to compare, for {rolls}.")
             continue
         parts = [
-            f"{q.words.split(' (')[0]} in {percent(_share(one[q.name].values, tolerance))}"
+            f"{q.words.split(' (')[0]} in {percent(_share(one[q.name].values))}"
             for q in measured(one)
             if q.name in ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
         ]
@@ -79,21 +78,17 @@ def short(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
         own = paired["regime"].sel(contact_model=model).values
         unlike = int(((own >= 0) & (exact >= 0) & (own != exact)).sum())
         more = f" In {_designs(unlike)} the two are not in the same regime." if unlike else ""
-        said.append(f"{NAMES[model]} is within {percent(tolerance)} of {found.attrs['reference']}: {told}.{more}")
+        said.append(f"{NAMES[model]} is within {percent(GOOD)} of {found.attrs['reference']}: {told}.{more}")
     return said
 
 
-def details(paired: xr.Dataset, tolerance: float = GOOD) -> list[str]:
+def details(paired: xr.Dataset) -> list[str]:
     """Return the sentences by friction and drive: up to which friction each quantity is good enough."""
     if not paired.sizes["design"]:
         return []
-    found, said = errors(paired), []
-    for model in map(str, found["contact_model"].values):
-        one = found.sel(contact_model=model)
-        if _compared(one) < FEWEST:
-            continue
-        said += _by_drive(one, model, tolerance)
-    return said
+    found = errors(paired)
+    models = [(str(m), found.sel(contact_model=m)) for m in found["contact_model"].values]
+    return [text for model, one in models if _compared(one) >= FEWEST for text in _by_drive(one, model)]
 
 
 def report_section(ds: xr.Dataset) -> dict[str, Any]:
@@ -142,38 +137,31 @@ def _spread(e: np.ndarray) -> tuple[float, float, float]:
     return tuple(float(np.percentile(e, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]
 
 
-def _by_drive(one: xr.Dataset, model: str, tolerance: float) -> list[str]:
+def _by_drive(one: xr.Dataset, model: str) -> list[str]:
     """A sentence a drive: up to which friction each quantity is good enough."""
     if FRICTION not in factors(one):
         return []
-    drive, said = drives(one), []
-    for k, text in enumerate(drive.texts):
-        way = f", {text}" if DRIVE in factors(one) else ""
-        said.append(_sentence(one.isel(design=np.flatnonzero(drive.index == k)), f"{NAMES[model]}{way}", tolerance))
-    return said
+    drive, varies = drives(one), DRIVE in factors(one)
+    heads = [f"{NAMES[model]}{f', {text}' if varies else ''}" for text in drive.texts]
+    return [_sentence(one.isel(design=np.flatnonzero(drive.index == k)), head) for k, head in enumerate(heads)]
 
 
-def _sentence(one: xr.Dataset, who: str, tolerance: float) -> str:
-    clauses: dict[str, list[str]] = {"good": [], "bad": []}
+def _sentence(one: xr.Dataset, who: str) -> str:
+    clauses: dict[str, list[str]] = {"good enough for": [], "not good enough for": []}
     along = groups(one, FRICTION)
     for q in measured(one):
-        e = one[q.name].values
-        if not _rolling(one[q.name]).size:
-            continue
-        where = levels_kept(along, e, tolerance)
-        clauses["good" if where else "bad"].append(f"{q.words} {where} ({_range(e)})".replace("  ", " "))
-    good = f"good enough for {', '.join(clauses['good'])}" if clauses["good"] else ""
-    bad = f"not good enough for {', '.join(clauses['bad'])}" if clauses["bad"] else ""
-    if not good and not bad:
-        return f"{who}: nothing to compare, for no case rolls."
-    return f"{who}: {'; '.join(c for c in (good, bad) if c)}."
+        where = levels_kept(along, one[q.name].values)
+        told = f"{q.words} {where} ({_range(_rolling(one[q.name]))})".replace("  ", " ")
+        clauses["good enough for" if where else "not good enough for"].append(told)
+    said = "; ".join(f"{head} {', '.join(told)}" for head, told in clauses.items() if told)
+    return f"{who}: {said or 'nothing to compare, for no case rolls'}."
 
 
 def _range(e: np.ndarray) -> str:
-    return f"{percent(float(np.nanmin(e)))} to {percent(float(np.nanmax(e)))}"
+    return f"{percent(float(e.min()))} to {percent(float(e.max()))}"
 
 
-def levels_kept(along: Groups, e: np.ndarray, tolerance: float = GOOD) -> str:
+def levels_kept(along: Groups, e: np.ndarray) -> str:
     """Name the levels at which nine of ten designs keep the tolerance.
 
     The text is empty if there is no such level.
@@ -183,11 +171,9 @@ def levels_kept(along: Groups, e: np.ndarray, tolerance: float = GOOD) -> str:
     along : groups of the designs
     e : error of every design [1], shape (n,), NaN where none is
     """
-    known = np.array(
-        [np.isfinite(e[along.index == k]).any() or np.isposinf(e[along.index == k]).any() for k in range(len(along))]
-    )
-    at = np.flatnonzero(known)
-    keeps = np.array([np.mean(e[(along.index == k) & ~np.isnan(e)] <= tolerance) >= MOST for k in at])
+    shares = _shares_along(e, along)
+    at = np.flatnonzero(~np.isnan(shares))
+    keeps = shares[at] >= MOST
     if not keeps.any():
         return ""
     name = name_of(along.name)
@@ -214,34 +200,29 @@ def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
     return [(int(a), int(b) - 1) for a, b in edge.reshape(-1, 2)]
 
 
-def _main(one: xr.Dataset) -> list[Any]:
-    """Return the quantities whose error is drawn over other factors: forces and stress."""
-    return [q for q in measured(one) if q.name in ("normal_force", "friction_force", "peak_stress")]
-
-
-def telling_factors(one: xr.Dataset, tolerance: float = GOOD) -> list[str]:
+def telling_factors(one: xr.Dataset) -> list[str]:
     """Name the factors over whose levels the share of good designs changes, most of all first."""
-    varied, found = factors(one), []
+    varied, found, drawn = factors(one), [], ("normal_force", "friction_force", "peak_stress")
     names = [n for n in varied if n not in (FRICTION, DRIVE) and n in one.coords]
     names += ["lean"] if {FRICTION, "contact_angle"} <= set(varied) else []
     for name in names:
         along = groups(one, name)
-        shares = [_shares_along(one[q.name].values, along, tolerance) for q in _main(one)]
+        shares = [_shares_along(one[q.name].values, along) for q in measured(one) if q.name in drawn]
         changes = [float(np.nanmax(s) - np.nanmin(s)) for s in shares if np.isfinite(s).any()]
         if changes and max(changes) > FLAT:
             found.append((max(changes), name))
     return [name for _, name in sorted(found, key=lambda pair: -pair[0])]
 
 
-def _shares_along(e: np.ndarray, along: Groups, tolerance: float) -> np.ndarray:
+def _shares_along(e: np.ndarray, along: Groups) -> np.ndarray:
     """Share of good designs in every group, NaN where none rolls."""
-    return np.array([_share(e[along.index == k], tolerance) for k in range(len(along))])
+    return np.array([_share(e[along.index == k]) for k in range(len(along))])
 
 
-def _share(e: np.ndarray, tolerance: float) -> float:
+def _share(e: np.ndarray) -> float:
     """Share of good designs among those that roll, NaN if none does."""
     e = e[~np.isnan(e)]
-    return float(np.mean(e <= tolerance)) if e.size else np.nan
+    return float(np.mean(e <= GOOD)) if e.size else np.nan
 
 
 def gap(found: xr.Dataset, name: str) -> str:

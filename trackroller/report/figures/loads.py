@@ -13,7 +13,7 @@ from trackroller.report.effects import effect_of
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, drive_entries, drive_of, groups_of, legend, marks, running
 from trackroller.report.findings import lift_off, surface
-from trackroller.report.numbers import SYMBOLS, factor_label, listing, number, quantity, with_unit
+from trackroller.report.numbers import factor_label, listing, number, quantity, symbol, with_unit
 from trackroller.report.view import BODIES, StudyView
 
 SAME = 0.9  # rank correlation from which a factor and the fit say the same
@@ -104,7 +104,7 @@ def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     roller = rows.get("roller_profile_radius", view.base.get("roller_profile_radius"))
     guide = rows.get("guide_profile_radius", view.base.get("guide_profile_radius"))
     roller, guide = (np.broadcast_to(np.asarray(v, dtype=float), len(rows)) for v in (roller, guide))
-    r_t, r_g = SYMBOLS["r_C,TR"], SYMBOLS["r_C,G"]
+    r_t, r_g = symbol("r_C,TR"), symbol("r_C,G")
     if np.all((roller < 0) & np.isfinite(roller)):
         rows["_fit"] = -roller / guide
         return rows, f"Fit: groove over guide radius $-${r_t}/{r_g} [–]"
@@ -151,7 +151,7 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
     panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
     colours = style.palette(3)
     looks = [{"color": colours[c], "marker": "os"[c], "s": (10, 20)[c]} for c in (0, 1)]
-    for axes, (name, words, symbol) in zip(panels, kinds, strict=True):
+    for axes, (name, words, letter) in zip(panels, kinds, strict=True):
         for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
             part = (rows if level is None else rows[rows["motor_force"] == level]).sort_values(x)
             y, look = f"{name}_{contact}", looks[contact - 1]
@@ -161,7 +161,7 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
                 continue
             axes.plot(part[x], part[y], color=look["color"], linestyle=style.LINES[j % 6], zorder=2)
             marks(axes, part, x, y, look, contact == 1)
-        axes.set_ylabel(with_unit(f"{words} {symbol}", "N"))
+        axes.set_ylabel(with_unit(f"{words} {letter}", "N"))
         axes.set_xlabel(factor_label(x))
         axes.margins(y=0.1)
     if view.grid:

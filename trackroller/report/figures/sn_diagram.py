@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,36 +11,38 @@ from matplotlib.figure import Figure
 
 from trackroller.damage import fatigue
 from trackroller.damage.fatigue import curve_of
+from trackroller.materials import Material
+from trackroller.materials.properties import REQUIRED
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.findings import strength
+from trackroller.report.inputs import as_material, stored_materials
 from trackroller.report.numbers import count, listing, rounded, with_unit
 from trackroller.report.view import BODIES, StudyView
 
 BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
 MAX_MATERIALS = 6
-_FIELDS = ("tensile_strength", "fatigue_strength_ratio", "cycles_at_tensile_strength", "cycles_at_fatigue_limit")
 _DASHES = {0.1: (0, (1, 1.2)), 0.9: (0, (4, 1.5))}
 Points = dict[str, tuple[np.ndarray, np.ndarray]]
 
 
-def curve(material: Mapping[str, Any], rule: str, probability: float, cycles: np.ndarray) -> np.ndarray:
+def curve(material: Material, rule: str, probability: float, cycles: np.ndarray) -> np.ndarray:
     """Return the stress [MPa] of the S-N curve at a failure probability over cycles [1], shape as `cycles`.
 
     Parameters
     ----------
-    material : its values, `scatter_in_cycles` or `scatter_in_stress` among them for probabilities other than 0.5
+    material : with a scatter range for probabilities other than 0.5
     rule : life rule beyond the knee
     """
-    t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
+    t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
     return fatigue.allowable_stress(
         cycles, curve_of(material), rule, failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s
     )
 
 
-def scatters(material: Mapping[str, Any]) -> bool:
+def scatters(material: Material) -> bool:
     """Say whether the material gives a scatter range."""
-    return material.get("scatter_in_cycles") is not None or material.get("scatter_in_stress") is not None
+    return material.scatter_in_cycles is not None or material.scatter_in_stress is not None
 
 
 def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
@@ -50,7 +51,7 @@ def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
     A body of which no life lies on the axis gets no panel: a heap of marks at the edge says nothing.
     """
-    known, rule = _materials(view), str(view.study.get("life_rule", "elementary"))
+    known, rule = _known(view), str(view.study.get("life_rule", "elementary"))
     bodies = [(body, points) for body in BODIES if (points := _points(view, body, known, rule))]
     if not bodies:
         return None
@@ -80,12 +81,9 @@ def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     return figure, _info(view, shown, known, rule, ends[1])
 
 
-def _materials(view: StudyView) -> dict[str, dict[str, Any]]:
-    try:
-        found = json.loads(str(view.attrs.get("materials", "{}")))
-    except ValueError:
-        return {}
-    return {name: dict(m) for name, m in found.items() if isinstance(m, Mapping) and all(f in m for f in _FIELDS)}
+def _known(view: StudyView) -> dict[str, Material]:
+    stored = stored_materials(view.attrs)
+    return {n: as_material({"name": n} | values) for n, values in stored.items() if set(REQUIRED) <= set(values)}
 
 
 def material_of(view: StudyView, body: str) -> np.ndarray:
@@ -99,7 +97,7 @@ def material_of(view: StudyView, body: str) -> np.ndarray:
     return np.full(len(view.table), str(view.base.get(name, "")))
 
 
-def _points(view: StudyView, body: str, known: Mapping[str, Any], rule: str) -> Points:
+def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str) -> Points:
     """For each material: stress [MPa] and life [1] of every rolling case that has a life; else of all that have one."""
     life = view.column(f"life_cycles_{body}")
     rows = (life > 0) & view.rolling if ((life > 0) & view.rolling).any() else life > 0
@@ -116,17 +114,17 @@ def _points(view: StudyView, body: str, known: Mapping[str, Any], rule: str) -> 
     return found
 
 
-def _ends(points: list, materials: list) -> tuple[float, float]:
+def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
     lives = np.concatenate([p[1] for p in points])
-    lines = [curve_of(m) for m in materials]
-    low, knee = min(line[2] for line in lines), max(line[3] for line in lines)
+    low = min(m.cycles_at_tensile_strength for m in materials)
+    knee = max(m.cycles_at_fatigue_limit for m in materials)
     finite = lives[np.isfinite(lives)]
     top = min(max(finite.max() * 2 if finite.size else knee, 20 * knee), BEYOND * knee)
     low = min(low, finite.min() if finite.size else low)
     return max(low / 2, 1.0), top
 
 
-def _lines(axes: Axes, material: Mapping[str, Any], rule: str, colour: Any, ends: tuple[float, float]) -> None:
+def _lines(axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[float, float]) -> None:
     """Draw the S-N curve of a material, with its scatter if it gives one."""
     at = np.geomspace(*ends, 400)
     for probability in fatigue.PROBABILITIES if scatters(material) else (0.5,):
@@ -135,9 +133,9 @@ def _lines(axes: Axes, material: Mapping[str, Any], rule: str, colour: Any, ends
             "linestyle": _DASHES.get(probability, "-"),
         }
         axes.plot(at, curve(material, rule, probability, at), color=colour, zorder=2, **look)
-    most, limit, first, knee = curve_of(material)
+    knees = [material.cycles_at_tensile_strength, material.cycles_at_fatigue_limit]
     ends_look: dict[str, Any] = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
-    axes.plot([first, knee], [most, limit], color="0.1", zorder=3, **ends_look)
+    axes.plot(knees, [material.tensile_strength, material.fatigue_limit], color="0.1", zorder=3, **ends_look)
 
 
 def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any], top: float) -> None:
@@ -155,7 +153,7 @@ def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any
     axes.scatter(life[middle], stress[middle], s=30, zorder=5, **large)
 
 
-def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, Any]) -> Entries:
+def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, Material]) -> Entries:
     entries: Entries = [
         (n, {"color": colours[n], "marker": style.MARKERS[i % 10], "markersize": 3}) for i, n in enumerate(names)
     ]
@@ -169,7 +167,7 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, A
     return entries
 
 
-def _info(view: StudyView, shown: list, known: Mapping[str, Any], rule: str, top: float) -> style.FigureInfo:
+def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str, top: float) -> style.FigureInfo:
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
         "with the peak von Mises stress (MPa) and the life in overrollings of the rolling cases. "
@@ -188,11 +186,11 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Any], rule: str, top
     return style.FigureInfo("sn_diagram", caption, " ".join(t for t in texts if t))
 
 
-def _scatter_words(known: Mapping[str, Any], names: Points) -> str:
+def _scatter_words(known: Mapping[str, Material], names: Points) -> str:
     """Say at which share of the median life one in ten has failed, for each material that gives its scatter."""
     said = []
     for name in (n for n in names if scatters(known[n])):
-        k = fatigue.woehler_exponent(curve_of(known[name]))
-        own = known[name].get("scatter_in_cycles"), known[name].get("scatter_in_stress")
+        k = known[name].woehler_exponent
+        own = known[name].scatter_in_cycles, known[name].scatter_in_stress
         said.append(f"{rounded(float(fatigue.scatter_ranges(k, *own)[0]) ** -0.5, 2)} times its median life ({name})")
     return f"By the scatter of the material, 10 % have failed at {listing(said)}." if said else ""

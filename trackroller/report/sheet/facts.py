@@ -14,8 +14,8 @@ import numpy as np
 from trackroller.damage import fatigue
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.report.flags import Flag, flags_of
-from trackroller.report.inputs import material_source
-from trackroller.report.numbers import life, number, rounded
+from trackroller.report.inputs import as_material, material_source
+from trackroller.report.numbers import life, rounded
 from trackroller.report.sheet.rows import (
     Row,
     input_row,
@@ -32,10 +32,9 @@ from trackroller.study.provenance import versions
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.materials import MaterialDatabase
+    from trackroller.materials import Material
 
 BODIES = ("roller", "guide")
-PROBABILITIES = (0.1, 0.5, 0.9)
 ON_SURFACE = 1e-6  # a peak less deep than this share of the patch lies on the surface
 CONTACT_ROWS = (  # variable, words
     ("normal_force", "normal force F_N"),
@@ -99,25 +98,23 @@ class Facts:
     versions: str
 
 
-def collect(ds: xr.Dataset, database: MaterialDatabase | None = None) -> Facts:
+def collect(ds: xr.Dataset) -> Facts:
     """Return the facts of a solved case.
 
     Parameters
     ----------
     ds : xarray.Dataset
         Result of `trackroller.solve` for one case.
-    database : MaterialDatabase, optional
-        Materials for the search of the limits; the built-in ones and the user's own if not given.
 
     Raises
     ------
     InputError
         If `ds` is not the result of one case.
     """
-    inputs, materials = inputs_of(ds), materials_of(ds)
+    inputs, stored = inputs_of(ds), materials_of(ds)
+    materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
     regime = REGIMES[int(ds["regime"])]
-    model = str(ds.attrs["contact_model"])
-    found = limits(case_of_result(ds), model, database)
+    found = limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
     lives = _lives(ds, inputs, materials)
     return Facts(
@@ -125,7 +122,7 @@ def collect(ds: xr.Dataset, database: MaterialDatabase | None = None) -> Facts:
         regime=regime,
         reason=str(ds["reason"].item()) if "reason" in ds else "",
         inputs=[input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
-        materials=body_materials(materials),
+        materials=body_materials(stored),
         contacts=contacts,
         whole=quantity_rows(ds, WHOLE_ROWS),
         lives=lives,
@@ -141,7 +138,7 @@ def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str
     """Return head, values and source of each material, once if both bodies are of the same."""
     roller, guide = (materials[f"{body}_material"] for body in BODIES)
     told = [("roller and guide", roller)] if roller == guide else [("roller", roller), ("guide", guide)]
-    return [(head, material_rows(values), material_source(values)) for head, values in told]
+    return [(head, material_rows(as_material(values)), material_source(values)) for head, values in told]
 
 
 def command_of(ds: xr.Dataset) -> str:
@@ -149,71 +146,58 @@ def command_of(ds: xr.Dataset) -> str:
     words = ["trackroller", "solve"]
     for name, value in inputs_of(ds).items():
         if value is not None and not is_default(name, value):
-            text = (
-                json.dumps(value) if isinstance(value, Mapping) else f"{value:g}" if isinstance(value, float) else value
-            )
-            exact = not isinstance(value, float) or float(text) == value
-            words += ["--set", f"{name}={text if exact else repr(value)}"]
+            text = json.dumps(value) if isinstance(value, Mapping) else str(value).removesuffix(".0")
+            words += ["--set", f"{name}={text}"]
     for name in ("contact_model", "spin_model", "accuracy", "normal", "life_rule"):
         if ds.attrs.get(name):
             words += ["--set", f"{name}={ds.attrs[name]}"]
     return " ".join(shlex.quote(word) for word in words)
 
 
-def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Mapping[str, Any]]) -> ContactFacts:
+def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Material]) -> ContactFacts:
     own = ds.sel(contact=which)
     rows = quantity_rows(own, CONTACT_ROWS)
     bodies = []
     if "peak_stress" in own:
-        bodies = [_body(own.sel(body=body), body, materials[f"{body}_material"]) for body in BODIES]
+        bodies = [_body(own.sel(body=body), body, materials[body]) for body in BODIES]
     carries = "normal_force" not in own or bool(np.isfinite(float(own["normal_force"])))
     return ContactFacts(which, carries, rows, [b for b in bodies if math.isfinite(b.peak)])
 
 
-def _body(own: xr.Dataset, body: str, material: Mapping[str, Any]) -> BodyFacts:
-    peak, strength = float(own["peak_stress"]), material["tensile_strength"]
+def _body(own: xr.Dataset, body: str, material: Material) -> BodyFacts:
     x, y, z = (float(own[f"peak_{axis}"]) for axis in "xyz")
     surface = z <= ON_SURFACE * max(float(own.get("semi_axis_lateral", 1.0)), 1e-9)
-    depth = "on the surface" if surface else f"{number(float(f'{z:.2g}'))} mm below the surface"
-    place = f"{depth}, x = {number(float(f'{x:.2g}'))} mm, y = {number(float(f'{y:.2g}'))} mm"
-    limit = material["fatigue_strength_ratio"] * strength
-    cycles = float(own["life_cycles"]) if "life_cycles" in own else math.nan
-    hours = float(own["life_hours"]) if "life_hours" in own else math.nan
-    return BodyFacts(body, peak, place, peak / strength, peak / limit, cycles, hours)
+    depth = "on the surface" if surface else f"{rounded(z, 2)} mm below the surface"
+    place = f"{depth}, x = {rounded(x, 2)} mm, y = {rounded(y, 2)} mm"
+    peak, cycles, hours = (float(own.get(n, math.nan)) for n in ("peak_stress", "life_cycles", "life_hours"))
+    return BodyFacts(body, peak, place, peak / material.tensile_strength, peak / material.fatigue_limit, cycles, hours)
 
 
-def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Mapping[str, Any]]) -> list[Row]:
+def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]) -> list[Row]:
     """Return the life of each body, at 10, 50 and 90 % failure probability where its material has scatter."""
     rows = []
-    for body in BODIES:
-        if f"{body}_life_hours" not in ds:
-            continue
-        hours, material = float(ds[f"{body}_life_hours"]), materials[f"{body}_material"]
-        if material.get("scatter_in_cycles") or material.get("scatter_in_stress"):
-            for p in PROBABILITIES:
+    unknown = {"guide": "not known: give guide_overrollings_per_hour", "roller": "not defined in this regime"}
+    for body in (b for b in BODIES if f"{b}_life_hours" in ds):
+        hours, material = float(ds[f"{body}_life_hours"]), materials[body]
+        if material.scatter_in_cycles or material.scatter_in_stress:
+            for p in fatigue.PROBABILITIES:
                 text = life(_hours_at(ds, body, inputs, material, p))
                 rows.append(Row(f"{body}, until {100 * p:.0f} % have failed", text, "h"))
         elif math.isnan(hours):
-            rows.append(
-                Row(
-                    f"{body}, median life",
-                    "not known: give guide_overrollings_per_hour" if body == "guide" else "not defined in this regime",
-                )
-            )
+            rows.append(Row(f"{body}, median life", unknown[body]))
         else:
             rows.append(Row(f"{body}, median life (its material has no scatter)", life(hours), "h"))
     return rows
 
 
-def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Mapping, probability: float) -> float:
-    stress = ds["peak_stress"].sel(body=body).values
+def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Material, probability: float) -> float:
     cycles = fatigue.life_cycles(
-        stress,
+        ds["peak_stress"].sel(body=body).values,
         fatigue.curve_of(material),
         rule=str(ds.attrs["life_rule"]),
         failure_probability=probability,
-        scatter_cycles=material.get("scatter_in_cycles"),
-        scatter_stress=material.get("scatter_in_stress"),
+        scatter_cycles=material.scatter_in_cycles,
+        scatter_stress=material.scatter_in_stress,
     )
     if body == "guide":
         rate = inputs.get("guide_overrollings_per_hour")
@@ -241,7 +225,7 @@ def _verdict(regime: str, ds: xr.Dataset, lives: list[Row], found: Limits, input
     reserve = min(found.axial_force[1] - axial, axial - found.axial_force[0])
     if math.isfinite(reserve):
         toward = "more" if found.axial_force[1] - axial <= axial - found.axial_force[0] else "less"
-        parts.append(f"{rounded(reserve, 2)} N {toward} axial force lift a contact.")
+        parts.append(f"A contact lifts off with {rounded(reserve, 2)} N {toward} axial force.")
     return " ".join(parts)
 
 

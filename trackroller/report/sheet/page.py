@@ -10,19 +10,16 @@ from trackroller.report import html
 from trackroller.report.numbers import life, number, rounded
 from trackroller.report.sheet.drawing import drawing
 from trackroller.report.sheet.facts import collect
-from trackroller.roller.record import inputs_of
 from trackroller.study.files import write_text
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.materials import MaterialDatabase
-
 SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress")  # figures of the sheet, as far as drawn
 FULL = 150.0  # percent of a limit at the right end of a bar
 
 
-def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "", database: MaterialDatabase | None = None) -> Path:
+def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "") -> Path:
     """Write the sheet of a solved roller.
 
     Parameters
@@ -33,8 +30,6 @@ def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "", database: Mate
         The HTML file to write; it stands alone.
     name : str
         Head of the sheet.
-    database : MaterialDatabase, optional
-        Materials for the search of the limits; the built-in ones and the user's own if not given.
 
     Returns
     -------
@@ -46,15 +41,14 @@ def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "", database: Mate
     InputError
         If `ds` is not the result of one case.
     """
-    write_text(Path(path), render(ds, name, database))
+    write_text(Path(path), render(ds, name))
     return Path(path)
 
 
-def render(ds: xr.Dataset, name: str = "", database: MaterialDatabase | None = None) -> str:
+def render(ds: xr.Dataset, name: str = "") -> str:
     """Return the sheet as HTML text; see `write_sheet`."""
-    inputs_of(ds)
     content = {
-        "facts": collect(ds, database),
+        "facts": collect(ds),
         "name": name or "Track roller",
         "drawing": drawing(ds) if "normal_force" in ds else "",
         "figures": _figures(ds),
@@ -70,17 +64,14 @@ def bar(share: float) -> float:
 
 def _figures(ds: xr.Dataset) -> list[dict[str, str]]:
     """Draw the figures that the data set has fields for, as data URIs with captions."""
-    if not {"pressure", "von_mises_xz"} & set(map(str, ds.data_vars)) and not any(v.ndim > 2 for v in ds.values()):
+    if not any(v.ndim > 2 for v in ds.values()):
         return []
     from trackroller.report.figures.contact import plot_case  # heavy: matplotlib
 
     with tempfile.TemporaryDirectory() as folder:
         infos = {info.name: info for info in plot_case(ds, Path(folder))}
         return [
-            {
-                "caption": infos[name].caption,
-                "source": html.data_uri(Path(folder) / f"{name}.svg"),
-            }
+            {"caption": infos[name].caption, "source": html.data_uri(Path(folder) / f"{name}.svg")}
             for name in SHOWN
             if name in infos
         ]

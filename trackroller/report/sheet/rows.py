@@ -17,6 +17,7 @@ from trackroller.roller.record import is_default
 if TYPE_CHECKING:
     import xarray as xr
 
+    from trackroller.materials import Material
     from trackroller.roller.limits import Limits
 
 
@@ -49,19 +50,16 @@ def input_row(name: str, value: Any) -> Row:
     return Row(name.replace("_", " "), shown, "", is_default(name, value))
 
 
-def material_rows(values: Mapping[str, Any]) -> list[Row]:
-    """Return the values of a material, with its sources."""
-    ratio, strength = values["fatigue_strength_ratio"], values["tensile_strength"]
-    cycles = values["cycles_at_tensile_strength"], values["cycles_at_fatigue_limit"]
-    exponent = -math.log(cycles[1] / cycles[0]) / math.log(ratio)
+def material_rows(material: Material) -> list[Row]:
+    """Return the values of a material."""
     return [
-        Row("name", str(values["name"])),
-        Row("Young's modulus E", number(values["youngs_modulus"]), "MPa"),
-        Row("Poisson's ratio nu", number(values["poisson_ratio"])),
-        Row("tensile strength R_m", number(strength), "MPa"),
-        Row("fatigue limit sigma_D", number(ratio * strength), "MPa"),
-        Row("cycles at the fatigue limit N_k", number(cycles[1])),
-        Row("exponent of the S-N curve k", rounded(exponent)),
+        Row("name", material.name),
+        Row("Young's modulus E", number(material.youngs_modulus), "MPa"),
+        Row("Poisson's ratio nu", number(material.poisson_ratio)),
+        Row("tensile strength R_m", number(material.tensile_strength), "MPa"),
+        Row("fatigue limit sigma_D", number(material.fatigue_limit), "MPa"),
+        Row("cycles at the fatigue limit N_k", number(material.cycles_at_fatigue_limit)),
+        Row("exponent of the S-N curve k", rounded(material.woehler_exponent)),
     ]
 
 
@@ -76,29 +74,14 @@ def quantity_rows(ds: xr.Dataset, names: tuple[tuple[str, str], ...]) -> list[Ro
 
 def limit_rows(found: Limits, inputs: Mapping[str, Any]) -> list[Row]:
     """Return the limits of a roller in words."""
-    low, high = found.axial_force
-    drive, brake = found.motor_force
-    words = "lift-off: both contacts carry load for axial forces"
-    unknown = math.isnan(low) or math.isnan(high)
-    rows = [
-        Row(words, "not defined: no state with two loaded contacts was found")
-        if unknown
-        else Row(words, range_text(low, high), "N")
-    ]
-    if math.isfinite(drive) or math.isfinite(brake):
-        rows.append(Row("full slip: the roller does not skid for motor forces", range_text(drive, brake), "N"))
+    low, high = map(rounded, found.axial_force)
+    rows = [Row("lift-off: both contacts carry load for axial forces", f"{low} to {high}", "N")]
+    if any(map(math.isnan, found.axial_force)):
+        rows = [Row(rows[0].words, "not defined: no state with two loaded contacts was found")]
+    if any(map(math.isfinite, found.motor_force)):
+        drive, brake = map(rounded, found.motor_force)
+        rows.append(Row("full slip: the roller does not skid for motor forces", f"{drive} to {brake}", "N"))
     lock = found.self_locking_friction
-    if math.isnan(lock):
-        words = "not defined: a contact has lifted"
-    else:
-        words = (
-            "none up to 2"
-            if math.isinf(lock)
-            else f"from {rounded(lock)} (now {number(inputs['friction_coefficient'])})"
-        )
-    return [*rows, Row("self-locking by friction", words)]
-
-
-def range_text(low: float, high: float) -> str:
-    """Return a range in three figures."""
-    return f"{rounded(low)} to {rounded(high)}"
+    told = f"from {rounded(lock)} (now {number(inputs['friction_coefficient'])})"
+    special = "none up to 2" if math.isinf(lock) else "not defined: a contact has lifted"
+    return [*rows, Row("self-locking by friction", told if math.isfinite(lock) else special)]

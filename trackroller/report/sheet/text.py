@@ -9,7 +9,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from trackroller.parameters import REGIMES
+from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.flags import flags_of
 from trackroller.report.sheet.facts import Facts, collect
 from trackroller.roller.record import inputs_of, is_default, materials_of
@@ -26,7 +26,8 @@ def print_facts(ds: xr.Dataset) -> None:
     facts = collect(ds)
     console = Console(width=None if Console().is_terminal else 120, highlight=False, markup=False, soft_wrap=True)
     console.print(facts.verdict)
-    console.print(f"regime: {facts.regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
+    regime = REGIME_LABELS[int(ds["regime"])]
+    console.print(f"regime: {regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
     if facts.reason:
         console.print(f"reason: {facts.reason}")
     _print_inputs(console, facts)
