@@ -95,7 +95,8 @@ def print_status(name: str, results: Path) -> None:
         print(f"time left {duration(status.seconds_left)} on one core")
     else:
         print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
-    print("regimes   " + ", ".join(f"{count} {name}" for name, count in status.regimes.items() if count))
+    if regimes := [f"{count} {name}" for name, count in status.regimes.items() if count]:
+        print(f"regimes   {', '.join(regimes)}")
     for reason, count in status.by_reason.items():
         print(f"failed    {count} x {reason}")
     for (factor, level), count in status.by_level.items():

@@ -72,8 +72,8 @@ def _print_contacts(console: Console, facts: Facts) -> None:
     for bodies in zip(*(contact.bodies for contact in facts.contacts), strict=True):
         body = bodies[0].body
         table.add_row(f"peak stress of the {body}", *(f"{b.peak:.5g}" for b in bodies), "MPa")
-        table.add_row("  over its fatigue limit", *(f"{100 * b.of_fatigue_limit:.3g}" for b in bodies), "%")
-        table.add_row("  over its tensile strength", *(f"{100 * b.of_strength:.3g}" for b in bodies), "%")
+        table.add_row("  share of its fatigue limit", *(f"{100 * b.of_fatigue_limit:.3g}" for b in bodies), "%")
+        table.add_row("  share of its tensile strength", *(f"{100 * b.of_strength:.3g}" for b in bodies), "%")
     console.print(table)
 
 
