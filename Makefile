@@ -44,13 +44,13 @@ study: $(STAMP)
 validate: $(STAMP)
 	$(BIN)/snakemake -s validation/Snakefile --quiet rules host --cores $(CORES)
 
-# -ra lists what was skipped and why
+# -ra lists what was skipped and why; CI and make test-long run the slow tests as well
 test: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile
+	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal
 
 # without the studies of accuracy and the whole processes, which make test runs
 test-quick: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -n 2 --dist loadfile -m "not long and not slow and not slurm" $(wildcard $(PHYSICS))
+	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m "not long and not slow and not slurm" $(wildcard $(PHYSICS))
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -80,8 +80,9 @@ explorer-check:
 test-slurm: $(STAMP)
 	$(BIN)/python -m pytest -q -m slurm tests/workflow/test_workflow_slurm.py
 
-# 10,000 generated inputs, and real runs killed at random moments
+# the slow tests, 10,000 generated inputs, and real runs killed at random moments
 test-long: $(STAMP)
+	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m slow
 	TRACKROLLER_EXAMPLES=10000 $(BIN)/python -m pytest -q -n 2 tests/cli/test_refusals.py tests/cli/test_fuzz.py
 	$(BIN)/python -m validation.benchmarks.survive
 

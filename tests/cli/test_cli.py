@@ -108,6 +108,7 @@ def test_dask_workers_give_the_same_numbers(tmp_path):
     xr.testing.assert_identical(*(ds.drop_attrs() for ds in sets))
 
 
+@pytest.mark.slow
 def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
     """Scheduler and workers are processes of their own; one worker dies in mid-run, every case is there."""
     study = STUDY.replace("[0, 20, 40]", "[" + ", ".join(f"{v / 10}" for v in range(300)) + "]")

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.special import ellipe, ellipkm1
 
-from trackroller.contact.hertz import axis_ratio, exact_shape, published_shape
+from trackroller.contact.hertz import axis_ratio, contact_modulus, exact_shape, published_shape
 
 one = np.ones(1)
 
@@ -19,6 +19,14 @@ def test_circle_is_johnsons_sphere():
     assert e.semi_axis_lateral == pytest.approx(a, rel=1e-13)
     assert e.semi_axis_rolling == pytest.approx(a, rel=1e-13)
     assert e.max_pressure == pytest.approx(3 * 50 / (2 * np.pi * a * a), rel=1e-13)
+
+
+def test_both_bodies_are_springs_in_series_with_their_own_values():
+    """Each alone on a rigid body has E/(1 - nu^2); the compliances of steel and PA6 add."""
+    steel, plastic = (contact_modulus(e, nu, np.inf, 0.2) for e, nu in ((210e3, 0.3), (3e3, 0.4)))
+    assert steel == pytest.approx(210e3 / 0.91, rel=1e-14) and plastic == pytest.approx(3e3 / 0.84, rel=1e-14)
+    for bodies in ((210e3, 0.3, 3e3, 0.4), (3e3, 0.4, 210e3, 0.3)):
+        assert 1 / contact_modulus(*bodies) == pytest.approx(1 / steel + 1 / plastic, rel=1e-14)
 
 
 @given(st.floats(-12, 0))

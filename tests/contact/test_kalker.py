@@ -377,7 +377,7 @@ def test_linear_shares_of_the_traction_bound_are_kept_between_the_elements():
     assert longest == pytest.approx(1.0, rel=1e-12)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_dissipation_in_the_elements_meets_the_work_put_in_with_second_order():
     """Steady rolling stores no energy: sum tau.s = tau.w. The local sum tends to that with the elements squared."""
     ellipses = patch([0.3, 0.15, 0.4, 0.1], [0.18, 0.3, 0.1, 0.4], 700.0)
@@ -451,7 +451,7 @@ def test_the_rough_law_of_the_equilibrium_is_near_the_fine_one():
         np.testing.assert_allclose(rough.driving_force / limit, fine.driving_force / limit, atol=0.03)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_forces_converge_with_an_observed_order_between_one_and_two():
     """Of patches from full slip to four fifths of adhesion; forces over mu F_N, moments over mu F_N c."""
     ratio = np.array([0.3, 0.6, 1.0, 1.7, 3.0, 0.8, 1.2, 2.4])

@@ -321,7 +321,7 @@ def test_lift_by_shear_and_creep_by_pressure_are_reciprocal():
     assert np.sum(pressure * apart) == pytest.approx(np.sum(shear_x * creep[0] + shear_y * creep[1]), rel=1e-10)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_shear_presses_on_unlike_materials_only():
     """A margin around the patch changes nothing; the rounds settle; friction raises p_max of polyamide on steel."""
     outputs = ("forces", "contact", "friction_work")
@@ -344,7 +344,7 @@ def test_shear_presses_on_unlike_materials_only():
     assert bool(both.converged) and float(both.energy_residual) < 5e-3
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_unlike_and_like_materials_in_one_batch_keep_their_digits():
     """Rounds of the one do not move the starts of the other."""
     changes = [{"roller_material": "PA6", "motor_force": 0.0}, {"friction_coefficient": 0.2}, {"guide_material": "POM"}]
@@ -375,7 +375,7 @@ def test_the_peak_below_a_groove_edge_is_found_and_said_to_be_unknown():
     assert float(ds.error_estimate.sel(contact=1).max()) < 0.01
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
     """Waves of 0.5 um every 0.1 mm: the field that stresses come from has the pressure that is told."""
     x = np.arange(-4.5, 4.501, 0.0125)

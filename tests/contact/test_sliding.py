@@ -41,10 +41,17 @@ def brute_force(ellipse, slip, spin_model):
     ]
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("spin_model", ["concentric", "edge", "skewed"])
-@pytest.mark.parametrize("a, b, alpha, shift", [(0.35, 0.2, 0.52, 0.05), (0.2, 0.5, -0.9, -0.08)])
-@pytest.mark.long
+@pytest.mark.parametrize(
+    ("a", "b", "alpha", "shift", "spin_model"),
+    [
+        pytest.param(0.35, 0.2, 0.52, 0.05, "concentric", marks=pytest.mark.slow),
+        (0.35, 0.2, 0.52, 0.05, "edge"),
+        pytest.param(0.35, 0.2, 0.52, 0.05, "skewed", marks=pytest.mark.long),
+        (0.2, 0.5, -0.9, -0.08, "edge"),
+        pytest.param(0.2, 0.5, -0.9, -0.08, "concentric", marks=pytest.mark.slow),
+        pytest.param(0.2, 0.5, -0.9, -0.08, "skewed", marks=pytest.mark.slow),
+    ],
+)
 def test_resultants_and_power_match_adaptive_quadrature(a, b, alpha, shift, spin_model):
     """Column integration agrees with a nested adaptive quadrature of the same slip field to 1e-5."""
     ellipse, slip = patch(a, b, alpha, shift)

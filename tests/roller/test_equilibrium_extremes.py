@@ -118,7 +118,7 @@ def test_a_contact_lifts_at_a_stated_share_of_the_load_and_once(friction):
     assert least == pytest.approx(1e-8 * (200 + lift * low), rel=1e-2)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_converged_says_whether_the_force_of_a_roller_far_smaller_than_its_patch_is_known():
     """The transmitted force in other units differs by no more than the residual says, over what friction can give."""
     cases = random_extremes(1500, 11)

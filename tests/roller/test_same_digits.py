@@ -19,7 +19,7 @@ print(hashlib.sha256(b"".join(found[n].values.tobytes() for n in sorted(found.da
 """
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_first_process_of_a_fresh_place_finds_the_digits_of_later_ones(tmp_path):
     env = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "NUMBA_NUM_THREADS": "1"}
     told = [

@@ -29,6 +29,7 @@ def files(tmp_path_factory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("cf")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
+        patch.setattr("trackroller.report.figures.study.draw_all", lambda *_: [])  # figures are no netCDF files
         for name, text in STUDIES.items():
             Path(f"{name}.yaml").write_text(
                 f"name: {name}\nbase: {{motor_force: 0}}\ncontact_model: sliding\naccuracy: preview\n{text}"

@@ -121,6 +121,7 @@ def test_results_carry_their_expected_error():
     assert ds.life_cycles.attrs["expected_relative_error"] > ds.peak_stress.attrs["expected_relative_error"]
 
 
+@pytest.mark.slow
 def test_tolerances_hold_on_a_fresh_sample():
     """At most one case in fifty exceeds its tolerance, for forces and peaks; benchmarks/tolerance.py has more."""
     cases = sample(40, seed=4711)
@@ -142,6 +143,7 @@ def test_split_pole_is_where_the_slip_of_the_circle_vanishes():
     assert pole_split(*(np.array([v]) for v in (5.0, sine, cosine, radius, shift)))[0] == np.inf
 
 
+@pytest.mark.slow
 def test_measurement_runs_from_parts_to_page(tmp_path, monkeypatch):
     """Two designs through all parts, files, summary, figures and report; orders come out as they must."""
     monkeypatch.setattr(tradeoff_settings, "ELEMENTS", {"kalker": (8, 12), "fastsim": (10, 20, 40)})
