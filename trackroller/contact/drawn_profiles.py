@@ -84,24 +84,15 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
     if told["frame"] == "contact":
         wide = x[-1] - x[0]
         if not NARROWEST < wide / guide_radius < WIDEST:
-            raise ShapeError(
-                body,
-                f"points over {wide:.4g} mm",
-                f"{NARROWEST * guide_radius:.4g} to "
-                f"{WIDEST * guide_radius:.4g} mm, beside a guide_profile_radius of {guide_radius:g} mm",
-                "Give x and z in mm.",
-            )
+            allowed = f"{NARROWEST * guide_radius:.4g} to {WIDEST * guide_radius:.4g} mm{_beside(guide_radius)}"
+            raise ShapeError(body, f"points over {wide:.4g} mm", allowed, "Give x and z in mm.")
         return _flat_enough(drawn(x, out * z, noise), body, guide_radius)
     if side == 2 and np.count_nonzero(x <= 0) >= FEWEST:
         x, z = -x[::-1], z[::-1]
     x, z = x[x >= 0], z[x >= 0]
     if x.size < FEWEST:
-        raise ShapeError(
-            body,
-            f"{x.size} points with x >= 0",
-            f"at least {FEWEST} on the side of a contact",
-            "In frame: section x = 0 is the middle of the guide; see also frame: contact.",
-        )
+        remedy = "In frame: section x = 0 is the middle of the guide; see also frame: contact."
+        raise ShapeError(body, f"{x.size} points with x >= 0", f"at least {FEWEST} on the side of a contact", remedy)
     nominal = guide_radius * math.sin(alpha)
     u, w = x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
     u, w = _single_valued(u, w)
@@ -109,15 +100,18 @@ def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: fl
     # `place` is the distance from the middle of the guide, which compares with that of the nominal contact.
     place = apex * math.cos(alpha) + float(np.interp(apex, u, w)) * math.sin(alpha)
     if not nominal / ASTRAY < place < nominal * ASTRAY:
-        raise ShapeError(
-            body,
-            f"a curve that is inclined by the contact angle {place:.4g} mm from the middle",
+        given = f"a curve that is inclined by the contact angle {place:.4g} mm from the middle"
+        allowed = (
             f"{nominal / ASTRAY:.4g} to {nominal * ASTRAY:.4g} mm: the nominal contact lies "
-            f"guide_profile_radius sin(contact_angle) = {nominal:.4g} mm from it",
-            "Give x and z in mm, x = 0 in the middle, and the nominal radius near the drawn one; or use "
-            "frame: contact.",
+            f"guide_profile_radius sin(contact_angle) = {nominal:.4g} mm from the middle"
         )
+        remedy = "Give x and z in mm, x = 0 in the middle, and a nominal radius near the drawn one; or frame: contact."
+        raise ShapeError(body, given, allowed, remedy)
     return _flat_enough(drawn(u - apex, out * w, noise), body, guide_radius)
+
+
+def _beside(guide_radius: float) -> str:
+    return f", beside a guide_profile_radius of {guide_radius:g} mm"
 
 
 def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSection:
@@ -125,13 +119,9 @@ def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSe
     low, high = shape.limits
     if high - low > NARROWEST * guide_radius:
         return shape
-    raise ShapeError(
-        body,
-        f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact",
-        f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least, beside a "
-        f"guide_profile_radius of {guide_radius:g} mm",
-        "Give x and z in mm. If the points are noisy, give `smooth`.",
-    )
+    given = f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact"
+    allowed = f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least{_beside(guide_radius)}"
+    raise ShapeError(body, given, allowed, "Give x and z in mm. If the points are noisy, give `smooth`.")
 
 
 def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -175,19 +165,14 @@ def _nowhere_parallel(u, w, body: str, alpha: float, smooth: tuple | None = None
     low, high = (round(float(v), 3) + 0.0 for v in (lean.min(), lean.max()))
     wanted = f"one that is somewhere inclined by the contact angle of {angle:.4g} deg"
     if smooth is not None and points.min() <= angle <= points.max():
-        return ShapeError(
-            f"{body}.smooth",
-            smooth[0],
-            f"less: smoothed so, the curve is inclined by {low:.4g} to "
-            f"{high:.4g} deg only, and {wanted} is needed (the points are)",
-            "Give the standard deviation of the noise in mm, some 0.001, or 'auto'.",
+        allowed = (
+            f"less: the smoothed curve is inclined by {low:.4g} to {high:.4g} deg, the points reach {angle:.4g} deg"
         )
-    upside_down = points.min() <= -angle <= points.max()
-    remedy = (
-        "The curve is inclined the other way round: z counts from the guide towards the roller's axis."
-        if upside_down
-        else "Draw more of it, or use frame: contact."
-    )
+        remedy = "Give the standard deviation of the noise in mm, for example 0.001, or 'auto'."
+        return ShapeError(f"{body}.smooth", smooth[0], allowed, remedy)
+    remedy = "Draw more of it, or use frame: contact."
+    if points.min() <= -angle <= points.max():
+        remedy = "The curve is inclined the other way round: z counts from the guide towards the roller's axis."
     return ShapeError(body, f"a curve inclined by {low:.4g} to {high:.4g} deg", wanted, remedy)
 
 
@@ -248,19 +233,17 @@ def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> 
     lateral = found.lateral(x)
     first, depth = float(x[np.argmin(lateral)]), float(-lateral.min())
     if depth > INTERLOCK * guide_radius:
-        raise ShapeError(
-            body,
-            f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward",
-            "shapes that touch at the nominal contact and overlap by no more than load and wear can close",
-            "Compare both profiles, and the radius of a profile that is not drawn, beside that point." + more,
-        )
+        given = f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward"
+        allowed = "shapes that touch at the nominal contact and overlap by no more than load and wear can close"
+        remedy = "Compare both profiles, and the radius of a profile that is not drawn, beside that point."
+        raise ShapeError(body, given, allowed, remedy + more)
     if depth > FIRST * guide_radius and abs(first) > ASIDE * guide_radius:
-        raise ShapeError(
-            body,
-            f"shapes that touch {first:.3g} mm outward of the nominal contact, {depth:.3g} mm before they touch there",
-            f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it, because all lever arms refer to it",
-            "Make the groove wider than the guide there, or correct contact_angle and the nominal radii." + more,
+        given = (
+            f"shapes that touch {first:.3g} mm outward of the nominal contact, {depth:.3g} mm before they touch there"
         )
+        allowed = f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it, because all lever arms refer to it"
+        remedy = "Make the groove wider than the guide there, or correct contact_angle and the nominal radii."
+        raise ShapeError(body, given, allowed, remedy + more)
 
 
 def treats_sides_alike(text: str) -> bool:
