@@ -19,7 +19,7 @@ Block = tuple[str, Any]
 
 
 def markdown(content: Sequence[Block], made_by: str, folder: str = "figures") -> str:
-    """The page as Markdown with figures from a folder beside it."""
+    """Return the page as Markdown with figures from a folder beside it."""
     lines = [f"<!-- {made_by}; do not edit -->"]
     for kind, value in content:
         if kind in ("h1", "h2", "h3"):
@@ -47,7 +47,7 @@ _CSS = (
 
 
 def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
-    """The page as one HTML file that holds its figures."""
+    """Return the page as one HTML file that holds its figures."""
     body = []
     for kind, value in content:
         if kind in ("h1", "h2", "h3", "p"):

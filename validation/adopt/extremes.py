@@ -19,7 +19,7 @@ MADE_BY = "made by validation/adopt/extremes.py from docs/data/extremes.json"
 
 
 def page() -> str:
-    """The page from the kept data."""
+    """Return the page from the stored data."""
     kept = json.loads(KEPT.read_text(encoding="utf-8"))
     shown = shortened(blocks(kept["record"], kept["figures"]), LEFT_OUT, "docs/data/extremes.json")
     return markdown(shown, MADE_BY, PICTURES)

@@ -19,7 +19,7 @@ MADE_BY = "made by validation/adopt/paper.py from validation/paper/paper_results
 
 
 def page() -> str:
-    """The page from the data in the repository."""
+    """Return the page from the data in the repository."""
     figures = json.loads((DATA / "paper_figures.json").read_text(encoding="utf-8"))
     return markdown(blocks(stored(), figures), MADE_BY, PICTURES)
 

@@ -27,7 +27,7 @@ SPINS = (0.0, 0.2, 0.5, 10.0)
 
 
 def solved(accuracy: str) -> xr.Dataset:
-    """All rollers with both models, as a study gathers them."""
+    """Solve all rollers with both models and gather them as a study does."""
     rows = list(itertools.product(FRICTIONS, ANGLES, DISTANCES, LOADS))
     inputs = {
         "friction_coefficient": [r[0] for r in rows],
@@ -58,14 +58,14 @@ def cell(e: np.ndarray) -> str:
 
 
 def table(title: str, heads: list[str], rows: list[tuple[str, list[str]]]) -> None:
-    """A Markdown table."""
+    """Return a Markdown table."""
     print(f"\n{title}\n\n|  | {' | '.join(heads)} |\n|{'---|' * (len(heads) + 1)}")
     for name, cells in rows:
         print(f"| {name} | {' | '.join(cells)} |")
 
 
 def main() -> None:
-    """Prints the tables."""
+    """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--accuracy", default="standard")
     paired = ladder.pairs(solved(parser.parse_args().accuracy))

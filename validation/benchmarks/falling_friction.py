@@ -39,7 +39,7 @@ REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 
 
 def laws() -> list[dict[str, Any]]:
-    """Laws of every kind that fall to 0.3 to 0.9; tables with a plateau, and with a rise before the fall."""
+    """Return laws of every kind that fall to 0.3 to 0.9, some with a plateau or with a rise before the fall."""
     found: list[dict[str, Any]] = []
     for lowest in (0.3, 0.5, 0.7, 0.9):
         middle = 0.5 * (1.0 + lowest)
@@ -109,7 +109,7 @@ def _followed_group(table: CaseTable, model: str, accuracy: str) -> tuple[np.nda
 
 
 def measured(cases: list[tr.Case], model: str, accuracy: str, compare: bool) -> dict[str, Any]:
-    """Numbers of one model at one accuracy."""
+    """Return the numbers of one model at one accuracy."""
     options: dict[str, Any] = {"contact_model": model, "accuracy": accuracy, "outputs": ("forces", "friction_work")}
     start = time.process_time()
     ds = tr.solve(cases, **options)
@@ -142,7 +142,7 @@ def measured(cases: list[tr.Case], model: str, accuracy: str, compare: bool) -> 
 
 
 def compared(cases: list[tr.Case], ds: Any, model: str, accuracy: str) -> dict[str, Any]:
-    """How many took another balance than the one followed from constant friction, and than their neighbours."""
+    """Count balances other than the one followed from constant friction, and other than those of the neighbours."""
     options: dict[str, Any] = {"contact_model": model, "accuracy": accuracy, "outputs": ("forces",)}
     w = measures(cases, ds.rolling_radius_shift.values)
     rolls = ds.regime.values == ROLLING
@@ -169,7 +169,7 @@ def _told(cases: list[tr.Case], ds: Any) -> np.ndarray:
 
 
 def measures(cases: list[tr.Case], shift: np.ndarray) -> np.ndarray:
-    """Slips as w in (-1, 1), in which the torque is nearly linear."""
+    """Return slips as w in (-1, 1), in which the torque is nearly linear."""
     scene = stages.prepare(to_table(cases, None), Options(outputs=("forces",), contact_model="sliding"))
     return Roller(scene.loads, scene.model.law, np.arange(len(cases))).w_of(shift)
 

@@ -1,4 +1,4 @@
-"""What the exact theory costs over full sliding, and how exact it is.
+"""Measure the cost of the exact theory relative to full sliding, and its error.
 
     python -m validation.benchmarks.kalker_cost [--cases N] [--seed S] [--finer ELEMENTS] [--skip-accuracy]
 

@@ -1,4 +1,4 @@
-"""A large study through the real workflow, each step in a process of its own: CPU time and peak of memory.
+"""Run a large study through the real workflow, each step in a separate process: CPU time and peak of memory.
 
     python -m validation.benchmarks.million [BASE_SAMPLES] [real] [keep=FOLDER]
 
@@ -89,7 +89,7 @@ def measured(words: list[str], place: Path) -> tuple[float, float, float]:
 
 
 def prepare(place: Path, base_samples: int) -> None:
-    """The workflow and the study in a folder."""
+    """Put the workflow and the study into a folder."""
 
     for part in ("workflow", "profiles", "config"):
         shutil.copytree(ROOT / part, place / part, dirs_exist_ok=True)
@@ -100,7 +100,7 @@ def prepare(place: Path, base_samples: int) -> None:
 
 
 def main() -> None:
-    """All steps, one line each."""
+    """Run all steps and print one line for each."""
     words = sys.argv[1:]
     if words[:1] == ["step"]:
         return {"plan": plan, "hand_out": hand_out}[words[1]]()

@@ -24,7 +24,7 @@ from trackroller.roller.accuracy import PRESETS
 
 
 def random_patches(n: int, seed: int, slenderness: tuple[float, float] = (1.0, 50.0)) -> tuple[np.ndarray, np.ndarray]:
-    """Rows of `patch_rows` (n, 12) of area pi, and Poisson's ratios (n, 2) of roller and guide."""
+    """Return rows of `patch_rows` (n, 12) of area pi, and Poisson's ratios (n, 2) of roller and guide."""
     rng = np.random.default_rng(seed)
     ratio = np.exp(rng.uniform(math.log(slenderness[0]), math.log(slenderness[1]), n) * rng.choice([-1, 1], n))
     a, b = np.sqrt(ratio), 1 / np.sqrt(ratio)

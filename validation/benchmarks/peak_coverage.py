@@ -28,14 +28,14 @@ LEVELS = (50, 90, 95, 99, 99.9, 100)
 
 
 def random_material(rng: np.random.Generator) -> Any:
-    """A material of the database, or one time in three one with any stiffness and Poisson's ratio."""
+    """Return a material of the database or, one time in three, one with random stiffness and Poisson's ratio."""
     if rng.random() < 2 / 3:
         return str(rng.choice(DATABASE))
     return {"like": DATABASE[0], "youngs_modulus": 10 ** rng.uniform(3.3, 5.4), "poisson_ratio": rng.uniform(0.0, 0.5)}
 
 
 def random_case(rng: np.random.Generator) -> tr.Case:
-    """One case; raises `InputError` where the drawn surfaces conform or interlock."""
+    """Return one case; raise `InputError` where the drawn surfaces conform or interlock."""
     load, guide, alpha = 10 ** rng.uniform(0, 3), 10 ** rng.uniform(0.3, 1.3), rng.uniform(10, 80)
     rolling = 10 ** rng.uniform(0.7, 1.7)
     groove = -guide * (1 + 10 ** rng.uniform(-2, 0.5))
@@ -86,7 +86,7 @@ def compare(standard: Any, reference: Any) -> dict[str, np.ndarray]:
 
 
 def summary(peaks: dict[str, np.ndarray], keep: np.ndarray) -> dict[str, Any]:
-    """Shares and percentiles over the cases `keep` (n,) that have a peak at all."""
+    """Return shares and percentiles over the cases `keep` (n,) that have a peak."""
     present = peaks["present"] & keep[:, None, None]
     rows = present.any(axis=(1, 2))
     if not rows.any():
@@ -117,14 +117,14 @@ def summary(peaks: dict[str, np.ndarray], keep: np.ndarray) -> dict[str, Any]:
 
 
 def percentiles(values: np.ndarray) -> dict[str, float]:
-    """Percentiles that are values of the sample, so that an infinite one spoils only its own."""
+    """Return percentiles that are values of the sample, so that an infinite value changes no other percentile."""
     return {f"{p:g}": float(v) for p, v in zip(LEVELS, np.percentile(values, LEVELS, method="higher"), strict=True)}
 
 
 def worst_cases(
     cases: list[tr.Case], peaks: dict[str, np.ndarray], validity: np.ndarray, keep: np.ndarray, count: int = 5
 ) -> list[dict[str, Any]]:
-    """The cases of `keep` with the largest error of a peak, whole enough to be solved again."""
+    """Return the cases of `keep` with the largest error of a peak, with all inputs to solve them again."""
     error = np.where(peaks["present"] & keep[:, None, None], np.abs(peaks["error"]), -1.0).reshape(len(cases), -1)
     rows = np.argsort(-error.max(axis=1), kind="stable")[:count]
     listed = []
@@ -176,7 +176,7 @@ def measure(n: int, seed: int) -> dict[str, Any]:
 
 
 def printable(value: Any) -> Any:
-    """The same with numbers JSON knows: infinities and NaN as words."""
+    """Return the record with infinities and NaN as words, because JSON has no such numbers."""
     if isinstance(value, dict):
         return {k: printable(v) for k, v in value.items()}
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Plain NumPy transcription of the paper's stress calculation, eqs. (1)-(6): what our speed is measured against.
+"""Transcribe the paper's stress calculation, eqs. (1)-(6), to plain NumPy as the reference for speed.
 
 Written from the equations of Wenzel et al., Appl. Mech. 2022, 3, 692-704, and not from any program: the derivatives of
 Omega come from SymPy (as in the paper), are evaluated on n x n surface points, weighted with the tractions and
@@ -59,7 +59,7 @@ STYLES = ("printed", "reused", "shared")
 
 @cache
 def derivatives_of_omega() -> dict:
-    """Functions of (x - xi, y - eta, z, rho): each derivative of Omega, eqs. (2)-(3), by its orders in x, y, z."""
+    """Return functions of (x - xi, y - eta, z, rho): the derivatives of Omega, eqs. (2)-(3), by orders in x, y, z."""
 
     x, y, z = sp.symbols("x y z", real=True)
     name = sp.Symbol("rho", positive=True)
@@ -74,7 +74,7 @@ def derivatives_of_omega() -> dict:
 
 @cache
 def shared_derivatives():
-    """One function of (x - xi, y - eta, z) giving all derivatives in the order of _ORDERS."""
+    """Return one function of (x - xi, y - eta, z) that gives all derivatives in the order of _ORDERS."""
 
     x, y, z = sp.symbols("x y z", real=True)
     rho = sp.sqrt(x**2 + y**2 + z**2)
@@ -152,7 +152,7 @@ def equivalent(stress: np.ndarray) -> float:
 
 
 def search_box(contact: Contact) -> list[tuple[float, float]]:
-    """Bounds of the search: the patch, from 1.5 grid steps (nearer the sums break down) to its half-width deep."""
+    """Return the bounds of the search: the patch; in depth from 1.5 grid steps to its half width."""
     x, y = contact.x, contact.y
     deepest = max(x[-1] - x[0], y[-1] - y[0]) / 2
     start = 1.5 * max(x[1] - x[0], y[1] - y[0])
@@ -185,7 +185,7 @@ def peak_by_differential_evolution(contact: Contact, seed: int = 1, style: str =
 
 
 def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
-    """How many evaluations the search takes, counted on the same field evaluated with our own kernels (quick)."""
+    """Count the evaluations of the search on the same field, evaluated with our faster kernels."""
 
     loads = corner_loads(contact.x, contact.y, np.stack([contact.q_x, contact.q_y, contact.q_z], -1))
 
@@ -262,7 +262,7 @@ def time_transcription(
     style: str = "printed",
     full: bool = False,
 ) -> dict:
-    """Seconds the transcription needs for the peaks of one case (both contacts, one body each).
+    """Return the seconds that the transcription needs for the peaks of one case (both contacts, one body each).
 
     Times `sample` evaluations at random points of each contact and multiplies by the evaluations the search takes
     (`full=True` runs the search itself instead). SymPy's derivation is not counted.

@@ -1,4 +1,4 @@
-"""Time and memory of the solver against the number of cases and against accuracy.
+"""Measure time and memory of the solver against the number of cases and against accuracy.
 
     python -m validation.benchmarks.scaling [--largest N] [--figure [FOLDER]]
 
@@ -74,7 +74,7 @@ def measure_here(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
 
 
 def measure(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
-    """The same in a fresh process."""
+    """Measure in a fresh process."""
     task = json.dumps({"n": n, "outputs": outputs, "accuracy": accuracy})
     done = subprocess.run(
         [sys.executable, str(Path(__file__).resolve()), "--one", task], stdout=subprocess.PIPE, text=True, check=True
@@ -147,7 +147,7 @@ def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folde
 
 
 def linear(by_size: list[dict[str, Any]]) -> bool:
-    """Is the exponent of the complete cases 1 within 0.1?"""
+    """Return True if the exponent of the complete cases is 1 within 0.1."""
     return abs(exponent([r for r in by_size if r["outputs"] == "complete"]) - 1) <= 0.1
 
 

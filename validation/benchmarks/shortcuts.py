@@ -17,7 +17,7 @@ OUTPUTS = ("forces", "contact", "peak_stress", "life")
 
 
 def scenes(n: int) -> dict[str, tuple[list[dict], dict]]:
-    """Cases and options of each scene; n cases each."""
+    """Return the n cases and the options of each scene."""
     rng = np.random.default_rng(1)
     friction = rng.uniform(0.05, 0.4, n)
     plain = [

@@ -1,4 +1,4 @@
-"""What the division in the stable form of eq. (21) costs the stress kernels.
+"""Measure the time that the division in the stable form of eq. (21) adds to the stress kernels.
 
     python -m validation.benchmarks.slip_forms
 

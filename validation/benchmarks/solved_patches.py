@@ -1,4 +1,4 @@
-"""How `normal="halfspace"` compares with `normal="hertz"` where Hertz's theory is exact: parabolas, by ellipticity.
+"""Compare `normal="halfspace"` with `normal="hertz"` where Hertz's theory is exact: parabolas, by ellipticity.
 
     python -m validation.benchmarks.solved_patches [--cases N] [--seed S] [--accuracy A] [--model M] [--circles]
 
@@ -26,7 +26,7 @@ OUTPUTS = ("forces", "contact", "peak_stress", "friction_work")
 
 
 def as_parabolas(case: tr.Case) -> tr.Case:
-    """The same case with Hertz's approximation of both circles."""
+    """Return the same case with Hertz's approximation of both circles."""
     drawn = {name: {"parabola": getattr(case, f"{name}_radius")} for name in ("guide_profile", "roller_profile")}
     return tr.Case(**{**case.as_dict(), **drawn})
 

@@ -40,7 +40,7 @@ def load_study(n: int, seed: int = 1) -> list[tr.Case]:
 
 
 def geometry_study(n: int, seed: int = 2) -> list[tr.Case]:
-    """Every curvature is new."""
+    """Return cases in which every curvature differs."""
     rng = np.random.default_rng(seed)
     return [
         tr.Case(
@@ -59,7 +59,7 @@ def geometry_study(n: int, seed: int = 2) -> list[tr.Case]:
 def rate(
     cases: list[tr.Case], outputs: tuple[str, ...], accuracy: str = "standard", repeats: int = 3
 ) -> dict[str, float]:
-    """Cases per second, and processor time of a case over all threads [ms]; the best of `repeats`."""
+    """Return cases per second and processor time of a case over all threads [ms], the best of `repeats`."""
     times, cpu = [], []
     for _ in range(repeats):
         start, start_cpu = time.perf_counter(), time.process_time()

@@ -75,7 +75,7 @@ KILLS = [
 
 
 def start(place: Path, how: str) -> subprocess.Popen:
-    """A run in a session of its own."""
+    """Start a run in a session of its own."""
     words = (
         [TOOLS / "snakemake", "--cores", "2", "--nocolor"]
         if how == FLOW
@@ -97,7 +97,7 @@ def members(session: int) -> dict[int, str]:
 
 
 def workers(session: int) -> list[int]:
-    """Jobs of the workflow, or dask's worker processes."""
+    """Return the jobs of the workflow, or dask's worker processes."""
     return [
         pid
         for pid, words in members(session).items()
@@ -111,7 +111,7 @@ def results(place: Path) -> Path:
 
 
 def finished(place: Path) -> set[bytes]:
-    """Fingerprints of the cases that are kept."""
+    """Return the fingerprints of the finished cases."""
 
     found: set[bytes] = set()
     for path in StudyFolder(results(place)).solved_files():
@@ -123,7 +123,7 @@ def finished(place: Path) -> set[bytes]:
 
 
 def moment(place: Path, phase: str, before: int) -> Callable[[], bool]:
-    """Is the wanted work going on?"""
+    """Return True while the wanted work is going on."""
     if phase == "solving":  # blocks of an unfinished chunk are there, and more of them than at the start
         return lambda: any(results(place).glob("parts/*.nc")) and marks(place, b"W") > before
     pattern = {"gathering": ".study.nc.*.tmp", "drawing": ".figures.tmp/*", "reporting": "logs/report.log"}[phase]
@@ -131,13 +131,13 @@ def moment(place: Path, phase: str, before: int) -> Callable[[], bool]:
 
 
 def marks(place: Path, mark: bytes) -> int:
-    """How many cases were begun (S) or kept (W) so far."""
+    """Count the cases that were begun (S) or kept (W) so far."""
     log = place / "solved.log"
     return log.read_bytes().count(b"\n" + mark) if log.is_file() else 0
 
 
 def solved_again(place: Path) -> int:
-    """Cases that were begun after they had been kept."""
+    """Return the cases that were begun after they had been kept."""
     kept: set[bytes] = set()
     again = 0
     for line in (place / "solved.log").read_bytes().split():
@@ -149,7 +149,7 @@ def solved_again(place: Path) -> int:
 
 
 def prepare(study: str = STUDY) -> Path:
-    """A folder with the workflow and the study."""
+    """Make a folder with the workflow and the study."""
     place = Path(tempfile.mkdtemp(prefix="survive-"))
     for part in ("workflow", "profiles", "config"):
         shutil.copytree(ROOT / part, place / part)
@@ -195,7 +195,7 @@ def kill(place: Path, how: str, whom: str, phase: str, chance: random.Random) ->
 
 
 def ride(kills: list[tuple[str, str, str]], seed: int = 1, study: str = STUDY) -> list[str]:
-    """The kills one after the other, then to the end; returns what is wrong (nothing, it is hoped)."""
+    """Run the kills one after the other and then to the end; return the errors found."""
     calm, rough = prepare(study), prepare(study)
     chance = random.Random(seed)
     wrong = []

@@ -28,7 +28,7 @@ QUANTITIES = (*FORCE_QUANTITIES, "peak_stress")
 
 
 def check(tolerances: list[float], count: int, seed: int, model: str) -> list[dict[str, Any]]:
-    """One record a tolerance: settings, share of cases within it and CPU time a case."""
+    """Return one record for each tolerance: settings, share of cases within it and CPU time of a case."""
     cases = sample(count, seed)
     reference, _ = reference_solution(cases, model, OUTPUTS)
     records = []

@@ -20,7 +20,7 @@ STILL = 1e-8  # slip over the largest that counts as none
 
 
 def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
-    """Tractions (arrows) and stick (hatched) over the patch, one row a friction and drive, one column a model.
+    """Draw tractions (arrows) and adhesion (hatched) over the patch by friction and drive (rows) and model (columns).
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ def compare(study_file: Path, out: Path) -> None:
 
 
 def write_words(study_nc: str, path: Path) -> None:
-    """What the comparison says, a line a sentence."""
+    """Write the findings of the comparison, one sentence a line."""
 
     with xr.open_dataset(study_nc) as ds:
         paired = pairs(ds)
@@ -58,7 +58,7 @@ def write_words(study_nc: str, path: Path) -> None:
 
 
 def draw_patches(case: Any, out: Path) -> list[FigureInfo]:
-    """The patches of a case by model, with their index, in the folder `out`."""
+    """Draw the patches of a case by model, with their index, in the folder `out`."""
     name = "models-patches"
     caption = "Friction, stick and dissipation across contact 1 by contact model, free and driven."
     infos = []
@@ -104,6 +104,6 @@ def patch_fields(case: Any, wanted: Sequence[tuple[float, float]] = PATCHES) -> 
 
 
 def _resampled(ds: xr.Dataset, points: dict[str, int]) -> xr.Dataset:
-    """Fields at the nearest of their own points on a grid of `points` positions."""
+    """Return fields on a grid of `points` positions, each from the nearest point of the field."""
     pick = {n: np.minimum((np.arange(m) * ds.sizes[n]) // m, ds.sizes[n] - 1) for n, m in points.items()}
     return ds.isel(pick).drop_vars([n for n in ("x", "y") if n in ds.coords])

@@ -1,4 +1,4 @@
-"""What must hold at the ends of the parameters; each check gives the largest deviation of a scene and its place."""
+"""Check what must hold at the ends of the parameters; a check gives the largest deviation of a scene and its place."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ RESIDUAL = {"sliding": 1e-10, "kalker": 1e-7, "fastsim": 1e-7}
 
 @dataclass(frozen=True)
 class Finding:
-    """Largest deviation of a check on a scene, what is tolerated, and the value of the quantity where it occurs."""
+    """Largest deviation of a check on a scene, its tolerance, and the value of the quantity where it occurs."""
 
     check: str
     deviation: float
@@ -49,7 +49,7 @@ class Finding:
 
     @property
     def holds(self) -> bool:
-        """Is the claim true?"""
+        """Return True if the claim holds."""
         return bool(self.deviation <= self.tolerance)
 
 
@@ -81,7 +81,7 @@ def run_cases(cases: Any, model: str, accuracy: str) -> tuple[xr.Dataset, int]:
 
 
 def run_scene(scene: Scene, model: str, accuracy: str) -> Run:
-    """The scene, solved."""
+    """Solve the scene."""
     scene = located(scene, model, accuracy)
     result, warned = run_cases(scene.cases, model, accuracy)
     return Run(scene, model, accuracy, result, warned)
@@ -106,7 +106,7 @@ def finite(run: Run) -> Finding:
 
 
 def solved(run: Run) -> Finding:
-    """Cases without a solution that are not called lift-off."""
+    """Return the cases without a solution whose regime is not lift-off."""
     return _worst(run, "solved", (run.regime() == FAILED).astype(float), float(run.model in run.scene.reach))
 
 
@@ -240,7 +240,7 @@ def close(run: Run) -> Finding:
 
 
 def estimate(run: Run) -> Finding:
-    """Difference of the peaks from those of `reference`, over the estimated errors of both."""
+    """Return the difference of the peaks from `reference` over the estimated errors of both."""
     fine, _ = run_cases(run.scene.cases, run.model, "reference")
     x, y = _rows(run.result.peak_stress.values), _rows(fine.peak_stress.values)
     promised = _rows(run.result.error_estimate.values) + _rows(fine.error_estimate.values)
@@ -255,7 +255,7 @@ CHECKS: dict[str, Callable[[Run], Finding]] = {
 
 
 def examine(scene: Scene, model: str, accuracy: str) -> tuple[Run, list[Finding]]:
-    """The scene solved and every claim on it checked; the estimate for the sliding model only."""
+    """Solve the scene and check every claim on it; the error estimate is checked for the sliding model only."""
     run = run_scene(scene, model, accuracy)
     claims = (*scene.claims, "estimate") if model == "sliding" and accuracy == "standard" else scene.claims
     return run, [CHECKS[name](run) for name in claims]

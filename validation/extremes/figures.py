@@ -40,7 +40,7 @@ CHECKS = {
 
 
 def deviation_text(value: float) -> str:
-    """A deviation as a reader takes it in: 0, its power of ten, or infinite."""
+    """Return the text of a deviation: 0, its power of ten, or infinite."""
     if value == 0:
         return "0"
     if not math.isfinite(value):
@@ -51,7 +51,7 @@ def deviation_text(value: float) -> str:
 
 
 def draw_map(record: Record, out_dir: Path, model: str) -> FigureInfo:
-    """Scenes x checks of one contact model: largest deviation, shaded by its share of the tolerance."""
+    """Draw scenes x checks of one contact model: largest deviation, shaded by its share of the tolerance."""
     rows = [r for r in record["scenes"] if r["model"] == model]
     names = [c for c in CHECKS if any(f["check"] == c for r in rows for f in r["findings"])]
     with look():
@@ -112,7 +112,7 @@ def _cell(j: int, i: int, colour: str, hatch: str) -> Any:
 
 
 def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
-    """Regimes over axial force and friction."""
+    """Draw the regimes over axial force and friction."""
 
     data = record["map"]
     axial, friction = np.array(data["axial"]), np.array(data["friction"])
@@ -208,7 +208,7 @@ def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
 
 
 def draw_extremes(record: Record, out_dir: Path) -> list[FigureInfo]:
-    """All figures of the catalogue and their index."""
+    """Draw all figures of the catalogue and write their index."""
     infos = [draw_map(record, out_dir, m) for m in dict.fromkeys(r["model"] for r in record["scenes"])]
     infos += [draw_regimes(record, out_dir), draw_kernels(record, out_dir)]
     write_index(infos, out_dir)

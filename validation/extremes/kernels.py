@@ -61,7 +61,7 @@ def _curvature_ratio(kappa):
 
 @_digits
 def axis_ratios() -> KernelError:
-    """Axis ratio of the ellipse from 1e-6 to 1 - 1e-12: the ratio put in must come out."""
+    """Compare axis ratios from 1e-6 to 1 - 1e-12 with the ratios from which the curvatures were made."""
 
     values = (1e-6, 1e-4, 1e-3, 1e-2, 0.1, 0.5, 0.9, 1 - 1e-3, 1 - 1e-6, 1 - 1e-9, 1 - 1e-12)
     found = axis_ratio(np.array([float(_curvature_ratio(mpmath.mpf(v))) for v in values]))
@@ -87,7 +87,7 @@ def _many(value: float):
 
 
 def _on_axis(z):
-    """Stresses sigma_z and sigma_r (nu = 0.3) below a circular Hertz pressure, Johnson (3.45), z over radius."""
+    """Return sigma_z and sigma_r (nu = 0.3) below a circular Hertz pressure, Johnson (3.45), at z over the radius."""
 
     tail = 1 / (2 * (1 + z * z))
     angle = z * mpmath.atan(1 / z) if z else mpmath.mpf(0)
@@ -171,7 +171,7 @@ def far_pole() -> KernelError:
 
 
 def _corners(x, y, nu, f) -> list:
-    """Antiderivatives of Kalker's influence functions at a corner; `f` gives sqrt, asinh, log and atan."""
+    """Return antiderivatives of Kalker's influence functions at a corner; `f` gives sqrt, asinh, log and atan."""
     along_y = x * f.asinh(y / abs(x))
     along_x = y * f.asinh(x / abs(y))
     r = f.sqrt(x * x + y * y)
@@ -200,7 +200,7 @@ class _Single:
 
 
 def _influence_errors(cases) -> tuple[tuple[float, ...], float]:
-    """Errors of double evaluation at each (hx, hy, place) and the worst of single precision.
+    """Return errors of double evaluation at each (hx, hy, place) and the worst of single precision.
 
     Over the largest of the like: displacements by tractions, and by pressure.
     """
@@ -226,7 +226,7 @@ def _influence_errors(cases) -> tuple[tuple[float, ...], float]:
 
 @_digits
 def kalker_distance() -> KernelError:
-    """Kalker's influence functions of square elements from the element itself to 400 elements away."""
+    """Check Kalker's influence functions of square elements from the element itself to 400 elements away."""
     values = (0, 1, 2, 5, 10, 30, 100, 400)
     errors, single = _influence_errors([(0.05, 0.05, (v, v)) for v in values])
     return KernelError("Kalker's influence functions", "distance in elements", values, errors, 1e-9, single=single)
@@ -234,7 +234,7 @@ def kalker_distance() -> KernelError:
 
 @_digits
 def kalker_edges() -> KernelError:
-    """Kalker's influence functions of slender elements, beside the element and along its edges."""
+    """Check Kalker's influence functions of slender elements, beside the element and along its edges."""
     values = (1e-3, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e3)
     places = ((1, 0), (0, 1), (3, 2), (40, 0), (0, 40))
     found = [_influence_errors([(0.05, 0.05 * v, place) for place in places]) for v in values]

@@ -53,7 +53,7 @@ RANDOM_WORDS = (
 
 
 def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
-    """The page as headings, paragraphs, tables and figures."""
+    """Return the page as headings, paragraphs, tables and figures."""
     scenes, broken = _scenes(record), _broken(record)
     claims = [f["holds"] for row in record["scenes"] for f in row["findings"]]
     return [
@@ -106,7 +106,7 @@ def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
 
 
 def _broken(record: Record) -> list[tuple[str, ...]]:
-    """Claims that do not hold."""
+    """Return the claims that do not hold."""
     return [
         (
             row["scene"],
@@ -123,7 +123,7 @@ def _broken(record: Record) -> list[tuple[str, ...]]:
 
 
 def _scenes(record: Record) -> list[tuple[str, ...]]:
-    """Each scene once, with the models that run it."""
+    """Return each scene once, with the models that run it."""
     runs: dict[str, list[Record]] = {}
     for row in record["scenes"]:
         runs.setdefault(row["scene"], []).append(row)
@@ -164,7 +164,7 @@ def _random(r: dict[str, Any]) -> tuple[Any, ...]:
 
 
 def html(record: Record, figures: Sequence[dict[str, str]], folder: Path) -> str:
-    """One file with its figures inside, that can be sent by mail."""
+    """Return one HTML file that holds its figures and can be sent by mail."""
     return page_html(blocks(record, figures), folder, "Track rollers: at the ends of the parameters")
 
 

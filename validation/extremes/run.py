@@ -46,14 +46,14 @@ def random_record(model: str, count: int, seed: int = SEED) -> Record:
 
 
 def _small(cases: list[Record]) -> np.ndarray:
-    """Cases whose patch, judged without friction, stays below 0.3 of every radius: the model's own ground."""
+    """Return the cases whose patch, judged without friction, stays below 0.3 of every radius."""
     plain = [c | {"friction_coefficient": 0.0, "motor_force": 0.0, "axial_force": 0.0} for c in cases]
     ds = solve(plain, ("forces", "contact"), contact_model="sliding")
     return (ds.validity.values & 1 == 0) & (ds.regime.values == 0)
 
 
 def regime_map(points: int = 61) -> Record:
-    """Regimes of the base case over axial force (share of lift-off) and friction, free and braked."""
+    """Return the regimes of the base case over axial force (share of lift-off) and friction, free and braked."""
     axial, friction = np.linspace(0.0, 1.3, points), np.geomspace(0.01, 2.0, points)
     maps = {}
     for name, share in (("free rolling", 0.0), ("driven, 20 N", -20.0)):
@@ -73,7 +73,7 @@ def regime_map(points: int = 61) -> Record:
 
 
 def run(random: dict[str, int] | None = None, points: int = 61) -> Record:
-    """The whole catalogue."""
+    """Run the whole catalogue."""
     rows = []
     for scene in scenes():
         for model in scene.models:
@@ -122,7 +122,7 @@ def run(random: dict[str, int] | None = None, points: int = 61) -> Record:
 
 
 def write(record: Record, path: Path) -> None:
-    """The record as JSON, whole or not at all."""
+    """Write the record as JSON, whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.part")
     part.write_text(json.dumps(record) + "\n", encoding="utf-8")

@@ -78,7 +78,7 @@ class Scene:
 
     @property
     def claims(self) -> tuple[str, ...]:
-        """Names of the checks that apply."""
+        """Return the names of the checks that apply."""
         more = [
             name
             for name, on in (
@@ -109,7 +109,7 @@ def _material(**changes: Any) -> CaseDict:
 
 
 def _of_ellipticity(ratio: float) -> CaseDict:
-    """A case whose curvatures are in the ratio k_x/k_y, under a load that keeps the patch small."""
+    """Return a case with the curvature ratio k_x/k_y, under a load that keeps the patch small."""
     guide = 6.0 if ratio < 1 else 6.0 / ratio**0.5
     k_y = math.cos(math.radians(30.0)) / 20.0
     groove = 1.0 / (k_y * ratio - 1.0 / guide)
@@ -162,7 +162,7 @@ def _border(limit: float, steps: tuple[float, ...] = (1e-3, 1e-6, 1e-9)) -> tupl
 
 
 def scenes() -> tuple[Scene, ...]:
-    """The catalogue."""
+    """Return the catalogue."""
     return (*_friction_and_load(), *_geometry(), *_materials(), *_borders())
 
 
@@ -423,17 +423,17 @@ def scaled(case: Mapping[str, Any], length: float, modulus: float) -> CaseDict:
 
 
 def mirrored(case: Mapping[str, Any]) -> CaseDict:
-    """The case seen in a mirror: the axial force turns, contacts 1 and 2 swap."""
+    """Return the mirror image of a case: the axial force changes its sign, contacts 1 and 2 swap."""
     return dict(case) | {"axial_force": -case["axial_force"]}
 
 
 def some(names: tuple[str, ...]) -> tuple[Scene, ...]:
-    """The scenes of these names."""
+    """Return the scenes of these names."""
     return tuple(s for s in scenes() if s.name in names)
 
 
 def thinned(scene: Scene, every: int) -> Scene:
-    """The scene with every n-th case, the last included."""
+    """Return the scene with every n-th case, the last included."""
     keep = sorted({*range(0, len(scene.cases), every), len(scene.cases) - 1})
     return dataclasses.replace(
         scene, values=tuple(scene.values[i] for i in keep), cases=tuple(scene.cases[i] for i in keep)

@@ -14,7 +14,7 @@ STEPS = 30  # of the search for a place of the pole
 
 
 def located(scene: Scene, model: str, accuracy: str) -> Scene:
-    """The scene with its cases; found with the contact model where they depend on the answer."""
+    """Return the scene with its cases; where they depend on the solution, the contact model finds them."""
     if scene.build is None:
         return scene
     numbers = _border(scene, model, accuracy) if scene.pairs else _places(scene, model, accuracy)
@@ -22,7 +22,7 @@ def located(scene: Scene, model: str, accuracy: str) -> Scene:
 
 
 def _border(scene: Scene, model: str, accuracy: str) -> np.ndarray:
-    """Numbers of the cases: shares of the last number that still rolls."""
+    """Return the numbers of the cases as shares of the last number that still rolls."""
     assert scene.build is not None
     low, high = scene.span
     for _ in range(ROUNDS):
@@ -35,7 +35,7 @@ def _border(scene: Scene, model: str, accuracy: str) -> np.ndarray:
 
 
 def _places(scene: Scene, model: str, accuracy: str) -> np.ndarray:
-    """Numbers that put the spin pole of contact 1 at the places `values` over a, by the Illinois rule."""
+    """Return numbers that put the spin pole of contact 1 at the places `values` over a, by the Illinois rule."""
     assert scene.build is not None
     target = _bounded(np.asarray(scene.values))
     low, high = (np.full(target.size, v) for v in scene.span)
@@ -67,6 +67,6 @@ def _places(scene: Scene, model: str, accuracy: str) -> np.ndarray:
 
 
 def _bounded(place: np.ndarray) -> np.ndarray:
-    """Places in (-1, 1), nearly linear in the motor force."""
+    """Return places in (-1, 1), nearly linear in the motor force."""
     with np.errstate(invalid="ignore"):
         return np.where(np.isfinite(place), place / np.sqrt(1 + place * place), np.sign(place))

@@ -40,28 +40,28 @@ _FIELDS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractio
 
 @lru_cache(maxsize=1)
 def reference() -> dict[str, Any]:
-    """What the paper, the published program and CONTACT print, with their origin."""
+    """Return the numbers that the paper, the published program and CONTACT print, with their origin."""
     return json.loads(REFERENCE.read_text(encoding="utf-8"))
 
 
 def stored() -> dict[str, Any]:
-    """The numbers of `results` as they stand in the documentation."""
+    """Return the numbers of `results` that the documentation holds."""
     return json.loads(STORED.read_text(encoding="utf-8"))
 
 
 def case_of(scene: str) -> Case:
-    """The paper's example in one of `SCENES`."""
+    """Return the paper's example in one of `SCENES`."""
     return Case(**SCENES[scene])  # type: ignore[arg-type]
 
 
 @lru_cache(maxsize=8)
 def solved(scene: str, model: str, accuracy: str = "standard") -> xr.Dataset:
-    """All results of a scene with a contact model."""
+    """Return all results of a scene with a contact model."""
     return solve(case_of(scene), outputs=_FIELDS, contact_model=model, accuracy=accuracy)
 
 
 def as_published(case: Case) -> xr.Dataset:
-    """The published model with its own Hertz table and its one body of mean Poisson's ratio."""
+    """Solve with the published model: its own Hertz table and one body of mean Poisson's ratio."""
     return solve(
         case,
         outputs=("forces", "contact", "peak_stress", "life"),
@@ -93,7 +93,7 @@ def _values(ds: xr.Dataset, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def results() -> dict[str, Any]:
-    """All numbers of the page: ours by scene and model, and those of scenes the published program cannot treat.
+    """Return all numbers of the page: ours by scene and model, and scenes that the published program cannot treat.
 
     Keys: `ours` scene -> model -> quantities; `as_published` scene -> quantities with the published table;
     `inner` scene -> our stress at the published place of the peak; `limits` name -> our solution; `seconds` of a case.

@@ -30,7 +30,7 @@ def _pair(value: Any, digits: int) -> str:
 
 
 def life_factor(high: float, low: float) -> float:
-    """How many times shorter life is at the stress `high` than at `low`."""
+    """Return the life at the stress `low` over the life at the stress `high`."""
     return (high / low) ** EXPONENT
 
 
@@ -40,7 +40,7 @@ def _longer(high: float, low: float) -> str:
 
 
 def blocks(found: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Block]:
-    """The page from `paper.results` and the figures drawn."""
+    """Return the page from `paper.results` and the figures drawn."""
     by_number: dict[str, list[dict[str, str]]] = {}
     for f in figures:
         by_number.setdefault(f["name"].split("_")[1], []).append(f)
@@ -91,7 +91,7 @@ def blocks(found: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Blo
 
 
 def verdict(found: dict[str, Any]) -> list[Block]:
-    """Which published numbers hold and what the others mean for life: a table and a paragraph, of `paper.results`."""
+    """Return a table and a paragraph on which published numbers hold and what the others mean for life."""
     known, ours = reference(), found["ours"]
     free, driven = known["published_program"]["free"]["published"], ours["driven"]
     peaks = [max(c) for c in ours["free"]["sliding"]["peak_stress"]]

@@ -56,7 +56,7 @@ def row(quantity: str, against: str, ours: Sequence[Any], theirs: Sequence[Any],
 
 
 def _scale(name: str, theirs: Mapping[str, Any], friction: float) -> Any:
-    """What a deviation is divided by: friction forces may vanish, so they are taken over mu F_N."""
+    """Return the divisor of a deviation; friction forces may vanish, so their divisor is mu F_N."""
     load = max(theirs["normal_force"])
     if name in ("lateral_force", "driving_force"):
         return friction * load

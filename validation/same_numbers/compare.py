@@ -42,7 +42,7 @@ class Difference:
 
 @dataclass
 class Verdict:
-    """What the comparison found for one of the four subjects in `NAMES`."""
+    """Findings of the comparison for one of the four subjects in `NAMES`."""
 
     name: str
     arrays: int = 0
@@ -91,7 +91,7 @@ def compare(before: Archive, after: Archive, tolerance: float = 0.0) -> list[Ver
 
 
 def _compare_wording(key: str, old: np.ndarray, new: np.ndarray, verdict: Verdict) -> None:
-    """Sentences may differ, but no sentence may appear or disappear."""
+    """Compare sentences, which may change but not appear or disappear."""
     if old.shape != new.shape or np.any((old == "") != (new == "")):
         verdict.problems.append(f"{key}: sentences appear or disappear")
     elif np.any(old != new):

@@ -1,1 +1,1 @@
-"""What accuracy costs: stages and contact models measured against converged solutions over random designs."""
+"""Measure what accuracy costs: stages and contact models against converged solutions over random designs."""

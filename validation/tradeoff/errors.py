@@ -64,7 +64,7 @@ def _largest(values: np.ndarray) -> np.ndarray:
 
 
 def percentiles(errors: np.ndarray, levels: tuple[float, ...] = (50, 95, 99)) -> np.ndarray:
-    """Percentiles of the known errors that are values of the sample, so that an infinite one spoils only its own."""
+    """Return percentiles of the known errors that are values of the sample, so that inf changes no other one."""
     known = errors[~np.isnan(errors)]
     if known.size == 0:
         return np.full(len(levels), np.nan)

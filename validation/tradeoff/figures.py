@@ -53,7 +53,7 @@ _GREY = "0.25"
 
 
 def draw_all(summary: dict[str, Any], ds: xr.Dataset | None, out_dir: Path) -> list[style.FigureInfo]:
-    """Every figure the measurement allows, with their index; result: what was drawn."""
+    """Draw every figure for which there are measurements; return their index."""
     infos = []
     with style.look():
         drawn = [pareto(summary, quantity) for quantity in PARETO]
@@ -128,7 +128,7 @@ def _series(axes: Axes, found: list[Record], quantity: str, colour: Any, marker:
 
 
 def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quantity: str) -> list[tuple[float, float]]:
-    """Rings and letters of the presets; result: the points ringed."""
+    """Draw rings and letters of the presets; return the ringed points."""
     ringed: list[tuple[float, float]] = []
     for name, parts in presets.items():
         for r in (r for r in records if r["ladder"] and r["ladder"] in parts.values()):
@@ -155,7 +155,7 @@ def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quan
 
 
 def _names(axes: Axes, points: list, letters: list[tuple[float, float]]) -> None:
-    """Names beside the points where there is room, clear of marks, preset letters and other names; else left out."""
+    """Write names beside the points where there is room, away from marks, preset letters and other names."""
     axes.figure.draw_without_rendering()  # type: ignore[union-attr]
     scale = 72.0 / axes.figure.dpi
     taken = [

@@ -26,7 +26,7 @@ def cpu(work: Any, *arguments: Any, **options: Any) -> tuple[Any, float]:
 
 
 def reference_solution(cases: Sequence[Case], model: str, outputs: tuple[str, ...] = ALL) -> tuple[xr.Dataset, float]:
-    """The best known solution with its friction coefficients, and its CPU time [s] a case."""
+    """Return the best known solution with its friction coefficients, and its CPU time [s] a case."""
     solved, spent = [], 0.0
     for accuracy in references(model):
         ds, seconds = cpu(solve, list(cases), outputs=outputs, contact_model=model, accuracy=accuracy)
@@ -43,7 +43,7 @@ def reference_solution(cases: Sequence[Case], model: str, outputs: tuple[str, ..
 
 
 def measure(settings: Sequence[Setting], cases: Sequence[Case], model: str, block: int = 256) -> xr.Dataset:
-    """Errors (setting, quantity, design) and cost (setting) of complete solutions.
+    """Measure errors (setting, quantity, design) and cost (setting) of complete solutions.
 
     Settings take turns block by block, so that a busy machine troubles all alike.
     """
@@ -73,7 +73,7 @@ def _solve(setting: Setting, cases: Sequence[Case], model: str) -> xr.Dataset:
 
 
 def labelled(settings: Sequence[Setting], errors: np.ndarray, cost: np.ndarray, attrs: dict[str, Any]) -> xr.Dataset:
-    """One part of the measurement as a data set over setting, quantity and design."""
+    """Return one part of the measurement as a data set over setting, quantity and design."""
 
     def text(values: list[str]) -> tuple[str, np.ndarray]:
         return "setting", np.array(values, dtype=object)

@@ -29,7 +29,7 @@ TOLERANCES = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
 
 
 def blocks(summary: dict[str, Any], figures: Sequence[dict[str, str]]) -> list[Block]:
-    """The page as headings, paragraphs, tables and figures."""
+    """Return the page as headings, paragraphs, tables and figures."""
     sample = summary["sample"]
     counts = ", ".join(
         f"{sample[f'designs_{m}']:,} for `{m}`" for m in ("sliding", "fastsim", "kalker") if f"designs_{m}" in sample

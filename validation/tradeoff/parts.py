@@ -37,11 +37,11 @@ class Sizes:
     seed: int = SEED
 
     def names(self) -> list[str]:
-        """Names of all parts, the longest work first."""
+        """Return the names of all parts, the longest work first."""
         return [f"{model}-{k}" for model in reversed(MODELS) for k in range(self.parts[model])] + ["stages-0"]
 
     def rows(self, name: str) -> tuple[str, slice]:
-        """What a part measures: model (or `stages`) and designs."""
+        """Return model (or `stages`) and designs of a part."""
         model, _, number = name.partition("-")
         if model == "stages":
             return model, slice(0, self.stages)
@@ -50,7 +50,7 @@ class Sizes:
 
 
 def load_sizes(path: Path | str) -> Sizes:
-    """Sizes from a YAML file such as validation/config/tradeoff.yaml; raises `InputError` for anything else in it."""
+    """Return sizes from a YAML file such as validation/config/tradeoff.yaml; refuse anything else in it."""
     with Path(path).open(encoding="utf-8") as file:
         given = yaml.safe_load(file)
     if not isinstance(given, dict):
@@ -90,7 +90,7 @@ def write_part(name: str, sizes_path: str, out: str) -> None:
 
 
 def gather(parts: Sequence[xr.Dataset], cases: Sequence[Case] = ()) -> xr.Dataset:
-    """All parts in one: settings one after the other, designs along one dimension, costs as means over the designs."""
+    """Join all parts: settings one after the other, designs along one dimension, costs as means over the designs."""
     by_model: dict[str, list[xr.Dataset]] = {}
     for ds in parts:
         by_model.setdefault(str(ds.attrs["part"]).rpartition("-")[0], []).append(ds)
@@ -127,7 +127,7 @@ def _mean(group: Sequence[xr.Dataset], value: Callable[[xr.Dataset], Any]) -> An
 
 
 def write_gathered(parts: Sequence[str], sizes_path: str, out: str) -> None:
-    """Gather the parts, with the designs and what is needed to repeat them."""
+    """Gather the parts, and add the designs and the versions with which the measurement can be repeated."""
 
     sizes = load_sizes(sizes_path)
     sets = [xr.load_dataset(path) for path in parts]

@@ -1,4 +1,4 @@
-"""The fixed sample of designs for errors and costs: low-discrepancy, seeded, wider than what is built.
+"""Make the fixed sample of designs for errors and costs: low-discrepancy, seeded, wider than real designs.
 
 Loads over three decades, contact angles 10 to 80 deg, friction 0 to 1, drawn-in to flat grooves and convex rollers,
 straight, outer and inner curves, driven, free and braked,
@@ -31,7 +31,7 @@ def _material(which: float, stiffness: float, ratio: float) -> Any:
 
 
 def design_at(u: np.ndarray) -> Case:
-    """The design at a point of the unit cube, shape (15,); `InputError` where the surfaces conform or interlock."""
+    """Return the design at a point of the unit cube, shape (15,); refuse surfaces that conform or interlock."""
     load, guide, alpha = 10 ** (3 * u[0]), 10 ** (0.3 + u[1]), 10 + 70 * u[2]
     rolling = 10 ** (0.7 + u[3])
     kind, fit = u[4], u[5]

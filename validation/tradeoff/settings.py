@@ -1,4 +1,4 @@
-"""What is measured: settings of each stage and contact model, from too coarse to finer than anybody needs."""
+"""List the measured settings of each stage and contact model, from too coarse to finer than needed."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Setting:
 
 
 def accuracy_of(nodes: int = 24, coarse: int = 6, peak: PeakSettings = FINE, elements: int = 40) -> Accuracy:
-    """An accuracy made of parts, for measuring."""
+    """Return an accuracy made of parts, for measuring."""
     return Accuracy("measured", 0.0, nodes, coarse, peak, 41, 61, elements)
 
 
@@ -83,7 +83,7 @@ def floor_of(step: float) -> float:
 
 
 def searches() -> list[Setting]:
-    """Searches for the peak in full sliding."""
+    """Return the searches for the peak in full sliding."""
     found = []
     for quadrature, effort, step in SEARCHES:
         orders = QUADRATURES[quadrature]
@@ -128,7 +128,7 @@ def ellipses() -> list[Setting]:
 
 
 def elements(model: str) -> list[Setting]:
-    """Elements across the patch of a rolling contact model."""
+    """Return the numbers of elements across the patch of a rolling contact model."""
     return [
         Setting("elements", model, "elements", str(n), n, accuracy_of(elements=n), outputs=ALL, ladder={"elements": n})
         for n in ELEMENTS[model]
@@ -136,7 +136,7 @@ def elements(model: str) -> list[Setting]:
 
 
 def references(model: str) -> list[Accuracy]:
-    """Settings of the converged reference; of several, each row takes the largest peak."""
+    """Return settings of the converged reference; of several, each row takes the largest peak."""
     if model == "sliding":
         return [accuracy_of(48, 8, peak) for peak in REFERENCE_SEARCHES]
     return [accuracy_of(48, 8, REFERENCE_SEARCHES[1], REFERENCE_ELEMENTS[model])]

@@ -48,7 +48,7 @@ class Patches:
 
 
 def patches_of(cases: Sequence[Case]) -> Patches:
-    """Patches of contact 1 of those designs that roll."""
+    """Return the patches of contact 1 of those designs that roll."""
     ds = solve(list(cases), outputs=ALL, contact_model="sliding", accuracy=accuracy_of(48, 8, REFERENCE_SEARCHES[1]))
     rolls = np.flatnonzero(ds.regime.values == 0)
     ds, table = ds.isel(case=rolls), to_table([cases[int(i)] for i in rolls])
@@ -62,7 +62,7 @@ def patches_of(cases: Sequence[Case]) -> Patches:
 
 
 def measure_stages(cases: Sequence[Case]) -> xr.Dataset:
-    """All single stages: errors (setting, quantity, design) and CPU time a patch or case."""
+    """Measure all single stages: errors (setting, quantity, design) and CPU time of a patch or case."""
     patches = patches_of(cases)
     sliding.tractions(patches.ellipse, patches.slip, patches.friction, points=5)  # compiled before the clock runs
     found = [*ellipse_stage(cases), *traction_stage(patches), *stress_stage(patches), *grid_search_stage(patches)]
@@ -74,7 +74,7 @@ def measure_stages(cases: Sequence[Case]) -> xr.Dataset:
 
 
 def ellipse_stage(cases: Sequence[Case]) -> list[Found]:
-    """Semi-axes of both ways against elliptic integrals in 30 digits."""
+    """Compare the semi-axes of both methods with elliptic integrals in 30 digits."""
     table = to_table(list(cases))
     k_x, k_y, modulus = _hertz_input(table)
     exact = np.array([_axes(*row) for row in zip(k_x, k_y, modulus, strict=True)])
@@ -104,7 +104,7 @@ def _hertz_input(table: CaseTable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _axes(k_x: float, k_y: float, modulus: float) -> tuple[float, float]:
-    """Semi-axes a, b for 1 N [mm] by complete elliptic integrals in 30 digits, Johnson (1985) eqs (4.25), (4.26)."""
+    """Return a, b for 1 N [mm] by complete elliptic integrals in 30 digits, Johnson (1985) eqs (4.25), (4.26)."""
 
     with mpmath.workdps(30):
         small, large = sorted((mpmath.mpf(float(k_x)), mpmath.mpf(float(k_y))))
@@ -144,7 +144,7 @@ def traction_stage(patches: Patches) -> list[Found]:
 
 
 def stress_points() -> np.ndarray:
-    """Places in normalised coordinates: on the surface inside the patch and below it, shape (m, 3)."""
+    """Return places in normalised coordinates, on the surface inside the patch and below it, shape (m, 3)."""
     angle = 2.0 * np.pi * np.arange(8) / 8 + 0.2
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     flat = np.concatenate([[[0.03, 0.02]], 0.4 * ring, 0.8 * ring])
@@ -152,7 +152,7 @@ def stress_points() -> np.ndarray:
 
 
 def stress_stage(patches: Patches, element_patches: int = 12) -> list[Found]:
-    """Stress at given points by plane waves and chords, and by elements with bilinear tractions."""
+    """Compare stresses at given points by plane waves and chords with those by elements with bilinear tractions."""
     unit, e = stress_points(), patches.ellipse
     depth = np.minimum(e.semi_axis_lateral, e.semi_axis_rolling)
     scale = np.stack([e.semi_axis_lateral, e.semi_axis_rolling, depth], axis=1)

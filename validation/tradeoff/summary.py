@@ -51,7 +51,7 @@ def summary(ds: xr.Dataset) -> dict[str, Any]:
 
 
 def presets(chosen: dict[str, list[Record]]) -> dict[str, Record]:
-    """Settings of the rungs that each preset takes from the ladders: `forces`, `peak` and `elements`."""
+    """Return the settings of the rungs that each preset takes from the ladders `forces`, `peak` and `elements`."""
     if not all(chosen.values()):
         return {}
     measured = read_ladders(chosen)
@@ -89,7 +89,7 @@ def _record(one: xr.Dataset) -> Record:
 
 
 def _number(value: float) -> float | None:
-    """The number, None where JSON has no word for it."""
+    """Return the number, or None where JSON has no such number."""
     return value if math.isfinite(value) else None
 
 
@@ -135,7 +135,7 @@ def orders(records: list[Record]) -> list[Record]:
 
 
 def ladder(records: list[Record], stage: str, model: str) -> list[Record]:
-    """The settings that no other beats in cost and in what 99 % of the cases keep; at most ten, evenly spread."""
+    """Return at most ten settings, evenly spread, that no other setting beats in cost and 99 % error."""
     name = LADDERS[stage, model]
     judged_by = {q for group in _JUDGED_BY[name] for q in group}
     found = [
