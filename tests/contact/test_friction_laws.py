@@ -418,7 +418,7 @@ def test_a_roller_without_balance_for_steep_friction_says_so():
         motor_force=69.865,
         friction_coefficient=0.732,
         velocity=1344.0,
-        friction_law={"kind": "linear", "lowest": 0.3, "speed": 100.0},
+        friction_law={"kind": "linear", "lowest": 0.2, "speed": 100.0},
         roller_material={"like": steel, "youngs_modulus": 150978.0, "poisson_ratio": 0.13595},
         guide_material={"like": steel, "youngs_modulus": 13178.6, "poisson_ratio": 0.24861},
     )

@@ -63,6 +63,28 @@ def test_coupling_slip_of_a_hertzian_circle():
         np.testing.assert_allclose(found[inside], -(ahead - behind) / (2 * step), atol=6e-3)
 
 
+@pytest.mark.parametrize(("a", "b"), [(1.0, 1.0), (0.6, 1.7), (2.0, 0.3)])
+def test_closed_form_of_the_slip_under_an_ellipse_is_the_limit_of_small_elements(a, b):
+    """The difference to sums over elements falls with their size; the centre has 2 a/(a + b), as inside a layer."""
+    off = []
+    for n in (20, 80):
+        height, _ = unit_cells(n, n)
+        exact = influence.hertz_coupling_slip(a, b, n, n)
+        found = influence.coupling_slip(np.array(height), 2 * a / n, 2 * b / n)
+        off.append(np.abs(found - exact)[height > 0.3].max())
+    assert off[1] < 0.25 * off[0] and off[1] < 0.02
+    assert influence.hertz_coupling_slip(a, b, 9, 9)[4, 4] == pytest.approx(2j * a / (a + b), rel=1e-5)
+
+
+def test_differences_are_exact_for_cubic_displacements():
+    hy = 0.1
+    y = hy * np.arange(-1, 7)[:, None] + np.zeros((1, 3))
+    slip = np.empty((5, 3), complex)
+    influence.differences(np.ascontiguousarray(y**3 - 1j * y**2), hy, slip)
+    inner = y[1:6]
+    np.testing.assert_allclose(slip, -(3 * inner**2) + 2j * inner, atol=1e-12)
+
+
 def test_element_means_carry_the_load_and_area_of_the_patch():
     for ny, nx in ((20, 20), (40, 24)):
         height, share = unit_cells(ny, nx)

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.friction_laws import FrictionLaw
-from trackroller.contact.influence import coupling_slip, influence
+from trackroller.contact.influence import coupling_slip, hertz_coupling_slip, influence
 from trackroller.contact.kalker.loops import reals
 from trackroller.contact.kalker.newton import Problem, newton
 from trackroller.numerics.threads import share_rows
@@ -28,7 +28,7 @@ class Batch:
     semi_axis_lateral, semi_axis_rolling [mm]; bound : mu p_max [MPa]; ratio : mu p_max / G; poisson_ratio;
     coupling : K / mu; along (n, nx) : rolling part of the rigid slip; lateral [-], spin [1/mm] : the lateral part is
     lateral - spin y; travel_speed [mm/s]; height, share (n, ny, nx) : mean pressure over the largest and share inside
-    the patch of each element.
+    the patch of each element; is_hertzian : the pressures are those of ellipses.
     """
 
     semi_axis_lateral: np.ndarray
@@ -43,6 +43,7 @@ class Batch:
     travel_speed: np.ndarray
     height: np.ndarray
     share: np.ndarray
+    is_hertzian: bool
 
     def rigid_slip(self, i: int) -> np.ndarray:
         """Return the scaled rigid slip (ny, nx) of patch i as complex numbers, lateral + 1j rolling."""
@@ -190,7 +191,11 @@ def _one_patch(batch: Batch, law: FrictionLaw, control, found: Found, i: int) ->
     functions = influence(hx, hy, batch.poisson_ratio[i], ny, nx)
     report.own_slip[i] = ratio * functions.own
     coupling = batch.coupling[i]
-    driver = rigid if coupling == 0.0 else rigid + coupling * coupling_slip(height, hx, hy)
+    driver = rigid
+    if coupling != 0.0:
+        hertz = batch.is_hertzian
+        pressed = hertz_coupling_slip(a / c, b / c, ny, nx) if hertz else coupling_slip(height, hx, hy)
+        driver = rigid + coupling * pressed
     problem = Problem(functions, driver, height, ratio * batch.travel_speed[i], law.speed, law.factor)
     solved, moved, bound = _solve(problem, traction[0] + 1j * traction[1], control, report, i)
     field = _Fields(reals(solved), reals(moved), reals(rigid), reals(driver), bound)

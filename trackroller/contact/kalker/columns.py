@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from trackroller.contact.influence import FAST, LEADING_SHARE
+from trackroller.contact.influence import FAST, difference
 
 
 @njit(cache=True)
@@ -26,19 +26,15 @@ def column_slips(own_column, hy):
 
     Returns
     -------
-    ndarray, shape (2, 2, 2 ny - 1)
-        Axes: component; upwind difference or blended difference of the leading element; distance -(ny - 1) .. ny - 1.
+    ndarray, shape (2, 2 ny - 1)
+        Slip by component and distance -(ny - 1) .. ny - 1.
     """
     count = own_column.shape[1] - 3
-    out = np.empty((2, 2, count))
+    out = np.empty((2, count))
     for c in range(2):
+        u = own_column[c]
         for j in range(count):
-            behind, here = own_column[c, j], own_column[c, j + 1]
-            ahead, far = own_column[c, j + 2], own_column[c, j + 3]
-            upwind = (1.5 * here - 2.0 * ahead + 0.5 * far) / hy
-            central = 0.5 * (behind - ahead) / hy
-            out[c, 0, j] = upwind
-            out[c, 1, j] = upwind + LEADING_SHARE * (central - upwind)
+            out[c, j] = difference(u[j], u[j + 1], u[j + 2], u[j + 3], hy)
     return out
 
 
@@ -60,8 +56,8 @@ def column_ranges(bound):
 def _factorise(columns, n):
     """Factorise a matrix into L U in place; `columns` holds the matrix by its columns.
 
-    Rows are not exchanged, because an element's influence on itself is the largest of its row. The loop treats two
-    columns at a time, which halves the memory traffic. Zero pivots are left out.
+    Rows are not exchanged: the differences lean towards the leading edge, which keeps the pivots away from 0. The loop
+    treats two columns at a time, which halves the memory traffic. Zero pivots are left out.
     """
     for k in range(0, n, 2):
         first = columns[k]
@@ -91,14 +87,13 @@ def factorise(slips, derivative, rho, first, count, factors):
     """Factorise 1 - P' + rho P' B for each column and component into `factors` (nx, 2, ny, ny); P' without xy."""
     ny = derivative.shape[1]
     for j in range(count.size):
-        n, top = count[j], first[j] + count[j] - 1
+        n = count[j]
         for c in range(2):
             columns = factors[j, c]
             for i in range(n):
                 p = derivative[2 * c, first[j] + i, j]
-                leading = 1 if first[j] + i == top else 0
                 for m in range(n):
-                    columns[m, i] = rho * p * slips[c, leading, i - m + ny - 1]
+                    columns[m, i] = rho * p * slips[c, i - m + ny - 1]
                 columns[i, i] += 1.0 - p
             _factorise(columns, n)
 

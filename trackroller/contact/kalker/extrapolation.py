@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-# The integrals between the centres converge with an order between 1 (full adhesion, with its singular trailing edge)
-# and 2 (full slip, spin moment). The weight of patches that slide belongs to the order 1.58, that of adhesion to 1.
-SLIDING, ADHESION = 0.5, 1.0
-FITTED, FITTED_AT = 0.205, 28  # factor and elements of `force_error`
+# The forces converge with order 2 where the patch slides, and with order 1 where much of it sticks: the traction is
+# singular at the trailing edge of full adhesion, and the displacement has a kink at the leading edge.
+SLIDING, ADHESION = 1.0 / 3.0, 1.0
+EARLY = 16  # power of the used share of the bound: a small adhesion area decides the order already
+FITTED, FITTED_AT = 0.165, 28  # factor and elements of `force_error`
 LARGEST_RATIO, SLENDER = 4.0, 0.25  # b/a above which the error does not grow; (b/a)^2 below which it grows again
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
 
@@ -17,7 +18,7 @@ def weight(used: np.ndarray) -> np.ndarray:
 
     The adhesion area, which is made of whole elements, would carry its jumps into the forces.
     """
-    return SLIDING + (ADHESION - SLIDING) * (1.0 - used) ** 2
+    return SLIDING + (ADHESION - SLIDING) * (1.0 - used**EARLY)
 
 
 def force_error(change: np.ndarray, stick: np.ndarray, ratio: np.ndarray, elements: int) -> np.ndarray:

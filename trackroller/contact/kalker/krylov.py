@@ -20,12 +20,11 @@ from trackroller.contact.kalker.loops import reals, row_means
 class Operator(NamedTuple):
     """Arrays of the product B, which maps tractions to slips, or to displacements if not `rolling`.
 
-    p, q : spectra of `Influence`; leading : row of the leading element of each column; hy : element length.
+    p, q : spectra of `Influence`; hy : element length.
     """
 
     p: np.ndarray
     q: np.ndarray
-    leading: np.ndarray
     hy: float
     rolling: bool
 
@@ -149,7 +148,7 @@ def multiply(field, operator, transforms, product):
     convolve(field, operator.p, operator.q, transforms)
     halo = transforms[1, : ny + HALO, :nx]
     if operator.rolling:
-        differences(halo, operator.leading, operator.hy, product)
+        differences(halo, operator.hy, product)
     else:
         for i in range(ny):
             for j in range(nx):

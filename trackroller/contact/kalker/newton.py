@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from trackroller.contact.influence import Influence, leading_rows
+from trackroller.contact.influence import Influence
 from trackroller.contact.kalker.columns import column_ranges, column_slips
 from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, multiply, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
@@ -174,7 +174,7 @@ def _workspace(problem: Problem, krylov: int) -> tuple[Law, Work]:
     if rolling:
         slips = column_slips(functions.column, functions.hy)
     else:
-        slips = np.ascontiguousarray(np.repeat(functions.column[:, None, 1:-2], 2, axis=1))
+        slips = np.ascontiguousarray(functions.column[:, 1:-2])
     falls = problem.knots.size > 1
     work = Work(
         np.empty((ny, nx)),
@@ -184,7 +184,7 @@ def _workspace(problem: Problem, krylov: int) -> tuple[Law, Work]:
         np.empty((ny, nx), complex),
         Derivative(np.empty((3, ny, nx)), np.empty((4, ny, nx)), falls, rho),
         Columns(slips, *column_ranges(problem.height)),
-        Operator(functions.p, functions.q, leading_rows(problem.height), functions.hy, rolling),
+        Operator(functions.p, functions.q, functions.hy, rolling),
         Space(
             np.empty((nx, 2, ny, ny)),
             np.empty((krylov + 1, 2 * ny * nx)),

@@ -53,6 +53,7 @@ def _level(
         travel,
         height,
         share,
+        ellipse.is_hertzian,
     )
     found = batch.Found.start(start, settings.law_in_use)
     batch.solve_batch(patches, settings.law_in_use, settings, found)
