@@ -142,12 +142,11 @@ export function cards(model) {
     const commands = model.pins.flatMap((row, i) => [
       command(`Solve ${"AB"[i]} again`, solveCommand(study, row)),
       command(`Compare ${"AB"[i]} with the stored result`, repeatCommand(study, row)),
-      command(`Sheet of ${"AB"[i]}, with the exact limits`, `${solveCommand(study, row)} --report case-${study.caseOfRow(row)}.html`),
     ]);
     replace(
       pinned,
       el("h3", {}, "Pinned cases"),
-      el("p", { class: "facts" }, said),
+      el("p", { class: "facts" }, `${said} With "--report sheet.html" behind it, a solve command writes the sheet of the case with its exact distances to lift-off, full slip and self-locking.`),
       el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Pinned cases" }, el("table", {}, el("thead", {}, el("tr", {}, el("td", {}), heads)), body)),
       commands,
     );
