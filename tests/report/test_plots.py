@@ -213,7 +213,7 @@ def test_the_surface_map_is_highest_where_a_peak_at_the_surface_is_marked(solved
     assert at_surface
     figure, info = sections(solved, 2)
     assert [axes.get_title(loc="left") for axes in figure.axes[2:6:3]] == ["Roller, surface", "Guide, surface"]
-    assert "default case" in info.caption
+    assert "Default case" in info.caption
     bare = solved.drop_vars("shear_lateral")
     assert surface_stress(bare, 2, "roller") is None and len(sections(bare, 2)[0].axes) == 5
 

@@ -19,7 +19,7 @@ from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mis
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, widths
 from trackroller.report.figures.contact_patch import case_name, case_text
-from trackroller.report.numbers import near, rounded
+from trackroller.report.numbers import capital, near, rounded
 from trackroller.roller.record import MATERIALS, materials_of
 
 PLANES = (
@@ -71,7 +71,7 @@ def sections(ds: xr.Dataset, contact: int) -> tuple[Figure, style.FigureInfo] | 
     caption = (
         f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section plane through the peak "
         f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A cross marks the peak; on "
-        f"the surface a ring marks a peak below it. {head.partition(': ')[2]}. {case_text(ds)}"
+        f"the surface a ring marks a peak below it. {capital(case_name(ds))}. {case_text(ds)}"
     )
     return figure, style.FigureInfo(f"contact_{contact}_stress", caption, _sentence(part, bodies))
 
