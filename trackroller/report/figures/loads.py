@@ -58,7 +58,7 @@ def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | Non
         axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
         axes.set_ylim(bottom=0)
         axes.set_xlabel(label)
-    panels[0].set_ylabel(with_unit("Peak von Mises stress", "MPa"))
+    panels[0].set_ylabel(with_unit(r"Peak von Mises stress $\sigma_\mathrm{DEH}$", "MPa"))
     if view.grid:
         dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
         entries += [("filled: at the surface", dot), ("hollow: below it", {**dot, "markerfacecolor": "white"})]
