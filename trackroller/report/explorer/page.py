@@ -17,14 +17,14 @@ import xarray as xr
 
 from trackroller.analysis.pareto import default_objectives, study_pareto
 from trackroller.errors import InputError
-from trackroller.parameters import EXACTNESS
+from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.report.columns import study_dims
 from trackroller.report.explorer.inputs import solve_inputs, strengths
 from trackroller.report.explorer.pack import pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
-from trackroller.report.numbers import capital, count, long_name, with_unit
+from trackroller.report.numbers import capital, count, long_name, unit_text, with_unit
 from trackroller.report.view import StudyView
 from trackroller.study.files import StudyFolder, write_text
 from trackroller.study.goals import statistic
@@ -167,7 +167,8 @@ def secured(page: str) -> str:
 
 def _heading(column: xr.DataArray, name: str) -> str:
     words, unit = str(column.attrs.get("long_name") or long_name(name)), str(column.attrs.get("units", ""))
-    return with_unit(capital(words), unit) if unit not in ("", "1") else capital(words)
+    unit = unit_text(unit or PARAMETERS[name].unit if name in PARAMETERS else unit)
+    return with_unit(capital(words), unit) if unit not in ("", "1", "-", "–") else capital(words)
 
 
 def _analysis(study_nc: Path) -> xr.Dataset | None:
