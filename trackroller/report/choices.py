@@ -98,7 +98,9 @@ def robustness(table: xr.Dataset, output: str) -> Sentence:
 
 def chance(value: float, low: float = math.nan, high: float = math.nan, words: str = "") -> str:
     """Write a probability: '97 %' or '97 % (95 % to 98 %)', with more figures near 0 (never) and 100 % (always)."""
-    whole = 10**6
+    whole = 10**9
+    if math.isnan(value):
+        return "–"
     text, *ends = (share(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v))
     return f"{text} ({words}{' to '.join(ends)})" if ends else text
 

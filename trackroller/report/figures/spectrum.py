@@ -6,9 +6,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from trackroller.report.choices import chance
 from trackroller.report.figures import style
 from trackroller.report.numbers import listing
-from trackroller.report.sheet.spectrum import percent, track
+from trackroller.report.sheet.spectrum import track
 from trackroller.study.spectrum.solve import BODIES
 
 MOST = 16  # blocks drawn one by one; the others stand together
@@ -42,13 +43,13 @@ def damage_by_block(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     for axes, colour, (body, part) in zip(panels, style.palette(2), shares.items(), strict=False):
         values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
-        axes.bar_label(bars, [percent(float(v)) for v in values], padding=2, fontsize=7)
+        axes.bar_label(bars, [chance(float(v)) for v in values], padding=2, fontsize=7)
         axes.set_xlim(0, 125)
         axes.set_xticks(range(0, 101, 25))
         axes.set_xlabel(f"damage of the {body} [%]")
         axes.grid(axis="y", visible=False)
         most = int(np.argmax(part))
-        told.append(f"{percent(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
+        told.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
     panels[0].invert_yaxis()
     style.head(figure, f"Damage by block: {ds.attrs['title']}")
     style.finish(figure)

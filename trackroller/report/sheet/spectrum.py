@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.report.choices import chance
 from trackroller.report.claims import Sentence
 from trackroller.report.flags import flags_of
-from trackroller.report.numbers import capital, life, listing, number, share, unit_text
+from trackroller.report.numbers import capital, life, listing, long_name, unit_text, with_unit
 from trackroller.report.sheet.rows import Row
-from trackroller.report.tables import Table
+from trackroller.report.tables import Table, cell
 from trackroller.study.spectrum.file import LOAD_FIELDS
 from trackroller.study.spectrum.solve import BODIES
 
@@ -37,25 +38,26 @@ def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
 def block_table(ds: xr.Dataset) -> Table:
     """List the blocks of a shift: distance, the loads that differ, regime, stress and damage with its share."""
     loads = [n for n in LOAD_FIELDS if len(np.unique(ds[n].values[~np.isnan(ds[n].values)])) > 1]
-    heads = ["Block", "Distance [m]", "Duration [h]", *(_head(name) for name in loads), "Regime"]
+    differ = [with_unit(capital(long_name(name)), PARAMETERS[name].unit) for name in loads]
+    heads = ["Block", "Distance [m]", "Duration [h]", *differ, "Regime"]
     for body in BODIES:
         heads += [f"{capital(body)} peak [MPa]", f"{capital(body)} damage [–]", "Share"]
     rows = []
     for i, name in enumerate(ds["block"].values):
-        cells = [str(name), *(_cell(float(ds[n][i])) for n in ("distance", "duration", *loads))]
+        cells = [str(name), *(cell(float(ds[n][i])) for n in ("distance", "duration", *loads))]
         cells.append(REGIME_LABELS[int(ds["regime"][i])])
         for body in BODIES:
             part = ds[["peak_stress", "damage", "damage_sum"]].sel(body=body, contact=track(ds, body))
             done, whole = float(part["damage"][i]), float(part["damage_sum"])
-            of_all = percent(done / whole) if whole > 0 else "–"
-            cells += [_cell(float(part["peak_stress"][i])), _cell(done), of_all]
+            of_all = chance(done / whole) if whole > 0 else "–"
+            cells += [cell(float(part["peak_stress"][i])), cell(done), of_all]
         rows.append(cells)
-    sums = ["Sum of a shift", *(_cell(float(ds[n].sum())) for n in ("distance", "duration")), *[""] * (len(loads) + 1)]
+    sums = ["Sum of a shift", *(cell(float(ds[n].sum())) for n in ("distance", "duration")), *[""] * (len(loads) + 1)]
     for body in BODIES:
-        sums += ["", _cell(float(ds["damage_sum"].sel(body=body, contact=track(ds, body)))), ""]
+        sums += ["", cell(float(ds["damage_sum"].sel(body=body, contact=track(ds, body)))), ""]
     rows.append(sums)
     same = [n for n in LOAD_FIELDS if n not in loads and np.isfinite(ds[n].values).all()]
-    told = [f"{PARAMETERS[n].long_name} {_cell(float(ds[n][0]))} {unit_text(PARAMETERS[n].unit)}" for n in same]
+    told = [f"{PARAMETERS[n].long_name} {cell(float(ds[n][0]))} {unit_text(PARAMETERS[n].unit)}" for n in same]
     note = f"Stress and damage are those of the track that fails first. Same in all blocks: {'; '.join(told)}."
     return Table("spectrum", "Blocks of a shift", heads, rows, note.replace(" –;", ";").replace(" –.", "."))
 
@@ -94,15 +96,10 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
     told = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
     text = (
         f"The {body} lasts {_life(lives['shifts'])} shifts ({told}); contact {contact} fails first, and "
-        f"{percent(float(part[worst]))} of its damage comes from '{ds['block'].values[worst]}'."
+        f"{chance(float(part[worst]))} of its damage comes from '{ds['block'].values[worst]}'."
     )
     values = {"body": body, "contact": contact, "block": str(ds["block"].values[worst]), "share": float(part[worst])}
     return Sentence("spectrum", text, values | lives)
-
-
-def percent(part: float) -> str:
-    """Write a share of damage in percent; only all of it is 100 %, only none of it 0 %."""
-    return share(round(part * 10**9), 10**9) if np.isfinite(part) else "–"
 
 
 def _at_most(ds: xr.Dataset, body: str) -> str:
@@ -122,14 +119,5 @@ def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
     return f"no stress in {listed}"
 
 
-def _head(name: str) -> str:
-    unit = unit_text(PARAMETERS[name].unit)
-    return f"{capital(PARAMETERS[name].long_name)} [{unit}]"
-
-
 def _life(value: float) -> str:
     return "unknown" if np.isnan(value) else life(value)
-
-
-def _cell(value: float) -> str:
-    return "unlimited" if np.isposinf(value) else number(value)
