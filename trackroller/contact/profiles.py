@@ -38,7 +38,7 @@ PointReader = Callable[[Any, str], list[list[float]]]  # (name of a file, field)
 
 
 def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReader | None = None) -> dict[str, Any]:
-    """Return a checked mapping of plain numbers that describes the same cross-section.
+    """Return the checked mapping of a cross-section, with plain numbers.
 
     Parameters
     ----------

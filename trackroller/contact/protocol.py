@@ -21,46 +21,46 @@ class Patch(Protocol):
 
     @property
     def is_hertzian(self) -> bool:
-        """True for the ellipses of Hertz's theory, whose pressure follows from the three numbers a, b and p_max.
+        """Return True for the ellipses of Hertz's theory, whose pressure follows from a, b and p_max.
 
-        False where the pressure was solved element by element.
+        False if the pressure was solved element by element.
         """
 
     @property
     def semi_axis_lateral(self) -> np.ndarray:
-        """Semi-axis a along x_C, or half the width of the box around the patch [mm]."""
+        """Return the semi-axis a along x_C, or half the width of the box around the patch [mm]."""
 
     @property
     def semi_axis_rolling(self) -> np.ndarray:
-        """Semi-axis b along y_C, or half the length of the box around the patch [mm]."""
+        """Return the semi-axis b along y_C, or half the length of the box around the patch [mm]."""
 
     @property
     def max_pressure(self) -> np.ndarray:
-        """Largest pressure p_max [MPa]."""
+        """Return the largest pressure p_max [MPa]."""
 
     @property
     def normal_force(self) -> np.ndarray:
-        """Normal force F_N [N]."""
+        """Return the normal force F_N [N]."""
 
     @property
     def centre(self) -> np.ndarray:
-        """x_C of the middle of the ellipse or box [mm]."""
+        """Return x_C of the middle of the ellipse or box [mm]."""
 
     @property
     def pressure_centre(self) -> np.ndarray:
-        """x_C of the resultant of the pressure [mm]."""
+        """Return x_C of the resultant of the pressure [mm]."""
 
     @property
     def area(self) -> np.ndarray:
-        """Area of the patch [mm^2]."""
+        """Return the area of the patch [mm^2]."""
 
     @property
     def half_extents(self) -> tuple[np.ndarray, np.ndarray]:
-        """Half the width and half the length of the loaded region [mm]."""
+        """Return half the width and half the length of the loaded region [mm]."""
 
     @property
     def reaches_edge(self) -> np.ndarray:
-        """True where the patch ends at an edge of the material."""
+        """Return True where the patch ends at an edge of the material."""
 
     def take(self, index) -> Any:
         """Return the patches `index` (integer or boolean array)."""
@@ -75,7 +75,7 @@ class ContactModel:
 
     name = ""  # as in `parameters.CONTACT_MODELS`
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
-    knows_tractions = True  # forces and `surface` come from one solution; if False, `stick` gives the adhesion area
+    knows_tractions = True  # forces and `surface` come from one solution; otherwise `stick` gives the adhesion area
     refines = False  # `surface` is exact for any number of elements of a refined patch
     difference_step = 1e-3  # relative step of derivatives, above the noise of the model
     residual = 1e-7  # relative residual of the equilibrium that the model can reach
@@ -91,9 +91,9 @@ class ContactModel:
         raise NotImplementedError
 
     def shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
-        """Return tractions over their bound, (m, 2, ., .), on a grid and on a coarser one, to compare with.
+        """Return tractions over their bound, (m, 2, ., .), on a grid and a coarser one; their difference is an error.
 
-        None if the model knows them at the points of `surface` only.
+        None if the model has tractions at the points of `surface` only.
         """
         return None
 

@@ -4,7 +4,7 @@ The curve runs through (N_Rm, R_m) and (N_k, sigma_D) with the exponent k::
 
     N_k / N_Rm = (R_m / sigma_D)**k
 
-Engineers know some of sigma_D or sigma_D/R_m, N_k, N_Rm and k. What a material needs is sigma_D/R_m, N_Rm and N_k.
+Data sheets give some of sigma_D or sigma_D/R_m, N_k, N_Rm and k. A material needs sigma_D/R_m, N_Rm and N_k.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from trackroller.errors import InputError
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, Value
 
 CURVE = ("fatigue_strength_ratio", "cycles_at_tensile_strength", "cycles_at_fatigue_limit", "woehler_exponent")
-AGREE = 0.01  # relative difference up to which values that say the same thing twice agree
+AGREE = 0.01  # largest relative difference between a given value and the value that follows from the others
 _ALL = PROPERTIES | ALTERNATIVES
 
 
@@ -51,7 +51,8 @@ def complete_curve(given: Mapping[str, Value], inherited: Mapping[str, Value], w
     given : mapping of str to Value
         Values of an entry, `fatigue_limit` and `woehler_exponent` among them.
     inherited : mapping of str to Value
-        Values of the material that the entry changes or is like; they fill what is neither given nor follows.
+        Values of the material that the entry changes or names by `like`. They are used for values that are not given
+        and do not follow from given values.
     where : str
         Place of the entry, for messages.
 
@@ -67,7 +68,7 @@ def complete_curve(given: Mapping[str, Value], inherited: Mapping[str, Value], w
 
     Notes
     -----
-    A value that is given stands over an inherited one. Where three of the four values of the curve are given or
+    A given value replaces an inherited one. Where three of the four values of the curve are given or
     inherited, the fourth follows; an exponent that is given replaces the inherited `cycles_at_tensile_strength` first.
 
     Examples

@@ -1,8 +1,9 @@
 """Read and write the YAML files of users: one guarded loader for every such file of the program.
 
 The text is YAML 1.2 (core schema). A scalar without quotes that YAML 1.1 reads differently, such as `030`, `1:30`,
-`3_0` or `yes`, is refused with what to write instead. Values are counted while they are composed, aliases in full, so
-that a small file cannot grow into millions of values.
+`3_0` or `yes`, is refused; the message says what to write instead. Values are counted while they are composed, aliases
+in full, so that a small file cannot grow into millions of values. ruamel.yaml parses and writes; its own composer reads
+these scalars without a word, ends the process at deep nesting, and takes twice as long.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from ruamel.yaml.representer import SafeRepresenter
 from trackroller.errors import InputError
 from trackroller.materials.yaml_composer import TAG, Composer, plain_scalar
 
-MAX_BYTES = 5_000_000  # a study file larger than this is a table and belongs into a CSV
+MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
 
 
 def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
@@ -30,7 +31,7 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     path : Path or str
         The file.
     what : str
-        What the file is, for messages.
+        Kind of file, for messages.
     most : float
         Largest size [bytes].
 
@@ -77,7 +78,7 @@ def parse_yaml(text: str, what: str) -> Any:
     text : str
         One YAML document.
     what : str
-        What the text is, for messages.
+        Kind of text, for messages.
 
     Returns
     -------

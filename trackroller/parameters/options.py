@@ -78,7 +78,7 @@ class Option:
         Parameters
         ----------
         value : object
-            What a user gave. A single word stands for a list of one word.
+            Value that a user gave. A single word stands for a list of one word.
         where : str
             Name of the field for messages; the name of the option if it is not given.
 
@@ -238,7 +238,7 @@ _OPTIONS = (
     Option(
         "slip_terms",
         (),
-        "what the rigid slip of a patch counts beyond the tangent of a straight guide",
+        "additional terms of the rigid slip, beyond that of the tangent of a straight guide",
         {
             "profile": "the rolling slip of the guide's profile, eq. (20), instead of its tangent",
             "curve": "the roller turns with the curve of the guide, which adds to its spin",

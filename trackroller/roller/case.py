@@ -130,7 +130,7 @@ class Case:
         Raises
         ------
         InputError
-            For an unknown key, with the nearest right one, and for whatever `Case` refuses.
+            For an unknown key, with the most similar known key, and for every value that `Case` refuses.
         """
         if not isinstance(values, Mapping):
             raise InputError("case", values, "a case is a mapping of parameter names to values")
@@ -143,7 +143,7 @@ class Case:
 
 
 def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
-    """Columns of raw values, object arrays (n,), and n, from anything that `solve` accepts."""
+    """Return columns of raw values, object arrays (n,), and n, from any form of cases that `solve` accepts."""
     if hasattr(cases, "data_vars"):
         return _columns_of_dataset(cases)
     if isinstance(cases, (Case, Mapping)):
@@ -196,7 +196,7 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
 
 
 def _materials(column: np.ndarray, database: MaterialDatabase) -> list[Material]:
-    """Materials of a column, each distinct one looked up once."""
+    """Return the materials of a column; each distinct material is looked up once."""
     keys = [value if isinstance(value, str) else repr(value) for value in column]
     known = {key: database.material(value) for key, value in dict(zip(keys, column, strict=True)).items()}
     return [known[key] for key in keys]
@@ -240,8 +240,8 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
 
 
 def _texts(name: str, column: np.ndarray) -> np.ndarray:
-    """Canonical texts of a column of mappings, each distinct one checked once."""
-    if np.all(column == ""):  # as in most studies: a loop over a million cases takes seconds
+    """Return the canonical texts of a column of mappings; each distinct mapping is checked once."""
+    if np.all(column == ""):  # most studies have no mapping, and a loop over a million cases takes seconds
         return column
     known: dict[str, str] = {}
     out = np.empty(column.size, dtype=object)

@@ -35,7 +35,7 @@ def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Datas
     table : CaseTable
         The n cases.
     options : Options
-        What they were solved with.
+        Options of the solution.
 
     Returns
     -------

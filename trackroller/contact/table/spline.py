@@ -203,8 +203,12 @@ def nearest_forces(
 
     Returns
     -------
-    F_T/(mu N), F_A/(mu N) and M_R/(mu N c), (3, n); X/(3 + r) in (-1, 1), (n,); which patches the table holds, (n,).
-    NaN where there is no patch.
+    forces : numpy.ndarray, shape (3, n)
+        F_T/(mu N), F_A/(mu N) and M_R/(mu N c); NaN where there is no patch.
+    place : numpy.ndarray, shape (n,)
+        X/(3 + r) in (-1, 1).
+    held : numpy.ndarray of bool, shape (n,)
+        True for patches in the table's range.
     """
     xi, phi, mu = (np.asarray(v, float) for v in (longitudinal, spin, friction))
     d = normalise(ellipse, xi, phi, mu, elastic)

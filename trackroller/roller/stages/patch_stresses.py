@@ -1,4 +1,4 @@
-"""What the stress stages ask of the patches of a block: bounds and places of peak stresses, and stresses at points."""
+"""Interface of the stress stages to the patches of a block: bounds and places of peaks, and stresses at points."""
 
 from __future__ import annotations
 

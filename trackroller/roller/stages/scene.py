@@ -1,4 +1,4 @@
-"""A block of cases on its way through the stages: what is given (`Scene`) and what has been found (`Results`).
+"""Hold a block of cases on its way through the stages: inputs (`Scene`) and results (`Results`).
 
 Arrays have the case as first axis (n,), then contact (2) and body (2: roller, guide). Flat arrays (2 n,) hold contact 1
 of all cases, then contact 2.
