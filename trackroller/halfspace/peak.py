@@ -117,7 +117,7 @@ def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: fl
 def _seeded(patches: Patches, rules: Rules, settings: PeakSettings) -> Climbs:
     """Scan the patches and return climbs from the highest places."""
     n, count = len(patches.rows), settings.seeds + 5 * patches.slender
-    points = scan_points(patches.rows, patches.slender)
+    points = scan_points(patches.rows, patches.slender, patches.adhesion)
     values = patches.scan(points, rules.scan)
     apart = APART[patches.slender]
     chosen = np.stack([best_seeds(points, values[:, :, body], count, apart) for body in (0, 1)], axis=1).ravel()
@@ -178,7 +178,8 @@ def find_peaks(
     fields : numpy.ndarray, shape (n, 2, ny, nx), optional
         Traction over its bound at element centres; full sliding if not given.
     coarse : numpy.ndarray, optional
-        The same on a coarser grid, for the estimated error; means over 2 x 2 elements if not given.
+        The same on a coarser grid, for the estimated error; only tractions of the exact theory, which have adhesion,
+        come with it. Means over 2 x 2 elements if not given.
 
     Returns
     -------
@@ -199,7 +200,7 @@ def find_peaks(
         rules = Rules(*(unit_rule(int(order * factor)) for order in orders))
         chosen = fields_of(fields, group)
         ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
-        some = Patches(patches[group], chosen, ratios, bool(factor > 1))
+        some = Patches(patches[group], chosen, ratios, bool(factor > 1), coarse is not None)
         found = _search(some, rules, settings, settings.step / factor)
         if fields is not None:
             other = _merged(chosen) if coarse is None else coarse[group]

@@ -31,12 +31,15 @@ class Patches:
         Poisson's ratios of roller and guide [1].
     slender : bool
         True if the quadrature rules of these patches are refined.
+    adhesion : bool
+        True if the fields are known to have areas of adhesion.
     """
 
     rows: np.ndarray
     fields: np.ndarray
     poisson_ratio: np.ndarray
     slender: bool
+    adhesion: bool = False
 
     @property
     def gridded(self) -> bool:

@@ -11,20 +11,16 @@ import numpy as np
 
 from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
 
+Rings = tuple[tuple[float, int], ...]
 
-def _scan_points() -> np.ndarray:
-    """Return points (rho cos, rho sin, depth) in normalised coordinates, (m, 3)."""
+
+def _scan_points(surface: Rings, below: tuple[tuple[float, Rings], ...]) -> np.ndarray:
+    """Return points (rho cos, rho sin, depth) in normalised coordinates, (m, 3); rings are radii and counts."""
     rows = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)]
-    for rho, count in ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)):
+    for rho, count in surface:
         angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
         rows += [(rho * math.cos(t), rho * math.sin(t), 0.0) for t in angles]
-    for depth, rings in (
-        (0.12, ((0.4, 6), (0.8, 6))),
-        (0.2, ((0.95, 8),)),
-        (0.3, ((0.4, 6), (0.8, 6))),
-        (0.5, ((0.45, 6),)),
-        (0.75, ((0.45, 4),)),
-    ):
+    for depth, rings in below:
         rows.append((0.0, 0.0, depth))
         for rho, count in rings:
             angles = 2 * np.pi * (np.arange(count) + 0.5 * (rho == 0.4)) / count
@@ -32,13 +28,18 @@ def _scan_points() -> np.ndarray:
     return np.array(rows)
 
 
-SCAN = _scan_points()
-
+_DEEP = ((0.5, ((0.45, 6),)), (0.75, ((0.45, 4),)))
+SCAN = _scan_points(
+    ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)),
+    ((0.12, ((0.4, 6), (0.8, 6))), (0.2, ((0.95, 8),)), (0.3, ((0.4, 6), (0.8, 6))), *_DEEP),
+)
+# For tractions with adhesion: in random designs the peaks lie below the centre, or on the surface far from the rim.
+SCAN_ADHESION = _scan_points(((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3, ((0.6, 5),)), *_DEEP))
 
 SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
 
-def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
+def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarray:
     """Return the points of the scans, (n, m, 3): common points and points on the line where the lateral slip vanishes.
 
     The slip changes direction sharply on this line, which carries ridges of stress. In `slender` patches the slip turns
@@ -50,7 +51,11 @@ def scan_points(patches: np.ndarray, slender: bool) -> np.ndarray:
         Records of `ellipse.patch_rows`.
     slender : bool
         True for slender patches.
+    adhesion : bool
+        True for tractions with adhesion, which turn smoothly: fewer points are enough, unless they are slender.
     """
+    if adhesion and not slender:
+        return np.broadcast_to(SCAN_ADHESION, (len(patches), *SCAN_ADHESION.shape))
     pole = np.clip(patches["pole_x"] / patches["a"], -1.0, 1.0)[:, None]
     share = np.array([0.15, 0.4, 0.6, 0.85])
     x = np.concatenate([pole - share * (1.0 + pole), pole + share * (1.0 - pole)], axis=1)
