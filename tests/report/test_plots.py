@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.text import Text
 from reference_cases import solve_sliding
 from synthetic_results import PAIRS, grid_study, sampled_study
 
@@ -19,11 +20,11 @@ from trackroller.report.figures import style
 from trackroller.report.figures.contact import plot_case
 from trackroller.report.figures.contact_patch import case_name
 from trackroller.report.figures.contact_sections import SURFACE, sections, surface_stress
-from trackroller.report.figures.loads import forces_against_axial
-from trackroller.report.figures.panels import capped
+from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
+from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.regimes import regime_map
-from trackroller.report.figures.study import draw_all
-from trackroller.report.numbers import number
+from trackroller.report.figures.study import OF_CASES, draw_all
+from trackroller.report.numbers import level_text, number
 from trackroller.report.view import StudyView
 
 ALL = {
@@ -74,6 +75,42 @@ def test_figures_are_the_wide_column_and_nothing_is_cut_off(grid):
         assert image.shape[1] == pytest.approx(170 / 25.4 * 300, abs=2)
         border = np.concatenate([image[:3].ravel(), image[-3:].ravel(), image[:, :3].ravel(), image[:, -3:].ravel()])
         assert border.min() > 0.97, name
+
+
+@pytest.mark.parametrize("make", [lambda: grid_study(SMALL), lambda: sampled_study(200)])
+def test_every_text_has_at_least_seven_points(make):
+    view = StudyView.of(make())
+    with style.look():
+        for draw in OF_CASES:
+            figure = (draw(view) or [None])[0]
+            texts = figure.findobj(Text) if figure else []
+            small = {t.get_text(): t.get_fontsize() for t in texts if t.get_text().strip() and t.get_fontsize() < 7}
+            assert not small, draw.__name__
+
+
+def test_a_sample_shows_medians_and_bands_and_is_not_coloured_by_its_own_fit():
+    ds = sampled_study(300)
+    view = StudyView.of(ds)
+    with style.look():
+        figure, info = stress_against_fit(view)
+        forces, _ = forces_against_axial(view)
+    assert "medians" in info.caption and "5 to 95 %" in info.caption
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert sorted(names) == sorted(level_text("material_pair", pair) for pair in PAIRS[:3])
+    one = ds.isel(case=view.column("regime") != 2)
+    for axes in forces.axes[:1]:
+        median = np.median(axes.lines[0].get_ydata())
+        own = one["normal_force"].sel(contact=1, case=one["motor_force"] == -30)
+        assert median == pytest.approx(float(own.median()), rel=0.15)
+        assert all(len(line.get_xdata()) <= CLASSES for line in axes.lines) and len(axes.collections) == len(axes.lines)
+
+
+def test_materials_of_the_same_stresses_share_a_line():
+    factors = SMALL | {"material_pair": [PAIRS[0], PAIRS[1], PAIRS[3]]}
+    with style.look():
+        figure, _ = stress_against_fit(StudyView.of(grid_study(factors)))
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert any(" and " in name for name in names) and len(names) == 4  # two lines, two kinds of marks
 
 
 def test_the_same_study_gives_the_same_svg(grid, tmp_path):
