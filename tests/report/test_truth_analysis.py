@@ -15,6 +15,7 @@ from trackroller.report import choices, parts
 from trackroller.report import sentences as words
 from trackroller.report.effects import effect_of
 from trackroller.report.enough import samples
+from trackroller.report.numbers import level_text
 from trackroller.report.view import StudyView
 from trackroller.study.config import parse_study
 
@@ -228,7 +229,9 @@ def check_levels(part, said):
     for clause, i in zip(clauses, known, strict=True):
         best = int(np.nanargmax(value[i]))
         name = str(part["factor_name"].values[best])
-        assert clause.startswith(f"{name} ") and clause.endswith(f"with {part['level'].values[i]}")
+        assert clause.startswith(f"{name} ") and clause.endswith(
+            f"with {level_text('material_pair', part['level'].values[i])}"
+        )
         one = part.isel(level=i, factor=best)
         agrees(clause.removeprefix(f"{name} "), value[i, best], *bounds_of(one, "conditional_S1"), 100.0)
 
