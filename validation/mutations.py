@@ -218,8 +218,8 @@ def main(names: list[str]) -> int:
             mutation = MUTATIONS[name]
             caught = catching_test(place, mutation)
             survived += not caught
-            told = caught or "SURVIVED"
-            print(f"| {mutation.formula} | `{mutation.before}` → `{mutation.after}` | {told} |", flush=True)
+            before, after = (" ".join(text.split()) for text in (mutation.before, mutation.after))
+            print(f"| {mutation.formula} | `{before}` → `{after}` | {caught or 'SURVIVED'} |", flush=True)
     return int(survived > 0)
 
 
