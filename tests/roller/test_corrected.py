@@ -133,4 +133,4 @@ def test_results_converge_with_the_observed_orders():
     for k, name in enumerate(names):
         steps = [np.sqrt(np.mean((b[k] - a[k]) ** 2)) for a, b in itertools.pairwise(grids)]
         order = np.log2(steps[0] / steps[1])
-        assert 1.3 < order < 3.3, (name, order)
+        assert 1.7 < order < 4.0, (name, order)
