@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import IO, Any
 
 from trackroller.errors import InputError
-from trackroller.materials.yaml_file import read_mapping
 
 Tell = Callable[[str], None]
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
@@ -48,6 +47,8 @@ class StudyFolder:
     def earlier(self) -> dict[str, Any]:
         """Return the study as it was planned last, {} if there is none."""
         try:
+            from trackroller.materials.yaml_file import read_mapping  # heavy: NumPy, and --help does without
+
             return read_mapping(self.study_file, "study")
         except InputError:
             return {}
