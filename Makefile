@@ -40,7 +40,7 @@ $(CI_STAMP): $(STAMP) requirements-ci.lock
 study: $(STAMP)
 	$(BIN)/snakemake --quiet progress host --cores $(CORES) --config study=$(STUDY)
 
-# the evidence: edge cases, trade-off, the paper, contact models side by side, other programs
+# the evidence: edge cases, trade-off, the paper, contact models side by side, other programs, the table, benchmarks
 validate: $(STAMP)
 	$(BIN)/snakemake -s validation/Snakefile --quiet rules host --cores $(CORES)
 

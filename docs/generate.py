@@ -1,4 +1,4 @@
-"""Write docs/parameters.md, docs/validation/tradeoff.md and the presets in docs/validation/accuracy.md.
+"""Write docs/parameters.md, the pages of docs/validation that come from `docs/data`, and the table of the README.
 
 `python docs/generate.py` writes; with `--check` it only compares and ends with 1 if a page is not up to date.
 """
@@ -18,10 +18,10 @@ from trackroller.roller.dataset import VALIDITY_BITS, VARIABLES
 from validation.adopt.common import PICTURES, shortened
 from validation.pages import markdown
 from validation.tradeoff import page as tradeoff_page
+from validation.written import render as render_written
 
 FOLDER = Path(__file__).parent
 TRADEOFF_DATA = ("The ladders", "Order of convergence", "Single stages")  # tables that only the data file holds
-START, END = "<!-- presets: made by docs/generate.py -->\n", "<!-- end of presets -->"
 USES = {"preview": "a first look", "standard": "studies", "reference": "to check `standard`; single cases"}
 HEAD = """# Parameters, options and results
 
@@ -141,11 +141,18 @@ def presets() -> str:
 
 
 def pages() -> dict[Path, str]:
-    """Return the path and the text of each page that this program writes, whole or in part."""
-    accuracy = FOLDER / "validation" / "accuracy.md"
-    before, _, rest = accuracy.read_text(encoding="utf-8").partition(START)
-    found = {FOLDER / "parameters.md": render(), accuracy: f"{before}{START}{presets()}{END}{rest.partition(END)[2]}"}
-    return found | {FOLDER / "validation" / "tradeoff.md": tradeoff()}
+    """Return the path and the text of each page that this program writes."""
+    place = FOLDER / "validation"
+    written = {place / name: render_written(name, **more) for name, more in WRITTEN.items()}
+    readme = FOLDER.parent / "README.md"
+    before, _, rest = readme.read_text(encoding="utf-8").partition(START)
+    table = render_written("readme.md").partition("\n")[2]  # without the remark on its first line
+    written[readme] = f"{before}{START}{table}{END}{rest.partition(END)[2]}"
+    return {FOLDER / "parameters.md": render(), place / "tradeoff.md": tradeoff(), **written}
+
+
+START, END = "<!-- measured -->\n", "<!-- end -->\n"  # of the table in the README
+WRITTEN = {"accuracy.md": {"presets": presets()}, "contact-models.md": {}, "index.md": {}}
 
 
 def tradeoff() -> str:

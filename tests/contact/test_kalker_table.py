@@ -10,7 +10,7 @@ import pytest
 import trackroller as tr
 from trackroller.contact import linear, table
 from trackroller.contact.common import Elastic, Ellipse
-from validation.benchmarks.kalker_cost import random_designs
+from validation.benchmarks.samples import random_designs
 from validation.exact.full_sliding import complete_sliding
 from validation.kalker_table import build, measure
 from validation.kalker_table.nodes import FORCES, POISSON, problem, radius, solve_exact

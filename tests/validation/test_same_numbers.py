@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
+from trackroller.parameters import CONTACT_MODELS
 from validation.same_numbers.__main__ import main
 from validation.same_numbers.archive import load, save
 from validation.same_numbers.cases import record_cases
@@ -121,12 +122,7 @@ def test_the_recorded_cases_cover_what_can_be_chosen():
     def chosen(option, default):
         return {json.dumps(group.options.get(option, default)) for group in found}
 
-    assert {json.loads(text) for text in chosen("contact_model", "sliding")} == {
-        "sliding",
-        "fastsim",
-        "kalker",
-        "kalker_table",
-    }
+    assert {json.loads(text) for text in chosen("contact_model", "sliding")} == set(CONTACT_MODELS)
     assert {json.loads(text) for text in chosen("normal", "hertz")} == {"hertz", "halfspace"}
     assert {json.loads(text) for text in chosen("life_rule", "elementary")} == {"elementary", "haibach", "unlimited"}
     assert len(chosen("slip_terms", [])) == 4 and len(chosen("spin_model", "skewed")) == 3

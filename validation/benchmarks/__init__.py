@@ -1,1 +1,19 @@
-"""Programs that measure speed and accuracy as ratios within one run."""
+"""Programs that measure one thing each and print it as JSON."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+# Their results are times, so nothing else may run beside them.
+TIMED = ("kalker_cost", "million", "published_transcription", "scaling", "shortcuts", "slip_forms", "speed")
+
+
+def programs() -> dict[str, str]:
+    """Return every program of this folder that has a function `measure`, with the first line of its docstring."""
+    found = {}
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        if any(isinstance(node, ast.FunctionDef) and node.name == "measure" for node in tree.body):
+            found[path.stem] = (ast.get_docstring(tree) or "").partition("\n")[0]
+    return found

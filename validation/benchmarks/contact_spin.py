@@ -1,6 +1,6 @@
-"""Where full sliding will do: its error against the exact theory over friction, drive, contact angle and size.
+"""Measure the error of full sliding against the exact theory over friction, drive, contact angle and size.
 
-    python -m validation.benchmarks.contact_spin [--accuracy standard]   tables of docs/validation/contact-models.md
+    python -m validation.benchmarks.contact_spin [--accuracy PRESET]
 
 540 rollers on a straight guide: friction 0.02 to 0.5, contact angle 12 to 75 deg, axis distance 15 to 1000 mm, pressed
 by 200 N, free, with 30 N of axial force, and driven by 6 N. Spin is phi rho (`report.comparison.pairs.spin`).
@@ -8,14 +8,16 @@ by 200 N, free, with 30 N of axial force, and driven by 6 N. Spin is phi rho (`r
 
 from __future__ import annotations
 
-import argparse
 import itertools
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 import trackroller as tr
 from trackroller.report import comparison as ladder
+from validation.benchmarks.command import run
+from validation.contact_models.product import spread
 
 FRICTIONS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.5)
 ANGLES = (12.0, 20.0, 30.0, 45.0, 60.0, 75.0)
@@ -49,58 +51,37 @@ def solved(accuracy: str) -> xr.Dataset:
     return xr.concat(parts, "case", combine_attrs="drop_conflicts")
 
 
-def cell(e: np.ndarray) -> str:
-    """Share within 5 %, median and largest error."""
-    e = e[~np.isnan(e)]
-    if not e.size:
-        return "-"
-    return f"{100 * np.mean(e <= ladder.GOOD):.0f} % ({100 * np.median(e):.1f}, {100 * e.max():.0f})"
+def steps(limits: tuple[float, ...]) -> list[tuple[str, float, float]]:
+    """Return name, lower and upper limit of each interval between neighbouring limits."""
+    return [(f"{low:g} to {high:g}", low, high) for low, high in itertools.pairwise(limits)]
 
 
-def table(title: str, heads: list[str], rows: list[tuple[str, list[str]]]) -> None:
-    """Return a Markdown table."""
-    print(f"\n{title}\n\n|  | {' | '.join(heads)} |\n|{'---|' * (len(heads) + 1)}")
-    for name, cells in rows:
-        print(f"| {name} | {' | '.join(cells)} |")
-
-
-def main() -> None:
-    """Print the tables."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("--accuracy", default="standard")
-    paired = ladder.pairs(solved(parser.parse_args().accuracy))
-    found = ladder.errors(paired).sel(contact_model="sliding")
+def measure(accuracy: str = "standard") -> dict[str, Any]:
+    """Return the errors of full sliding: of all rollers, by mu tan(alpha) and load, and by friction and spin."""
+    paired = ladder.pairs(solved(accuracy))
+    errors = {str(name): e.values for name, e in ladder.errors(paired).sel(contact_model="sliding").data_vars.items()}
     mu, lean, spin = (paired[n].values for n in ("friction_coefficient", "lean", "spin"))
-    pressed = {
-        name: (paired["axial_force"] == a).values & (paired["motor_force"] == d).values
-        for name, (a, d) in LOADS.items()
+    flat = paired["contact_angle"].values <= 60
+    loads = {
+        name: (paired["axial_force"] == axial).values & (paired["motor_force"] == drive).values
+        for name, (axial, drive) in LOADS.items()
     }
-    rows = [(str(name), [cell(e.values)]) for name, e in found.data_vars.items()]
-    table("all rollers: within 5 % (median, largest error in %)", ["sliding"], rows)
-    heads = [f"{a:g} to {b:g}" for a, b in itertools.pairwise(LEANS)]
-    for quantity in ("normal_force", "peak_stress"):
-        e = found[quantity].values
-        rows = [
-            (name, [cell(e[own & (lean >= a) & (lean < b)]) for a, b in itertools.pairwise(LEANS)])
-            for name, own in pressed.items()
-        ]
-        table(f"{quantity} by mu tan(alpha): within 5 % (median, largest error in %)", heads, rows)
-        rows = [
-            (
-                f"{m:g}",
-                [
-                    cell(e[(mu == m) & (spin >= a) & (spin < b) & (paired["contact_angle"].values <= 60)])
-                    for a, b in itertools.pairwise(SPINS)
-                ],
-            )
+    normal, peak = errors["normal_force"], errors["peak_stress"]
+    return {
+        "rollers": int(mu.size),
+        "all": {name: spread(e) for name, e in errors.items()},
+        "normal_force_by_lean": {
+            load: {name: spread(normal[own & (lean >= low) & (lean < high)]) for name, low, high in steps(LEANS)}
+            for load, own in loads.items()
+        },
+        "peak_stress_by_spin": {
+            f"{m:g}": {
+                name: spread(peak[(mu == m) & flat & (spin >= low) & (spin < high)]) for name, low, high in steps(SPINS)
+            }
             for m in FRICTIONS
-        ]
-        table(
-            f"{quantity} by friction and spin phi rho, alpha to 60 deg",
-            [f"{a:g} to {b:g}" for a, b in itertools.pairwise(SPINS)],
-            rows,
-        )
+        },
+    }
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

@@ -1,6 +1,6 @@
-"""Friction that falls with the slip speed: how many random designs find a balance, and which one.
+"""Count how many random designs with friction that falls with the slip speed find a balance, and which one.
 
-    python -m validation.benchmarks.falling_friction [--cases N] [--seed S] [--runs sliding:standard kalker:preview ...]
+    python -m validation.benchmarks.falling_friction [--cases N] [--seed S] [--runs MODEL:PRESET ...] [--only]
 
 The designs of `peak_coverage`, under laws of every kind that fall to 0.3 to 0.9 of the value at rest, with
 characteristic speeds of 0.01 to 100 times the spin slip at the rim of the patch. Per model and accuracy:
@@ -13,7 +13,6 @@ regimes, how many converged, residuals, and where the balance that was taken lie
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import time
@@ -24,12 +23,14 @@ import numpy as np
 
 import trackroller as tr
 from trackroller.roller.case import CaseTable, to_table
+from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import ROLLING, solve_equilibrium
 from trackroller.roller.equilibrium.newton import Bounds, newton_polish
 from trackroller.roller.equilibrium.roller import LAST_SLIP, Roller
 from trackroller.roller.options import Options
 from trackroller.roller.stages import mechanics as stages
-from validation.benchmarks.peak_coverage import printable, random_case
+from validation.benchmarks.command import run
+from validation.benchmarks.peak_coverage import random_case
 
 RUNS = ("sliding:standard", "fastsim:standard", "kalker:preview", "kalker:standard")
 SPEED = 100.0  # mm/s, characteristic of every law; the velocity sets the slip over it
@@ -174,20 +175,18 @@ def measures(cases: list[tr.Case], shift: np.ndarray) -> np.ndarray:
     return Roller(scene.loads, scene.model.law, np.arange(len(cases))).w_of(shift)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=60)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--runs", nargs="+", default=RUNS, help="model:accuracy")
-    parser.add_argument("--only", action="store_true", help="solve, without the comparison of balances")
-    args = parser.parse_args()
-    if args.cases < 1:
-        parser.error("--cases must be at least 1")
-    cases = sample(args.cases, args.seed)
-    for run in args.runs:
-        model, accuracy = run.split(":")
-        print(json.dumps({run: printable(measured(cases, model, accuracy, not args.only))}, indent=1), flush=True)
+def steep_friction(cases: list[tr.Case]) -> np.ndarray:
+    """Return which cases have friction that falls too steeply for the theory (validity bit `steep_friction`), (n,)."""
+    ds = tr.solve(cases, outputs=("forces",), contact_model="kalker", accuracy="preview")
+    return (ds.validity.values & validity_bit("steep_friction")) != 0
+
+
+def measure(cases: int = 64, seed: int = 1, runs: tuple[str, ...] = RUNS, only: bool = False) -> dict[str, Any]:
+    """Return the numbers of each run, MODEL:PRESET; `only` leaves out the comparison of balances."""
+    drawn = sample(cases, seed)
+    found = {word: measured(drawn, *word.split(":"), compare=not only) for word in runs}
+    return {"steep_cases": np.flatnonzero(steep_friction(drawn)), "runs": found}
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

@@ -1,6 +1,6 @@
-"""How well `force_error_estimate` tells the error of friction forces in the exact theory.
+"""Compare `force_error_estimate` with the true error of friction forces in the exact theory.
 
-    python -m validation.benchmarks.force_errors [--cases N] [--seed S] [--finer ELEMENTS]
+    python -m validation.benchmarks.force_errors [--cases N] [--seed S] [--finer ELEMENTS] [--accuracy PRESET]
 
 The true error is the change of F_T or F_A, whichever is larger, to `--finer` elements, over mu F_N. Wanted: the
 estimate is exceeded in less than 1 % of the contacts, and in the median it is at most five times the true error.
@@ -8,15 +8,14 @@ estimate is exceeded in less than 1 % of the contacts, and in the median it is a
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
-import json
 
 import numpy as np
 
 import trackroller as tr
 from trackroller.roller.accuracy import PRESETS
-from validation.benchmarks.kalker_cost import random_designs
+from validation.benchmarks.command import run
+from validation.benchmarks.samples import random_designs
 
 
 def estimates(cases: list[tr.Case], finer: int, accuracy: str = "standard") -> tuple[np.ndarray, np.ndarray]:
@@ -43,16 +42,10 @@ def summary(told: np.ndarray, true: np.ndarray) -> dict[str, float]:
     }
 
 
-def main() -> None:
-    """Print the summary as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--cases", type=int, default=500)
-    parser.add_argument("--seed", type=int, default=17)
-    parser.add_argument("--finer", type=int, default=80, help="elements of the solution that is taken as true")
-    parser.add_argument("--accuracy", default="standard")
-    args = parser.parse_args()
-    print(json.dumps(summary(*estimates(random_designs(args.cases, args.seed), args.finer, args.accuracy)), indent=2))
+def measure(cases: int = 500, seed: int = 17, finer: int = 80, accuracy: str = "standard") -> dict[str, float]:
+    """Return the summary for random designs; the solution with `finer` elements is taken as exact."""
+    return summary(*estimates(random_designs(cases, seed), finer, accuracy))
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

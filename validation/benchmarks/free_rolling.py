@@ -1,19 +1,19 @@
-"""How well the rolling radius shift of free rolling is known: CONTACT's cases on ever finer grids of our own.
+"""Compare the rolling radius shift in free rolling with that on a very fine grid, for CONTACT and for this package.
 
-    python -m validation.benchmarks.free_rolling [--elements 160] [--every 1] [--output limit.json]
+    python -m validation.benchmarks.free_rolling [--elements N] [--every N] [--limits FILE]
 
 Rolling freely, r_Delta0 is below a thousandth of a millimetre and hangs on the few elements about the point where the
 slip vanishes: a grid that does not resolve the stick area there is wrong by some per cent, and by no power of the size
-of its elements. Prints r_Delta0 [1e-3 mm] of CONTACT with 40 and 60 elements and extrapolated, of `standard`, and of
-one fine grid without extrapolation, whose stick area has a hundred elements; then the largest differences from it.
+of its elements. Compared are CONTACT with 40 and 60 elements and extrapolated, `standard` and `reference` with one fine
+grid without extrapolation, whose stick area has a hundred elements. `--limits` keeps the shifts of the fine grid, which
+the tests read.
 """
 
 from __future__ import annotations
 
-import argparse
 import json
-import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,10 +25,11 @@ from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import to_table
 from trackroller.roller.options import Options
 from trackroller.roller.stages import mechanics as stages
+from validation.benchmarks.command import run
 
 ABOUT = (
     "r_Delta0 [mm] of the free-rolling cases of contact.json on one grid of the exact theory without extrapolation, "
-    "which resolves the stick area where the slip vanishes; written by validation/benchmarks/free_rolling.py --output"
+    "which resolves the stick area where the slip vanishes; written by validation/benchmarks/free_rolling.py --limits"
 )
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data" / "contact.json"
 
@@ -45,35 +46,42 @@ def on_one_grid(case: dict, elements: int) -> float:
     return float(found.shift[0])
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--elements", type=int, default=160, help="along each axis of the fine grid")
-    parser.add_argument("--every", type=int, default=1, help="take every n-th case only")
-    parser.add_argument("--output", type=Path, help="write r_Delta0 [mm] of the fine grid by case")
-    given = parser.parse_args()
-    records = [r for r in json.loads(DATA.read_text(encoding="utf-8"))["cases"] if r["case"]["motor_force"] == 0]
-    rows, limits = [], {}
-    print(f"{'case':26s} {'C 40':>8s} {'C 60':>8s} {'C extra':>8s} {'standard':>8s} {given.elements:>8d}")
-    for record in records[:: given.every]:
-        start, case = time.process_time(), record["case"]
-        coarse, fine = (record[f"grid_{n}x{n}"]["rolling_radius_shift"] for n in (40, 60))
-        own = float(tr.solve([case], outputs=("forces",), contact_model="kalker").rolling_radius_shift[0])
-        limit = on_one_grid(case, given.elements)
-        rows.append((coarse, fine, fine + 2 * (fine - coarse), own, limit))
-        limits[record["name"]] = float(f"{limit:.6g}")
-        print(
-            f"{record['name']:26s} "
-            + " ".join(f"{1e3 * v:8.4f}" for v in rows[-1])
-            + f"   {time.process_time() - start:.0f} s",
-            flush=True,
+def shifts(record: dict, elements: int) -> dict[str, float]:
+    """Return r_Delta0 [mm] of a recorded case by CONTACT, by the presets and on the fine grid."""
+    coarse, fine = (record[f"grid_{n}x{n}"]["rolling_radius_shift"] for n in (40, 60))
+    own = {
+        f"kalker, {accuracy}": float(
+            tr.solve(
+                [record["case"]], outputs=("forces",), contact_model="kalker", accuracy=accuracy
+            ).rolling_radius_shift[0]
         )
-        if given.output:
-            stored = {"about": ABOUT, "elements": given.elements, "rolling_radius_shift": limits}
-            given.output.write_text(json.dumps(stored, indent=1), encoding="utf-8")
-    error = np.abs(np.array(rows)[:, :4] / np.array(rows)[:, 4:] - 1.0)
-    for name, e in zip(("CONTACT 40x40", "CONTACT 60x60", "CONTACT extrapolated", "standard"), error.T, strict=True):
-        print(f"{name:22s} from the fine grid: median {100 * np.median(e):.1f} %, largest {100 * e.max():.1f} %")
+        for accuracy in ("standard", "reference")
+    }
+    return {
+        "CONTACT, 40x40": coarse,
+        "CONTACT, 60x60": fine,
+        "CONTACT, extrapolated": fine + 2 * (fine - coarse),
+        **own,
+        "limit": on_one_grid(record["case"], elements),
+    }
+
+
+def measure(elements: int = 160, every: int = 1, limits: str = "") -> dict[str, Any]:
+    """Return the errors of r_Delta0 against a grid of `elements` squared, for every n-th recorded case."""
+    records = [r for r in json.loads(DATA.read_text(encoding="utf-8"))["cases"] if r["case"]["motor_force"] == 0]
+    found = {record["name"]: shifts(record, elements) for record in records[::every]}
+    if limits:
+        kept = {name: float(f"{each['limit']:.6g}") for name, each in found.items()}
+        stored = {"about": ABOUT, "elements": elements, "rolling_radius_shift": kept}
+        Path(limits).write_text(json.dumps(stored, indent=1), encoding="utf-8")
+    errors = {
+        name: [abs(each[name] / each["limit"] - 1.0) for each in found.values()]
+        for name in next(iter(found.values()))
+        if name != "limit"
+    }
+    told = {name: {"median": np.median(e), "largest": np.max(e)} for name, e in errors.items()}
+    return {"shifts": found, "errors": told}
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

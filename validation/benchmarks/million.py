@@ -1,12 +1,12 @@
-"""Run a large study through the real workflow, each step in a separate process: CPU time and peak of memory.
+"""Run a large study through the workflow and measure processor time and peak memory of every step.
 
-    python -m validation.benchmarks.million [BASE_SAMPLES] [real] [keep=FOLDER]
+    python -m validation.benchmarks.million [--base-samples N] [--real] [--keep FOLDER]
 
-A Saltelli sample of six factors without second order: 8 BASE_SAMPLES cases of forces, contact and life (131072: just
-over a million). Without `real`, results of a few thousand solved cases are handed out again and again in place of
-solving, so that everything else is measured alone: planning, Snakemake's graph of jobs, gathering, analysis,
-figures, report. With `real`, every case is solved (3-4 ms of CPU each) by `snakemake --cores all`, which goes on
-where it stopped when the same command is given again with the same `keep` folder.
+A Saltelli sample of six factors without second order has 8 cases for each base sample (131072: just over a million
+cases), with forces, contact and life. Without `--real`, results of a few thousand solved cases are handed out again and
+again in place of solving, so that the other steps are measured alone: planning, Snakemake's graph of jobs, gathering,
+analysis, figures, report. With `--real`, every case is solved by `snakemake --cores all`, which goes on where it
+stopped when the same command is given again with the same `--keep` folder.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import yaml
@@ -28,6 +29,7 @@ from trackroller.study.config import load_study
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.plan import working_plan
 from trackroller.study.solve import solve_rows
+from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
 STUDY = {
@@ -99,43 +101,38 @@ def prepare(place: Path, base_samples: int) -> None:
     (place / "study.yaml").write_text(yaml.safe_dump({**STUDY, "samples": base_samples}, sort_keys=False))
 
 
-def main() -> None:
-    """Run all steps and print one line for each."""
-    words = sys.argv[1:]
-    if words[:1] == ["step"]:
-        return {"plan": plan, "hand_out": hand_out}[words[1]]()
-    number = next((int(w) for w in words if w.isdigit()), 131072)
-    keep = next((w[5:] for w in words if w.startswith("keep=")), "")
+def measure(base_samples: int = 131072, real: bool = False, keep: str = "") -> dict[str, Any]:
+    """Return time, processor time [s] and peak of memory [GB] of every step; `real` solves all cases."""
     place = Path(keep or tempfile.mkdtemp(prefix="million-")).resolve()
     place.mkdir(exist_ok=True, parents=True)
-    prepare(place, number)
+    prepare(place, base_samples)
     me, snakemake = [sys.executable, __file__], str(Path(sys.executable).parent / "snakemake")
-    run = [snakemake, "--cores", "all", "--quiet", "all", "--"]
-    steps = [("plan", [*me, "step", "plan"]), ("graph", [snakemake, "-n", "--quiet", "all"])]
-    steps += (
-        [("solve", [*run, "results/million/study.nc"])]
-        if "real" in words
-        else [("hand out", [*me, "step", "hand_out"]), ("gather", [*run, "results/million/study.nc"])]
-    )
+    flow = [snakemake, "--cores", "all", "--quiet", "all", "--"]
+    steps = [("plan", [*me, "plan"]), ("graph", [snakemake, "-n", "--quiet", "all"])]
+    if not real:
+        steps.append(("hand out", [*me, "hand_out"]))
     steps += [
-        (rule, [*run, f"results/million/{file}"])
-        for rule, file in (("analysis", "sensitivity.nc"), ("figures", "figures"), ("report", "report.html"))
+        (rule, [*flow, f"results/million/{file}"])
+        for rule, file in (
+            ("solve and gather" if real else "gather", "study.nc"),
+            ("analysis", "sensitivity.nc"),
+            ("figures", "figures"),
+            ("report", "report.html"),
+        )
     ]
-    minute = 0.0
+    found = {}
     for step, command in steps:
-        wall, cpu, memory = measured(command, place)
-        print(f"{step:10}{wall:8.1f} s {cpu:8.1f} s CPU {memory:6.2f} GB", flush=True)
-        if step == "plan":
-            minute = cpu * MAX_CASES / (8 * number)
-            print(
-                f"{'':10}{minute:8.1f} s CPU for the {MAX_CASES:,} cases that a study may have, at this rate",
-                flush=True,
-            )
-    size = (place / "results" / "million" / "study.nc").stat().st_size
-    print(f"study.nc {size / 1e6:.0f} MB in {place}")
-    if minute > 60 and number > 100_000:
-        raise SystemExit("the limit is more than can be planned in a minute: change MAX_CASES")
+        numbers = measured(command, place)
+        found[step] = dict(zip(("seconds", "processor_seconds", "gigabytes"), numbers, strict=True))
+        print(f"{step}: {numbers[0]:.1f} s", file=sys.stderr, flush=True)
+    longest_plan = found["plan"]["processor_seconds"] * MAX_CASES / (8 * base_samples)
+    if longest_plan > 60 and base_samples > 10_000:
+        raise SystemExit("a study of MAX_CASES takes more than a minute to plan: change MAX_CASES")
+    return {"cases": 8 * base_samples, "steps": found, "seconds_to_plan_the_largest_study": longest_plan}
 
 
 if __name__ == "__main__":
-    main()
+    if sys.argv[1:] in (["plan"], ["hand_out"]):  # a step in a process of its own
+        {"plan": plan, "hand_out": hand_out}[sys.argv[1]]()
+    else:
+        run(measure, __doc__)

@@ -1,6 +1,6 @@
-"""How often the `error_estimate` of a peak covers what brute force finds, over ellipticity 0.02 to 50.
+"""Count how often the `error_estimate` of a peak covers what brute force finds, for axis ratios 0.02 to 50.
 
-    python -m validation.benchmarks.peak_bruteforce [--patches N] [--seed S] [--accuracy standard] [--slender]
+    python -m validation.benchmarks.peak_bruteforce [--patches N] [--seed S] [--accuracy PRESET] [--slender]
 
 Random sliding patches (friction 0 to 1, Poisson's ratio 0 to 0.5, pole inside or outside, some in full slip) are
 sampled at thousands of random points, many on the edge and where the slip turns; from the twelve highest, evaluated
@@ -10,9 +10,8 @@ nor steps.
 
 from __future__ import annotations
 
-import argparse
-import json
 import math
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from trackroller.halfspace.ellipse import NO_FIELD, near_parts, patch_rows, unit
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.stress import von_mises
 from trackroller.roller.accuracy import PRESETS
+from validation.benchmarks.command import run
 
 
 def random_patches(n: int, seed: int, slenderness: tuple[float, float] = (1.0, 50.0)) -> tuple[np.ndarray, np.ndarray]:
@@ -97,46 +97,34 @@ def climbed(row: np.ndarray, nu: np.ndarray, rng: np.random.Generator, points: i
     return out
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--patches", type=int, default=400)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--accuracy", choices=list(PRESETS), default="standard")
-    parser.add_argument("--slender", action="store_true", help="slenderness 5 to 50 alone")
-    args = parser.parse_args()
-    rows, nu = random_patches(args.patches, args.seed, (5.0, 50.0) if args.slender else (1.0, 50.0))
-    rng = np.random.default_rng(args.seed)
+def measure(patches: int = 800, seed: int = 1, accuracy: str = "standard", slender: bool = False) -> dict[str, Any]:
+    """Return how often the estimate of a peak covers brute force; `slender` takes axis ratios from 5 to 50 only."""
+    rows, nu = random_patches(patches, seed, (5.0, 50.0) if slender else (1.0, 50.0))
+    rng = np.random.default_rng(seed)
     force = np.array([climbed(row, ratio, rng) for row, ratio in zip(rows, nu, strict=True)])
-    found = find_peaks(rows, nu, PRESETS[args.accuracy].peak)
+    found = find_peaks(rows, nu, PRESETS[accuracy].peak)
     below = force[:, :, 0] / found.stress - 1
-    missed = np.argwhere(below > found.error)
-    print(
-        json.dumps(
+    covered = below <= found.error
+    return {
+        "peaks_within_0.2_percent": float(np.mean(below <= 2e-3)),
+        "covered_of_peaks": float(np.mean(covered)),
+        "covered_of_patches": float(np.mean(covered.all(axis=1))),
+        "peaks_above_brute_force_by_0.2_percent": int(np.sum(below < -2e-3)),
+        "estimate_percentiles_50_90": np.quantile(found.error, (0.5, 0.9)),
+        "missed": [
             {
-                "patches": args.patches,
-                "accuracy": args.accuracy,
-                "peaks_within_0.2_percent": float(np.mean(below <= 2e-3)),
-                "covered_of_peaks": float(np.mean(below <= found.error)),
-                "covered_of_patches": float(np.mean((below <= found.error).all(axis=1))),
-                "peaks_above_brute_force_by_0.2_percent": int(np.sum(below < -2e-3)),
-                "estimate_percentiles_50_90": [float(q) for q in np.quantile(found.error, (0.5, 0.9))],
-                "missed": [
-                    {
-                        "patch": int(i),
-                        "body": ("roller", "guide")[k],
-                        "ellipticity": float(rows[i, 0] / rows[i, 1]),
-                        "friction": float(rows[i, 2]),
-                        "below": float(below[i, k]),
-                        "estimate": float(found.error[i, k]),
-                        "place": force[i, k, 1:].round(3).tolist(),
-                    }
-                    for i, k in missed
-                ],
-            },
-            indent=2,
-        )
-    )
+                "patch": int(i),
+                "body": ("roller", "guide")[k],
+                "ellipticity": rows[i, 0] / rows[i, 1],
+                "friction": rows[i, 2],
+                "below": below[i, k],
+                "estimate": found.error[i, k],
+                "place": force[i, k, 1:].round(3),
+            }
+            for i, k in np.argwhere(~covered)
+        ],
+    }
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

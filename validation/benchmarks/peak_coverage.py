@@ -1,4 +1,4 @@
-"""How far `standard` lies from `reference`, and how often its `error_estimate` covers the difference.
+"""Compare peaks at `standard` with peaks at `reference`, and count how often `error_estimate` covers the difference.
 
     python -m validation.benchmarks.peak_coverage [--cases N] [--seed S]
 
@@ -10,16 +10,14 @@ settings, so errors that both share do not show here; the tests hold the method 
 
 from __future__ import annotations
 
-import argparse
-import json
 import math
-import time
 from typing import Any
 
 import numpy as np
 
 import trackroller as tr
 from trackroller.roller.dataset import VALIDITY_BITS, validity_bit
+from validation.benchmarks.command import run
 
 TOLERANCE = 2e-3
 CONFORMAL = validity_bit("conformal")
@@ -145,54 +143,29 @@ def worst_cases(
     return listed
 
 
-def measure(n: int, seed: int) -> dict[str, Any]:
+def measure(cases: int = 2000, seed: int = 1) -> dict[str, Any]:
     """Solve the sample twice and compare."""
-    cases = sample(n, seed)
-    seconds, solved = {}, {}
+    drawn, solved, n = sample(cases, seed), {}, cases
     for accuracy in ("standard", "reference"):
-        start = time.perf_counter()
         solved[accuracy] = tr.solve(
-            cases, outputs=("contact", "peak_stress"), contact_model="sliding", accuracy=accuracy
+            drawn, outputs=("contact", "peak_stress"), contact_model="sliding", accuracy=accuracy
         )
-        seconds[accuracy] = round(time.perf_counter() - start, 2)
     standard, reference = solved["standard"], solved["reference"]
     peaks, validity = compare(standard, reference), standard.validity.values
     conformal = (validity & CONFORMAL) != 0
     ratio = (reference.semi_axis_lateral / reference.semi_axis_rolling).values
     regimes = standard.regime.attrs["flag_meanings"].split()
     return {
-        "cases": n,
-        "seed": seed,
-        "seconds": seconds,
         "conformal_cases": int(conformal.sum()),
         "regimes": {name: int(np.sum(standard.regime.values == k)) for k, name in enumerate(regimes)},
         "regimes_that_differ": int(np.sum(standard.regime.values != reference.regime.values)),
         "ellipticity_from_to": [float(np.nanmin(ratio)), float(np.nanmax(ratio))],
         "all": summary(peaks, np.ones(n, dtype=bool)),
         "without_conformal": summary(peaks, ~conformal),
-        "worst": worst_cases(cases, peaks, validity, np.ones(n, dtype=bool)),
-        "worst_without_conformal": worst_cases(cases, peaks, validity, ~conformal),
+        "worst": worst_cases(drawn, peaks, validity, np.ones(n, dtype=bool)),
+        "worst_without_conformal": worst_cases(drawn, peaks, validity, ~conformal),
     }
 
 
-def printable(value: Any) -> Any:
-    """Return the record with infinities and NaN as words, because JSON has no such numbers."""
-    if isinstance(value, dict):
-        return {k: printable(v) for k, v in value.items()}
-    if isinstance(value, list):
-        return [printable(v) for v in value]
-    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=2000)
-    parser.add_argument("--seed", type=int, default=1)
-    args = parser.parse_args()
-    if args.cases < 1:
-        parser.error("--cases must be at least 1")
-    print(json.dumps(printable(measure(args.cases, args.seed)), indent=2, allow_nan=False))
-
-
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

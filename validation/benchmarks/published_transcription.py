@@ -1,11 +1,11 @@
-"""Transcribe the paper's stress calculation, eqs. (1)-(6), to plain NumPy as the reference for speed.
+"""Time a plain NumPy transcription of the paper's stress calculation, eqs. (1)-(6).
 
 Written from the equations of Wenzel et al., Appl. Mech. 2022, 3, 692-704, and not from any program: the derivatives of
 Omega come from SymPy (as in the paper), are evaluated on n x n surface points, weighted with the tractions and
 integrated by Simpson's rule; displacement gradients and Hooke's law follow as printed. One point per evaluation, as
 an optimiser asks for them. The peak is sought by SciPy's differential evolution with its default settings.
 
-    python -m validation.benchmarks.published_transcription            a line of numbers per style, paper's own case
+    python -m validation.benchmarks.published_transcription [--sample N] [--seed S]
 
 Three styles give the same numbers at very different cost. A ratio must name its style, and an honest report quotes
 "printed" and "reused" side by side:
@@ -21,6 +21,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -31,6 +32,7 @@ import trackroller as tr
 from trackroller.halfspace.influence import corner_loads, stress_parts
 from trackroller.halfspace.stress import body_stress, von_mises
 from trackroller.roller.case import Case
+from validation.benchmarks.command import run
 
 POINTS = 40  # surface points per direction
 POPSIZE = 15  # scipy's default; 3 unknowns make a population of 45
@@ -300,6 +302,10 @@ def time_transcription(
     }
 
 
+def measure(sample: int = 20, seed: int = 1) -> dict[str, Any]:
+    """Return the times of each style for the paper's case."""
+    return {kind: time_transcription(sample=sample, seed=seed, style=kind) for kind in STYLES}
+
+
 if __name__ == "__main__":
-    for kind in STYLES:
-        print(time_transcription(style=kind))
+    run(measure, __doc__)

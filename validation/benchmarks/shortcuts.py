@@ -1,17 +1,20 @@
-"""Measure how much CPU time the shortcuts save, scene by scene: time without shortcuts over time with them.
+"""Measure how much processor time the shortcuts save, scene by scene.
 
-`python -m validation.benchmarks.shortcuts [--cases 400]` prints a table. Both runs alternate in one process, and the
-smallest of three times counts. The table also shows the largest relative difference of the numbers.
+    python -m validation.benchmarks.shortcuts [--cases N]
+
+Each scene is solved with and without shortcuts in turn in one process; the smallest of three times counts. Found are
+the ratio of both times and the largest relative difference of the numbers.
 """
 
 from __future__ import annotations
 
-import argparse
 import time
+from typing import Any
 
 import numpy as np
 
 import trackroller as tr
+from validation.benchmarks.command import run
 
 OUTPUTS = ("forces", "contact", "peak_stress", "life")
 
@@ -26,7 +29,7 @@ def scenes(n: int) -> dict[str, tuple[list[dict], dict]]:
     ]
     heavy = [dict(case, radial_force=-float(r)) for case, r in zip(plain, np.geomspace(100, 9000, n), strict=True)]
     return {
-        "nothing to spare (all cases differ)": (plain, {}),
+        "nothing is skipped (all cases differ)": (plain, {}),
         "no axial force: one contact": ([dict(case, axial_force=0.0) for case in plain], {}),
         "travel speed in 10 levels: mechanics once": (
             [dict(plain[i // 10], velocity=10.0 + i % 10) for i in range(n)],
@@ -63,24 +66,17 @@ def difference(one, other) -> float:
     return worst
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--cases", type=int, default=400)
-    n = parser.parse_args().cases
+def measure(cases: int = 400) -> dict[str, Any]:
+    """Return speed-up and largest difference of the results, scene by scene."""
     tr.solve([{}, {"friction_coefficient": 0.0}], outputs=OUTPUTS, contact_model="sliding")
-    print(f"{'scene':45} {'on [ms]':>9} {'off [ms]':>9} {'saving':>7} {'difference':>11}   (CPU time a case)")
-    for name, (cases, told) in scenes(n).items():
+    found = {}
+    for name, (drawn, told) in scenes(cases).items():
         whole = {"outputs": OUTPUTS, "shortcuts": False}
-        spared = {"outputs": OUTPUTS} | told
-        on, off = [], []
-        for _ in range(3):
-            t, found = seconds(cases, **spared)
-            on.append(t)
-            t, full = seconds(cases, **whole)
-            off.append(t)
-        a, b = min(on) / n * 1e3, min(off) / n * 1e3
-        print(f"{name:45} {a:9.3f} {b:9.3f} {b / a:6.1f}x {difference(found, full):11.1e}")
+        pairs = [(seconds(drawn, **{"outputs": OUTPUTS} | told), seconds(drawn, **whole)) for _ in range(3)]
+        on, off = (min(run[k][0] for run in pairs) for k in range(2))
+        found[name] = {"faster": off / on, "difference": difference(pairs[-1][0][1], pairs[-1][1][1])}
+    return {"scenes": found}
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

@@ -1,23 +1,23 @@
-"""Compare `normal="halfspace"` with `normal="hertz"` where Hertz's theory is exact: parabolas, by ellipticity.
+"""Compare `normal="halfspace"` with `normal="hertz"` on parabolas, for which Hertz's theory is exact.
 
-    python -m validation.benchmarks.solved_patches [--cases N] [--seed S] [--accuracy A] [--model M] [--circles]
+    python -m validation.benchmarks.solved_patches [--cases N] [--seed S] [--accuracy PRESET] [--model NAME] [--circles]
 
 The random designs of `peak_coverage.py`; patches that reach an edge of guide or groove are left out, for Hertz knows
 none. `--circles` takes the circles instead of parabolas: then the difference of their shapes is in the numbers too.
-Prints median and 95th percentile of the relative differences, in per cent: forces over mu F_N, the moment over
+Found are median and 95th percentile of the relative differences: forces over mu F_N, the moment over
 mu F_N sqrt(a b), r_Delta0 over a, the rest over itself; and how often a peak is within its two error estimates.
 """
 
 from __future__ import annotations
 
-import argparse
 import itertools
-import time
+from typing import Any
 
 import numpy as np
 
 import trackroller as tr
 from trackroller.roller.dataset import validity_bit
+from validation.benchmarks.command import run
 from validation.benchmarks.peak_coverage import sample
 
 CONFORMAL = validity_bit("conformal")
@@ -56,42 +56,40 @@ def differences(hertz, grid, friction: np.ndarray) -> dict[str, np.ndarray]:
     return found
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--cases", type=int, default=300)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--accuracy", default="standard")
-    parser.add_argument("--model", default="sliding", choices=("sliding", "fastsim", "kalker"))
-    parser.add_argument("--circles", action="store_true")
-    args = parser.parse_args()
-    cases = sample(args.cases, args.seed)
-    hertz = tr.solve(cases, OUTPUTS, accuracy="reference", contact_model=args.model)
-    start = time.process_time()
-    drawn = cases if args.circles else [as_parabolas(case) for case in cases]
-    grid = tr.solve(drawn, OUTPUTS, accuracy=args.accuracy, contact_model=args.model, normal="halfspace")
-    print(
-        f"{(time.process_time() - start) / len(cases):.2f} s of processor time a case; regimes that differ:",
-        int(np.sum(hertz.regime.values != grid.regime.values)),
-    )
-    found = differences(hertz, grid, np.array([case.friction_coefficient for case in cases]))
+def levels(found: dict[str, np.ndarray], chosen: np.ndarray) -> dict[str, Any]:
+    """Return median, 95th percentile and largest difference of every quantity over the chosen patches (cases, 2)."""
+    told: dict[str, Any] = {"patches": int(chosen.sum())}
+    for name, value in found.items():
+        part = np.abs(value[chosen[:, : value.shape[1]]]).ravel()
+        part = part[np.isfinite(part)]
+        if part.size:
+            told[name] = {"median": np.median(part), "95": np.quantile(part, 0.95), "largest": part.max()}
+    return told
+
+
+def measure(
+    cases: int = 200, seed: int = 1, accuracy: str = "standard", model: str = "sliding", circles: bool = False
+) -> dict[str, Any]:
+    """Return the differences of all patches and by axis ratio, and how many peaks lie within their estimates."""
+    drawn = sample(cases, seed)
+    hertz = tr.solve(drawn, OUTPUTS, accuracy="reference", contact_model=model)
+    grids = drawn if circles else [as_parabolas(case) for case in drawn]
+    grid = tr.solve(grids, OUTPUTS, accuracy=accuracy, contact_model=model, normal="halfspace")
+    found = differences(hertz, grid, np.array([case.friction_coefficient for case in drawn]))
     inside = ((hertz.validity.values | grid.validity.values) & CONFORMAL) == 0
     ratio = (hertz.semi_axis_lateral / hertz.semi_axis_rolling).values
+    known = inside[:, None] & np.isfinite(grid.normal_force.values)
     covered = np.abs(found["peak_stress"]) <= (grid.error_estimate + hertz.error_estimate).values
-    for low, high in itertools.pairwise(BINS):
-        chosen = inside[:, None] & (ratio >= low) & (ratio < high) & np.isfinite(grid.normal_force.values)
-        if not chosen.any():
-            continue
-        print(f"a/b {low:g} to {high:g}: {int(chosen.sum())} patches")
-        for name, value in found.items():
-            part = 100 * np.abs(value[chosen]).ravel()
-            part = part[np.isfinite(part)]
-            if part.size:
-                print(f"    {name:30s} {np.median(part):.3f}  {np.quantile(part, 0.95):.3f}  largest {part.max():.2f}")
-        print(
-            f"    peaks covered {100 * covered[chosen].mean():.1f} %, "
-            f"within 1 % {100 * np.mean(np.abs(found['peak_stress'][chosen]) < 0.01):.1f} %"
-        )
+    return {
+        "other_regime": int(np.sum(hertz.regime.values != grid.regime.values)),
+        "covered_of_peaks": float(covered[known].mean()),
+        "all": levels(found, known),
+        "by_axis_ratio": {
+            f"{low:g} to {high:g}": levels(found, known & (ratio >= low) & (ratio < high))
+            for low, high in itertools.pairwise(BINS)
+        },
+    }
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

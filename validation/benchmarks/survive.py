@@ -1,6 +1,6 @@
-"""A study killed with SIGKILL again and again must end bit for bit like an undisturbed one, no case solved twice.
+"""Kill a study with SIGKILL again and again; it must end like an undisturbed one, with no case solved twice.
 
-    python -m validation.benchmarks.survive [SEED]
+    python -m validation.benchmarks.survive [--seed S]
 
 Eleven kills of all kinds, for the workflow, for `trackroller run` and for its dask workers: everything, Snakemake
 alone, one worker alone; while chunks are being solved, gathered, drawn and reported. A case counts as solved twice when
@@ -19,12 +19,14 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.study import store
 from trackroller.study.files import StudyFolder
+from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOLS = Path(sys.executable).parent
@@ -229,7 +231,13 @@ def _same(a: np.ndarray, b: np.ndarray) -> bool:
     return a.dtype == b.dtype and np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
 
 
+def measure(seed: int = 1) -> dict[str, Any]:
+    """Return the number of kills that a study survived; exit with 1 and say what was lost otherwise."""
+    wrong = ride(KILLS, seed)
+    if wrong:
+        raise SystemExit("\n".join(wrong))
+    return {"kills": len(KILLS)}
+
+
 if __name__ == "__main__":
-    found = ride(KILLS, int(sys.argv[1]) if len(sys.argv) > 1 else 1)
-    print("\n".join(found) or "nothing lost, nothing solved twice, bit for bit the same")
-    raise SystemExit(bool(found))
+    run(measure, __doc__)

@@ -1,6 +1,6 @@
-"""How much shear changes the pressures of unlike materials, and forces with them.
+"""Measure how much shear changes the pressures of unlike materials, and the forces with them.
 
-    python -m validation.benchmarks.unlike_coupling [--roller PA6] [--guide 1.7225-normalised] [--elements 60]
+    python -m validation.benchmarks.unlike_coupling [--roller NAME] [--guide NAME] [--elements N]
 
 Pressures on unlike materials make the surfaces creep, which `kalker` always counts; the tractions in turn move them
 along the normal by w = K/(pi G) int (x - x').tau/|x - x'|^2, which it counts with `normal="halfspace"` and leaves out
@@ -10,7 +10,7 @@ tangential problem in turn until neither changes, and compared with the first ro
 
 from __future__ import annotations
 
-import argparse
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.kalker import Creepage, KalkerSettings, PatchSolution, solve_patch
 from trackroller.contact.normal import lift, solve_normal
 from trackroller.materials import load_database
+from validation.benchmarks.command import run
 
 LOAD, WIDER, ROUNDS = 146.0, 1.2, 6
 # friction, longitudinal creepage, spin [1/mm]
@@ -55,32 +56,31 @@ class Patch:
         return lift(*traction, *self.sides, float(self.elastic.coupling[0] / self.elastic.shear_modulus[0]))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--elements", type=int, default=60)
-    parser.add_argument("--roller", default="PA6")
-    parser.add_argument("--guide", default="1.7225-normalised")
-    given = parser.parse_args()
-    patch = Patch(given.elements, given.roller, given.guide)
-    print(f"{given.roller} on {given.guide}, K = {patch.elastic.coupling[0]:.3f}")
-    print("forces over mu F_N, moment over mu F_N mm, p_max [MPa], offset of the pressures' centre over a and b")
-    for name, (friction, creep, spin) in SLIPS.items():
-        apart = np.zeros_like(patch.gap)
-        for k in range(ROUNDS):
-            pressure = patch.modulus * solve_normal(patch.gap + apart, *patch.sides, LOAD / patch.modulus).pressure
-            found = patch.tangential(pressure, friction, creep, spin)
-            apart = patch.lifted(found.traction[0] * friction * pressure.max())
-            if k in (0, ROUNDS - 1):
-                r, limit = found.resultants, friction * LOAD
-                n, share = len(pressure), pressure / pressure.sum()
-                line = WIDER * ((2 * np.arange(n) + 1) / n - 1)
-                print(
-                    f"{name:22s} {'both ways' if k else 'one way':10s} F_T {r.lateral_force[0] / limit:8.4f}  "
-                    f"F_A {r.driving_force[0] / limit:8.4f}  M_R {r.spin_moment[0] / limit:8.4f}  "
-                    f"p {pressure.max():6.2f}  "
-                    f"centre {share.sum(axis=0) @ line:7.4f} {share.sum(axis=1) @ line:7.4f}"
-                )
+def rounds(patch: Patch, friction: float, creep: float, spin: float) -> list[dict[str, float]]:
+    """Return forces over mu F_N, the moment over mu F_N mm and p_max [MPa] of the first and of the last round."""
+    apart, told = np.zeros_like(patch.gap), []
+    for k in range(ROUNDS):
+        pressure = patch.modulus * solve_normal(patch.gap + apart, *patch.sides, LOAD / patch.modulus).pressure
+        found = patch.tangential(pressure, friction, creep, spin)
+        apart = patch.lifted(found.traction[0] * friction * pressure.max())
+        if k in (0, ROUNDS - 1):
+            names = ("lateral_force", "driving_force", "spin_moment")
+            forces = {name: getattr(found.resultants, name)[0] / (friction * LOAD) for name in names}
+            told.append({**forces, "max_pressure": pressure.max()})
+    return told
+
+
+def measure(elements: int = 60, roller: str = "PA6", guide: str = "1.7225-normalised") -> dict[str, Any]:
+    """Return results of both rounds and the changes, over mu F_N (pressure: over itself), for three creepages."""
+    patch = Patch(elements, roller, guide)
+    found = {}
+    for name, slips in SLIPS.items():
+        one_way, both_ways = rounds(patch, *slips)
+        change = {key: abs(both_ways[key] - one_way[key]) for key in one_way}
+        change["max_pressure"] /= one_way["max_pressure"]
+        found[name] = {"one_way": one_way, "both_ways": both_ways, "change": change}
+    return {"coupling": patch.elastic.coupling[0], "creepages": found}
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import logging
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,12 +13,13 @@ import numpy as np
 import xarray as xr
 
 from trackroller.report.build import analyse_study, draw_study, report_study
-from trackroller.report.comparison.pairs import pairs
+from trackroller.report.comparison import GOOD, errors, pairs
 from trackroller.report.comparison.words import sentences
 from trackroller.report.figures import style
 from trackroller.roller.case import Case
 from trackroller.roller.solver import solve
 from trackroller.study.config import load_study
+from trackroller.study.files import write_whole
 from trackroller.study.run import run_study
 from validation.contact_models import patches as ladder_patches
 
@@ -45,6 +47,7 @@ def compare(study_file: Path, out: Path) -> None:
     base = {k: v for k, v in study.config.base.items() if k not in study.factors}
     draw_patches(Case.from_dict(base), figures)
     write_words(gathered, out / "words.txt")
+    write_errors(gathered, out / "errors.json")
     report_study(gathered, str(figures), analysis, str(out / "report.html"))
 
 
@@ -55,6 +58,30 @@ def write_words(study_nc: str, path: Path) -> None:
         paired = pairs(ds)
         said = sentences(paired) if paired is not None else ["The study has but one contact model."]
     path.write_text("\n".join(said) + "\n", encoding="utf-8")
+
+
+def write_errors(study_nc: str, path: Path) -> None:
+    """Write how far each cheaper model is from the exact theory: quantity by quantity, as JSON."""
+    with xr.open_dataset(study_nc) as ds:
+        paired = pairs(ds)
+        if paired is None:
+            raise ValueError("the study must compare contact models")
+        found = errors(paired)
+        told = {
+            model: {str(name): spread(found[name].sel(contact_model=model).values) for name in found.data_vars}
+            for model in found.contact_model.values.tolist()
+        }
+    told = {"designs": paired.sizes["design"], "models": told}
+    write_whole(path, lambda beside: beside.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8"))
+
+
+def spread(found: np.ndarray) -> dict[str, float]:
+    """Return the number of known errors, the share of good ones, the median, the 90th percentile and the largest."""
+    known = found[~np.isnan(found)]
+    if not known.size:
+        return {"designs": 0}
+    levels = dict(zip(("median", "90", "largest"), np.quantile(known, (0.5, 0.9, 1.0)).tolist(), strict=True))
+    return {"designs": known.size, "good": float(np.mean(known <= GOOD)), **levels}
 
 
 def draw_patches(case: Any, out: Path) -> list[FigureInfo]:

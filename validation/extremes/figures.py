@@ -85,7 +85,7 @@ def draw_map(record: Record, out_dir: Path, model: str) -> FigureInfo:
             f"Extremes with the contact model {model}",
             "largest deviation of each check, relative (finite, solved: share of cases; condition: number; estimate: "
             "over the estimated error); darker: closer to what is tolerated on a logarithmic scale; crossed: not "
-            "met; blank: not claimed; beyond: fails where the model ends, as stated",
+            "met; blank: no claim; beyond: fails where the model ends, as stated",
         )
         finish(figure)
         axes.spines[["left", "bottom"]].set_visible(False)
@@ -162,9 +162,8 @@ def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
         save(figure, out_dir, "extremes_regimes")
     return FigureInfo(
         "extremes_regimes",
-        "Regimes over axial force and friction.",
-        "Friction lets a contact lift at a smaller axial force, at self-locking the slightest one; "
-        "little friction cannot drive.",
+        "Regimes of the paper's roller over axial force and friction, contact model sliding.",
+        "With more friction a contact lifts at a smaller axial force; with little friction the roller cannot drive.",
     )
 
 

@@ -11,44 +11,41 @@ from validation.pages import Block, page_html
 
 Record = dict[str, Any]
 NOTES = (
-    "A case without a solution is a row with `regime` failed or lift_off and NaN, never an exception or a warning.",
-    "With friction a contact lifts at an axial force below |F_rad| tan(alpha); beyond self-locking, "
-    "mu f = tan(alpha), the solution that grows out of the frictionless wedge has shed a contact: `lift_off`.",
-    "A contact counts as lifted off when it carries no more than 1e-8 of |F_rad| + |F_ax|, in every regime and contact "
-    "model; the regime flips there once. Within 3e-8 of the exact border it is therefore lift_off (alpha = 30 deg).",
-    "No axial force beyond self-locking: the even balance is a solution, but an unstable one, for the lateral friction "
-    "turns with the load; the slightest axial force sheds a contact, to its own side. Both are told as they are "
-    "(rolling, lift_off), and both carry the bit `jamming`: it marks rolling rows with |F_T| >= F_N tan(alpha) and "
-    "lifted rows where this would hold without axial force.",
-    "Braking ends in full slip without a jump (r_Delta0 -> inf). Driving ends where the roller spins on the spot "
-    "(r_Delta0 = -r_A); there the drilling still adds to the torque, and full slip, defined without it, begins with a "
-    "jump. Measured at a/r_A = 0.02 (0.1): limit over mu sum F_N 1 + 4e-6 (8e-5), transmitted force 4e-6 (9e-5), peak "
-    "stress 3e-8 (3e-7), spin moment 6e-4 (3e-3) of mu F_N a; normal and lateral forces do not jump.",
-    "Where the spin pole enters the patch the lateral force of `sliding` grows as the square root of the way in (its "
-    "pole runs along the ellipse), and the normal forces with it. Driven, the torque therefore folds there: within "
-    "4e-6 of one motor force stand two slips, about 1e-5 apart, and the slip jumps so far. `kalker` and "
-    "`fastsim` showed no fold.",
-    "Patches a hundred times larger than the rolling radius (bit `half_space`): the drilling torque outweighs the "
-    "transmitted force, whose digits a small imbalance no longer tells. There `residual` is no less than the "
-    "uncertainty of the transmitted force over mu sum F_N, and `converged` says no above 1e-10: 5 % of the rolling "
-    "random extremes. In other units the force changed by no more than 7e-8 of mu sum F_N in 6000 random extremes, and "
-    "where by more than 1e-9, by no more than a few times what the residual said.",
-    "Where a patch reaches beyond the equator of the guide contour the slip is constant there (an assumption), the "
-    "torque jumps, and a balance inside the jump has no solution: failed.",
-    "A life beyond the largest number of a computer is inf; the S-N curve has no end.",
-    "`fastsim` ends at an ellipticity of 50, `kalker` where its elements get too slender (about 1000): failed beyond.",
-    "Very slender patches with the spin pole inside (a/b above 50): the search may miss a ridge of up to 5 % of the "
-    "peak; the estimate owns it, `reference` finds it.",
+    "A case without a solution is a row with `regime` failed or lift_off and NaN. It never raises an exception or a "
+    "warning.",
+    "With friction a contact lifts at an axial force below |F_rad| tan(α). Beyond self-locking (μ f = tan(α)) the "
+    "solution that continues the frictionless one has lost a contact: `lift_off`.",
+    "A contact counts as lifted off when it carries at most 1e-8 of |F_rad| + |F_ax|, in every regime and contact "
+    "model. The regime changes there once.",
+    "Beyond self-locking without axial force, equal normal forces are a solution, but an unstable one: the smallest "
+    "axial force lifts a contact. Both results are shown as they are (rolling, lift_off), and both carry the bit "
+    "`jamming`. The bit marks rolling rows with |F_T| >= F_N tan(α), and lifted rows that would be such rows without "
+    "axial force.",
+    "Braking ends in full slip without a jump (r_Δ0 → ∞). Driving ends where the roller spins on the spot "
+    "(r_Δ0 = -r_A). There the spin moments still add to the torque, but full slip is defined without them. Therefore "
+    "full slip begins with a small jump of spin moment, transmitted force and peak stress; normal and lateral forces "
+    "do not jump.",
+    "In `sliding` the lateral force grows as the square root of the distance by which the spin pole has entered the "
+    "patch. In a driven roller two slips then belong to one motor force within a very narrow range, and the slip jumps "
+    "there. `kalker` and `fastsim` showed no such fold.",
+    "In patches that are a hundred times larger than the rolling radius (bit `half_space`) the spin moments are much "
+    "larger than the transmitted force. There `residual` is at least the uncertainty of the transmitted force over "
+    "μ ΣF_N, and `converged` is 0 above 1e-10.",
+    "Where a patch reaches beyond the equator of the guide contour, the slip is assumed constant. The torque jumps "
+    "there, and a case whose balance lies inside the jump fails.",
+    "A life beyond the largest floating-point number is inf, because the S-N curve has no end.",
+    "`fastsim` fails beyond an axis ratio of 50, `kalker` where its elements get too slender (about 1000).",
+    "In `sliding` with very slender patches and the spin pole inside (a/b above 50) the search at `standard` may miss "
+    "a ridge of the peak. `error_estimate` includes this error, and `reference` finds the ridge.",
 )
 KERNEL_WORDS = (
-    "*In single precision*: the worst error of the closed formula behind the kernel evaluated with 32-bit numbers at "
-    "the same places. 1 means that no digit is left: these formulas cannot be had in single precision, and in double "
-    "keep what the columns before say (the axis ratio and the stresses by formulas without their cancellation)."
+    "*In single precision* is the worst error of the closed formula behind the kernel, evaluated with 32-bit numbers "
+    "at the same places. A value of 1 means that no digit is correct."
 )
 RANDOM_WORDS = (
-    "Log-uniform over all parameters at once (loads 1 mN to 1 MN, moduli 1 kPa to 300 GPa, contours 1 µm to 10 m, "
-    "contact angles 0.01 to 89.99 deg, mu 1e-12 to 2), most of them far from anything that can be built. *failed, "
-    "small patch*: without solution though the patch is small against all radii."
+    "All parameters are drawn at once from log-uniform distributions: loads 1 mN to 1 MN, Young's moduli 1 kPa to "
+    "300 GPa, contours 1 µm to 10 m, contact angles 0.01 to 89.99°, friction 1e-12 to 2. Most of these rollers cannot "
+    "be built. *failed, small patch* counts cases without solution whose patch is small against all radii."
 )
 
 
@@ -61,9 +58,10 @@ def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
         (
             "p",
             f"{sum(claims)} of {len(claims)} claims on {len(scenes)} edge scenes hold. A scene is a series of cases "
-            "that runs to an end of the parameters; the claims are: finite or flagged, solved, small residual, the "
-            "same in other units, the same in a mirror, well conditioned, monotone where physics says so, continuous "
-            "across borders of regimes and towards limits, and peaks within the estimated error. "
+            "that runs to an end of the parameters. The claims are: results are finite or flagged, the case is "
+            "solved, the residual is small, other units and a mirrored roller give the same result, the problem is "
+            "well conditioned, results are monotone where physics demands it, they are continuous across borders of "
+            "regimes and towards limits, and peaks lie within the estimated error. "
             "`snakemake -s validation/Snakefile --cores all extremes` makes this page.",
         ),
         *[("figure", f) for f in figures],
@@ -100,7 +98,7 @@ def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
                 [_random(r) for r in record["random"]],
             ),
         ),
-        ("h2", "To know"),
+        ("h2", "Behaviour at the ends"),
         ("list", NOTES),
     ]
 

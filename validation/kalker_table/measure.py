@@ -2,7 +2,7 @@
 
     python -m validation.kalker_table.measure [--designs N] [--patches N] [--seed S] [--elements N] [--table FILE]
 
-Designs are the random rollers of `validation.benchmarks.kalker_cost`. Patches cover the whole range evenly; every other
+Designs are the random rollers of `validation.benchmarks.samples`. Patches cover the whole range evenly; every other
 one has unlike bodies with |K|/mu from 0.1 to 20. Errors are differences from elements, over mu F_N for forces and over
 mu F_N sqrt(a b) for the spin moment.
 """
@@ -27,7 +27,7 @@ from trackroller.contact.table import spline
 from trackroller.contact.table.coordinates import HALF_WAY, RATIOS, coupling_creepage
 from trackroller.materials import load_database
 from trackroller.roller import accuracy
-from validation.benchmarks.kalker_cost import random_designs
+from validation.benchmarks.samples import random_designs
 from validation.kalker_table import build
 from validation.kalker_table.nodes import LOG_RATIOS, problem
 

@@ -123,10 +123,13 @@ def results() -> dict[str, Any]:
             ds, (*QUANTITIES, "semi_axis_lateral", "semi_axis_rolling", "peak_stress", "life_cycles")
         )
     for accuracy in ("preview", "standard", "reference"):
-        start = time.process_time()
-        ds = solve(case_of("free"), contact_model="sliding", accuracy=accuracy)
+        seconds = []
+        for _ in range(5):
+            start = time.process_time()
+            ds = solve(case_of("free"), contact_model="sliding", accuracy=accuracy)
+            seconds.append(time.process_time() - start)
         out["accuracy"][accuracy] = {
-            "seconds": round(time.process_time() - start, 4),
+            "seconds": round(min(seconds), 5),
             "peak_stress": _values(ds, ("peak_stress",))["peak_stress"],
         }
     return out

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Drawn = tuple["Figure", style.FigureInfo]
-TITLES = {"sliding": "full sliding (the paper's model)", "kalker": "exact rolling theory"}
+TITLES = {"sliding": "contact model sliding (the paper's)", "kalker": "contact model kalker (exact theory)"}
 SOURCES = ("published program", "ours, sliding", "ours, kalker", "CONTACT")
 
 
@@ -115,8 +115,8 @@ def bars() -> Drawn:
         "Paper's figure 8: forces on the roller and stresses in both contacts, driven, μ = 0.3; published program, "
         "this software with both contact models, and CONTACT. σ_DEH is the larger of both bodies; the published "
         "program has no values on the surface.",
-        f"Full sliding makes the lateral force of contact 2 {100 * apart:.0f} % larger than CONTACT; the exact theory "
-        "agrees with it.",
+        f"The lateral force of contact 2 in sliding is {100 * apart:.0f} % larger than in CONTACT; kalker agrees with "
+        "CONTACT.",
     )
 
 
@@ -164,9 +164,9 @@ def tractions() -> Drawn:
     style.finish(figure)
     return figure, style.FigureInfo(
         "paper_9_tractions",
-        "Paper's figure 9: pressure and shear on the roller in contact 1, driven, μ = 0.3: full sliding with the "
-        "empirical spin pole (left) and exact rolling theory (right).",
-        "The lateral shear differs most: where full sliding puts the spin pole on the edge, elasticity moves it inside "
+        "Paper's figure 9: pressure and shear on the roller in contact 1, driven, μ = 0.3: sliding with the "
+        "empirical spin pole (left) and kalker, the exact theory (right).",
+        "The lateral shear differs most: sliding puts the spin pole on the edge, but elasticity moves it inside "
         "and the part of the other sign grows, so that less lateral force is left.",
     )
 

@@ -23,6 +23,9 @@ from trackroller.parameters import LIFE_RULES
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data"
 REFERENCES = ("published_program.json", "contact.json", "kalker_coefficients.csv")
 FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "rolling_radius_shift")
+# Of one equilibrium by CONTACT [s], as recorded with its results on another machine; CONTACT is not run here.
+CONTACT_SECONDS = {"40x40": 2.5, "60x60": 4.7}
+ON_SURFACE = 0.1  # of the smaller semi-axis; a peak that lies higher counts as one on the surface
 PATCHES = ("semi_axis_lateral", "semi_axis_rolling", "max_pressure")
 Row = dict[str, Any]
 
@@ -97,13 +100,43 @@ def contact_program() -> list[Row]:
     records = json.loads((DATA / REFERENCES[1]).read_text(encoding="utf-8"))["cases"]
     kept = [r for r in records if "grid_60x60" in r and "grid_40x40" in r]
     rows = []
+    driven = [i for i, r in enumerate(kept) if r["case"]["motor_force"] != 0]
     for model in ("kalker", "sliding"):
-        ds = tr.solve([case_of(r) for r in kept], outputs=("forces", "contact"), contact_model=model)
+        ds = tr.solve([case_of(r) for r in kept], outputs=("forces", "contact", "peak_stress"), contact_model=model)
         for name in FORCES[:4]:
             theirs = [3 * np.array(r["grid_60x60"][name]) - 2 * np.array(r["grid_40x40"][name]) for r in kept]
             scales = [_scale(name, r["grid_60x60"], r["case"]["friction_coefficient"]) for r in kept]
             rows.append(row(name, f"CONTACT, our `{model}`", list(ds[name].values), theirs, scales))
+        name, shift = "rolling_radius_shift, driven or braked", ds.rolling_radius_shift.values
+        theirs = [
+            3 * r["grid_60x60"]["rolling_radius_shift"] - 2 * r["grid_40x40"]["rolling_radius_shift"] for r in kept
+        ]
+        pick = [theirs[i] for i in driven]
+        rows.append(row(name, f"CONTACT, our `{model}`", [shift[i] for i in driven], pick, np.abs(pick)))
+        rows += peaks(kept, ds, f"CONTACT, our `{model}`")
     return rows
+
+
+def peaks(records: Sequence[Any], ds: Any, against: str) -> list[Row]:
+    """Compare peak stresses with the largest ones under CONTACT's tractions, apart on the surface and below.
+
+    A peak counts as one on the surface if either program finds it there: an element grid misses narrow ridges.
+    """
+    size = np.minimum(ds.semi_axis_lateral.values, ds.semi_axis_rolling.values)
+    deep = ds.peak_z.values > ON_SURFACE * size[..., None]  # (cases, contact, body)
+    found: dict[str, list[tuple[float, float]]] = {"on the surface": [], "below the surface": []}
+    for i, record in enumerate(records):
+        for key, values in record.get("subsurface", {}).items():
+            top, contact, body = values["global_max"], int(key[1]) - 1, ("roller", "guide").index(values["body"])
+            at = i, contact, body
+            below = deep[at] and top["depth_over_min_semiaxis"] > ON_SURFACE
+            stresses = float(ds.peak_stress.values[at]), top["sigma_vm_MPa"]
+            found["below the surface" if below else "on the surface"].append(stresses)
+    return [
+        row(f"peak_stress, {place}", against, *zip(*pairs, strict=True), [theirs for _, theirs in pairs])
+        for place, pairs in found.items()
+        if pairs
+    ]
 
 
 def linear_theory() -> list[Row]:
@@ -140,4 +173,5 @@ def compare() -> dict[str, Any]:
     return {
         "rows": [*published, *contact_program(), *linear_theory(), *pylife_lives()],
         "left_out": left_out,
+        "contact_seconds": CONTACT_SECONDS,
     }

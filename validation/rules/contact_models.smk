@@ -10,6 +10,7 @@ rule contact_models:
         report=f"{COMPARED}/report.html",
         figures=directory(f"{COMPARED}/figures"),
         words=f"{COMPARED}/words.txt",
+        errors=f"{COMPARED}/errors.json",
     log:
         f"{COMPARED}/logs/contact_models.log",
     conda:

@@ -180,3 +180,8 @@ def life_against_peak(ds: xr.Dataset) -> dict[str, float]:
         return {}
     low, middle, high = np.percentile(life[small] / peak[small], (5, 50, 95))
     return {"low": round(float(low), 2), "median": round(float(middle), 2), "high": round(float(high), 2)}
+
+
+def yardstick(ladders: dict[str, list[Record]]) -> float:
+    """Return the processor time [s] of a complete case of `sliding` with the peak search of `standard`."""
+    return preset_rungs("standard", read_ladders(ladders))[1].cost
