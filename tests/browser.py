@@ -204,13 +204,13 @@ class Page:
 
     @property
     def requests(self) -> list[str]:
-        """Addresses that the page asked for, without data and blobs."""
+        """Return the addresses that the page asked for, without data and blobs."""
         every = [p["request"]["url"] for p in self._events("Network.requestWillBeSent")]
         return [url for url in every if not url.startswith(("data:", "blob:"))]
 
     @property
     def complaints(self) -> list[str]:
-        """Errors and warnings of the console, thrown exceptions and violations of the policy."""
+        """Return the errors and warnings of the console, thrown exceptions and violations of the policy."""
         thrown = [str(p["exceptionDetails"]) for p in self._events("Runtime.exceptionThrown")]
         said = [str(p["entry"]["text"]) for p in self._events("Log.entryAdded") if p["entry"]["level"] != "verbose"]
         console = [

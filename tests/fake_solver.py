@@ -11,7 +11,7 @@ import xarray as xr
 
 
 def solve(design: xr.Dataset, database=None, **options) -> xr.Dataset:
-    """Forces that depend on every parameter; appends one line a case to the file $FAKE_SOLVED."""
+    """Return forces that depend on every parameter; append one line a case to the file $FAKE_SOLVED."""
     load = design["axial_force"].values
     if (load == 13.0).any():
         raise ArithmeticError("thirteen cannot be solved")

@@ -60,7 +60,7 @@ def random_study(seed: int) -> xr.Dataset:
 
 
 def _constraints(columns: dict[str, np.ndarray], results: dict, rng: np.random.Generator) -> list[str]:
-    """Constraints on a factor, a list, a result or the regime, each as 'name operator value'; often none."""
+    """Return constraints on a factor, a list, a result or the regime as 'name operator value'; often none."""
     limits = ["regime != lift_off"] if "regime" in results else []
     for name, values in {**columns, "roller_peak_stress": results["peak_stress"][1][:, :, 0].max(axis=1)}.items():
         if name in ("material_pair", "motor_force"):
@@ -71,7 +71,7 @@ def _constraints(columns: dict[str, np.ndarray], results: dict, rng: np.random.G
 
 
 def _design(kind: str, rng: np.random.Generator) -> tuple[dict[str, np.ndarray], list[int]]:
-    """Columns of the factors, (n,), and the number of levels of each factor of a grid."""
+    """Return the columns of the factors, (n,), and the number of levels of each factor of a grid."""
     numbers = [str(n) for n in rng.permutation(list(NUMBERS))][: rng.integers(1, 5)]
     lists = [str(n) for n in rng.permutation(list(LISTS))][: rng.integers(0, 3)]
     levels: dict[str, list] = {}
@@ -100,7 +100,7 @@ def _design(kind: str, rng: np.random.Generator) -> tuple[dict[str, np.ndarray],
 
 
 def _results(columns: dict[str, np.ndarray], n: int, rng: np.random.Generator) -> dict:
-    """Variables over rows: name -> (dims after the case, values)."""
+    """Return the variables over rows: name -> (dims after the case, values)."""
     codes = {name: np.unique(v, return_inverse=True)[1] for name, v in columns.items()}
     unit = {name: code / max(code.max(), 1) for name, code in codes.items()}
     name = list(codes)[int(rng.integers(len(codes)))]
@@ -138,7 +138,7 @@ def _results(columns: dict[str, np.ndarray], n: int, rng: np.random.Generator) -
 
 
 def _corner(codes: dict[str, np.ndarray], n: int, rng: np.random.Generator) -> np.ndarray:
-    """Rows in a corner of the design, (n,): the upper or lower levels of some factors."""
+    """Return the rows in a corner of the design, (n,): the upper or lower levels of some factors."""
     inside = np.ones(n, dtype=bool)
     for code in codes.values():
         if rng.random() < 0.3:

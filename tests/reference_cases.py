@@ -13,12 +13,12 @@ DATA = Path(__file__).parent / "data"
 
 @functools.cache
 def published_cases() -> list[dict]:
-    """Cases of the published program with `exact` numbers of an independent quadrature."""
+    """Return the cases of the published program with `exact` numbers of an independent quadrature."""
     return json.loads((DATA / "published_program.json").read_text())["cases"]
 
 
 def case_of(record: dict) -> tr.Case:
-    """The `Case` of a record; JSON has no infinity, so it stands there as text."""
+    """Return the `Case` of a record. The record holds infinity as text, because JSON has no infinity."""
     return tr.Case.from_dict({k: float(v) if v == "inf" else v for k, v in record["case"].items()})
 
 

@@ -58,7 +58,7 @@ UNITS = {
 
 
 def results(columns: dict[str, np.ndarray], unlimited: bool = False) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
-    """Variables over rows of cases: name -> (dims after `case`, values)."""
+    """Return the variables over rows of cases: name -> (dims after `case`, values)."""
     n = len(next(iter(columns.values())))
     get = {k: np.broadcast_to(columns.get(k, v), (n,)) for k, v in {**BASE, "material_pair": PAIRS[0]}.items()}
     alpha = np.deg2rad(get["contact_angle"].astype(float))
@@ -152,7 +152,7 @@ def _finish(ds: xr.Dataset, factors: dict, design: str) -> xr.Dataset:
 
 
 def grid_study(factors: dict | None = None, only: tuple[str, ...] = (), **options) -> xr.Dataset:
-    """A gathered grid study; `only` keeps just these result variables (and the regime)."""
+    """Return a gathered grid study; `only` keeps just these result variables (and the regime)."""
     factors = DEFAULT_FACTORS if factors is None else factors
     rows = list(itertools.product(*factors.values()))
     columns = {
@@ -172,7 +172,7 @@ def grid_study(factors: dict | None = None, only: tuple[str, ...] = (), **option
 
 
 def sampled_study(n: int = 400, seed: int = 3, **options) -> xr.Dataset:
-    """A gathered Latin hypercube study over four numbers and the material pair."""
+    """Return a gathered Latin hypercube study over four numbers and the material pair."""
     rng = np.random.default_rng(seed)
     columns = {
         "friction_coefficient": rng.uniform(0.02, 0.4, n),

@@ -129,7 +129,7 @@ def our_pairs(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
 
 
 def their_pairs(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
-    """Return the same by SALib's RS-HDMR."""
+    """Return the interaction indices by SALib's RS-HDMR."""
     found = hdmr.analyze(problem(3), unit, y, maxorder=2, K=10, R=max(300, len(y) // 2), seed=seed + 1)
     return _symmetric(found["S"][3:6], found["S_conf"][3:6])
 
@@ -143,7 +143,7 @@ def our_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
 
 
 def their_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
-    """Return the same by SALib, which has no interval."""
+    """Return SALib's PAWN of the last factor; it has no interval."""
     return _symmetric(pawn.analyze(problem(1), unit[:, -1:], y)["median"], np.array([np.nan]))
 
 

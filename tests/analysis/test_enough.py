@@ -21,7 +21,7 @@ EXACT = {"ST": np.array([V[0] + V[2], V[1], V[2]]) / V.sum(), "first": np.array(
 
 
 def analysed(design, count, seed):
-    """The Ishigami function in the solver's place; the polynomial part alone for given data."""
+    """Analyse the Ishigami function in the solver's place; for given data its polynomial part alone."""
     data = {"name": "e", "design": design, "samples": count, "seed": seed, "factors": CARRIERS}
     data["analysis"] = {"outputs": ["friction_power"], "measures": ["first"]}
     data["outputs"] = ["forces", "friction_work"]
@@ -53,7 +53,7 @@ def test_the_number_asked_for_is_enough_and_not_far_too_much(design, index, star
 
 
 def lives(count, seed, spread=0.2):
-    """Two design points with a lognormal life, of which B10 and the probability of 1,000 h are known."""
+    """Return two design points with a lognormal life, of which B10 and the probability of 1,000 h are known."""
     data = {"name": "e", "design": "inner_outer", "samples": count, "seed": seed, "outputs": ["forces", "life"]}
     data["factors"] = {"velocity": {"values": [30.0, 60.0]}, "axial_force": {"normal": [0.0, 1.0]}}
     data["factors"]["friction_coefficient"] = {"uniform": [0.1, 0.3]}

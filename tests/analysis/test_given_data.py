@@ -21,7 +21,7 @@ def ishigami(u: np.ndarray) -> np.ndarray:
 
 
 def exact_delta(correlation: float) -> float:
-    """Delta of a normal pair: mean total variation of N(r x, 1 - r^2) from N(0, 1)."""
+    """Return the delta of a normal pair: mean total variation of N(r x, 1 - r^2) from N(0, 1)."""
     x = norm.ppf((np.arange(1000) + 0.5) / 1000)[:, None]
     y = np.linspace(-8, 8, 2001)
     apart = np.abs(norm.pdf(y, correlation * x, np.sqrt(1 - correlation**2)) - norm.pdf(y))

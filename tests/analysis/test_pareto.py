@@ -21,7 +21,7 @@ LHS = {
 
 
 def brute(costs):
-    """Not beaten by any other row, by comparing each with each."""
+    """Return which rows no other row beats, by comparing each row with each."""
     worse = (costs[None] <= costs[:, None]).all(axis=2) & (costs[None] < costs[:, None]).any(axis=2)
     return ~worse.any(axis=1)
 

@@ -25,12 +25,12 @@ KINDS = ["sum", "turned", "product"]
 
 
 def closed(members):
-    """Closed index of some factors of the g-function."""
+    """Return the closed index of some factors of the g-function."""
     return (np.prod(1 + SHARE[[int(name[1]) for name in members]]) - 1) / (np.prod(1 + SHARE) - 1)
 
 
 def by_kind(a, b, kind):
-    """A function whose indices depend on the category."""
+    """Return a function whose indices depend on the category."""
     return np.select([kind == "sum", kind == "turned"], [a + 2 * b, 2 * a + b + 3], a * b - 5)
 
 
@@ -169,7 +169,7 @@ FILE = {
 
 
 def solved(data):
-    """A gathered study whose life depends on the load for one material and on friction for the other."""
+    """Return a gathered study whose life depends on the load for one material and on friction for the other."""
     study = parse_study(data)
     ds = study.design()
     load, friction = -ds["radial_force"] / 200 + ds["axial_force"] / 20, ds["friction_coefficient"] * 10

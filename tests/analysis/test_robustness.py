@@ -36,7 +36,7 @@ def solved(fake, path=None, data=INNER_OUTER):
 
 
 def lognormal(ds):
-    """Life = 10**(3 + 0.2 z) at 30 m/min, ten times that at 60, full slip above a friction of 0.28 (10 %)."""
+    """Return the life 10**(3 + 0.2 z) at 30 m/min, ten times that at 60; full slip above a friction of 0.28 (10 %)."""
     slip = ds["friction_coefficient"].values > 0.28
     life = 10 ** (3 + 0.2 * ds["axial_force"].values) * np.where(ds["velocity"].values > 45, 10.0, 1.0)
     return {"roller_life_hours": np.where(slip, 1e-3, life), "regime": slip.astype(np.int8)}

@@ -21,19 +21,19 @@ X3 = {f"x{i}": {"uniform": [-PI, PI]} for i in (1, 2, 3)}
 
 
 def ishigami(x1, x2, x3):
-    """Ishigami & Homma (1990) with a = 7, b = 0.1."""
+    """Return the function of Ishigami & Homma (1990) with a = 7, b = 0.1."""
     return np.sin(x1) + 7 * np.sin(x2) ** 2 + 0.1 * x3**4 * np.sin(x1)
 
 
 def ishigami_indices():
-    """First-order, total and the one second-order index that is not 0, from the closed forms."""
+    """Return first-order and total indices and the one second-order index that is not 0, from the closed forms."""
     v1, v2, v13 = 0.5 * (1 + 0.1 * PI**4 / 5) ** 2, 49 / 8, 8 * 0.01 * PI**8 / 225
     v = v1 + v2 + v13
     return np.array([v1, v2, 0]) / v, np.array([v1 + v13, v2, v13]) / v, v13 / v
 
 
 def solved(data, fake, path=None):
-    """A study through the study reader and a file, with an analytic function in the solver's place."""
+    """Return a study that went through the study reader and a file, with an analytic function as the solver."""
     study = parse_study(data)
     design = study.design()
     ds = design.copy()
@@ -119,7 +119,7 @@ def test_sobol_error_falls_with_sample_size():
 
 
 def run_chain(data, folder, function):
-    """Study reader, plan, chunks, gather and analysis with an analytic function as the solver."""
+    """Run study reader, plan, chunks, gathering and analysis with an analytic function as the solver."""
     from trackroller.study.run import run_study
 
     def solver(design, **_):

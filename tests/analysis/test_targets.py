@@ -28,7 +28,7 @@ Z = {30.0: 0.0, 36.0: 1.0, 40.0: 2.0}
 
 
 def solved(data, path=None):
-    """Life 500 * 10**(0.2 (z + shift)), full slip above a friction of 0.28, power ten times the friction over 0.25."""
+    """Return a study with life 500 * 10**(0.2 (z + shift)), full slip above mu 0.28, power 10 (mu over 0.25)."""
     study = parse_study(data)
     ds = study.design()
     shift = np.array([Z[a] for a in ds["contact_angle"].values]) - (ds["velocity"].values > 45)

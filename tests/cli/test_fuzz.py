@@ -73,7 +73,7 @@ anything = st.recursive(
 
 @st.composite
 def broken(draw, wholes):
-    """A good file with one to three values replaced, keys renamed or parts left out."""
+    """Return a good file with one to three values replaced, keys renamed or parts left out."""
     data = copy.deepcopy(draw(st.sampled_from(wholes)))
     for _ in range(draw(st.integers(1, 3))):
         place = data
@@ -96,7 +96,7 @@ def broken(draw, wholes):
 
 
 def written(path, data):
-    """The data as YAML (python's own tags where YAML has no word for it), or as it is when it is text."""
+    """Return the data as YAML (Python's own tags where YAML has no word for it); text stays as it is."""
     path.write_text(
         data if isinstance(data, str) else yaml.dump(data, allow_unicode=True), encoding="utf-8", errors="replace"
     )
@@ -104,7 +104,7 @@ def written(path, data):
 
 
 def read_cleanly(read, path):
-    """Reads; anything but a clean refusal goes on to pytest."""
+    """Read a file; every error except a clean refusal goes on to pytest."""
     try:
         return read(path)
     except InputError as exc:

@@ -159,7 +159,7 @@ nonsense = st.one_of(
 
 
 def _means(text: str) -> float | None:
-    """The oracle, by rules of its own: the number that a text means, None where it means none."""
+    """Return the number that a text means, None where it means none, by rules independent of the package."""
     bare = text[1:-1] if text[:1] == text[-1:] == "'" else text
     if not re.fullmatch(r"[-+]?\d+(\.\d*)?([eE][-+]?\d+)?", bare, re.ASCII):
         return None

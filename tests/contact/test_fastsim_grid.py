@@ -38,7 +38,7 @@ def hertz_patch(n, k_x, k_y, load=115.0):
 
 
 def drawn_patch(pressure, half_width=0.3, half_length=0.2, centre=0.0):
-    """A patch whose elements (N, M) carry any pressures."""
+    """Return a patch whose elements (N, M) carry the given pressures."""
     one = np.ones(1)
     cell = 4 * half_width * half_length / pressure.size
     return GridPatch(
@@ -137,7 +137,7 @@ def test_slivers_and_nothing_at_all():
 
 
 def worn_points():
-    """A groove worn hollow at the nominal contact: two patches beside it."""
+    """Return the profile of a groove worn hollow at the nominal contact, which carries in two patches."""
     x = np.linspace(-2, 2, 201)
     return [[float(u), float(-u * u / 14 + 0.002 * math.exp(-((u / 0.12) ** 2)))] for u in x]
 

@@ -305,7 +305,7 @@ def test_most_falling_laws_of_a_sample_are_solved():
 
 
 def limits_of(kind: str, accuracy: str = "preview"):
-    """The paper's roller, free and driven, without a law and under laws at extreme and rising velocities."""
+    """Return the paper's roller, free and driven, without a law and under laws at low, high and rising velocities."""
     falls = {"kind": "exponential", "speed": 20.0, "lowest": 0.5}
     one = {"kind": "table", "speed": [0.0, 5.0, 50.0], "friction": [0.3, 0.3, 0.3]}
     half = 0.5 * tr.Case().friction_coefficient

@@ -42,7 +42,7 @@ def values(solution):
 
 
 def equilibrium(case, settings):
-    """Both contacts in balance, eqs (7), (9) and the drive torque, by a general root finder."""
+    """Solve eqs (7), (9) and the drive torque of both contacts by a general root finder."""
     c = {k: float(v) for k, v in case.items() if not k.endswith("material")}
     alpha = np.deg2rad(c["contact_angle"])
     r_g = c["guide_profile_radius"]

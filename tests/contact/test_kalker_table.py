@@ -25,7 +25,7 @@ def _forces(solution) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def designs():
-    """Random rolling designs and their solution by the table."""
+    """Return random rolling designs and their solution by the table."""
     rollers = random_designs(120, 2026)
     return rollers, measure.rolling(rollers)
 

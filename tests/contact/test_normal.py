@@ -22,7 +22,7 @@ def hertz(k_x, k_y, load=LOAD):
 
 
 def on_ellipse(k_x, k_y, n):
-    """Solution on the box of Hertz's ellipse with n x n elements."""
+    """Solve on the box of Hertz's ellipse with n x n elements."""
     a, b, _ = hertz(k_x, k_y)
     unit = (2 * np.arange(n) + 1) / n - 1
     gap = 0.5 * k_x * (a * unit[None, :]) ** 2 + 0.5 * k_y * (b * unit[:, None]) ** 2

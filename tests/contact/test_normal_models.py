@@ -31,7 +31,7 @@ LOADS = {"motor_force": -20.0, "friction_coefficient": 0.25}
 
 
 def hertz_patch(n=40, k_x=0.0238, k_y=0.0587, load=115.0, centre=0.0):
-    """An ellipse, and the same as a patch on a grid."""
+    """Return an ellipse, and the same patch as elements of a grid."""
     one = np.ones(1)
     e = exact_shape(k_x * one, k_y * one, 117e3 * one).at(load * one)
     height = unit_cells(n, n)[0] * e.max_pressure[0]

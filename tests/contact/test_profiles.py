@@ -25,7 +25,7 @@ def circle_points(radius, centre=(0.0, 0.0), low=-4.0, high=4.0, n=161):
 
 
 def gothic_groove(radius=7.0, guide=6.0, alpha=ALPHA, half=4.5, n=181):
-    """A groove of two circular flanks that touch a guide of radius `guide` at +-alpha, in one picture with it."""
+    """Return a groove of two circular flanks that touch a guide of radius `guide` at +-alpha, in the guide's frame."""
     apart = (radius - guide) * math.sin(alpha)
     x = np.linspace(-half, half, n)
     z = [math.sqrt(radius**2 - (abs(v) + apart) ** 2) for v in x]

@@ -15,7 +15,7 @@ def patch(a, b, alpha, shift, radius=6.0, p=1.0):
 
 
 def brute_force(ellipse, slip, spin_model):
-    """F_T, F_A, M_R and power by nested adaptive quadrature of the slip field, mu = 1."""
+    """Return F_T, F_A, M_R and power by nested adaptive quadrature of the slip field, mu = 1."""
     a, b = ellipse.semi_axis_lateral[0], ellipse.semi_axis_rolling[0]
 
     def column(theta, kind):

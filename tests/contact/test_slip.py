@@ -26,12 +26,12 @@ X = np.linspace(-A, A, 17)
 
 
 def published_rolling(x, alpha, shift):
-    """v_y/omega of eq. (21), with the product under the root that the paper prints as a difference."""
+    """Return v_y/omega of eq. (21), with the product under the root that the paper prints as a difference."""
     return math.sqrt(R**2 - (x * math.cos(alpha) + R * math.sin(alpha)) ** 2) - R * math.cos(alpha) + shift
 
 
 def published_delta(x, x_spin, y_spin):
-    """y_delta of eq. (25)."""
+    """Return y_delta of eq. (25)."""
     if x < x_spin:
         return (x + A) / (x_spin + A) * y_spin
     return (x - A) / (x_spin - A) * y_spin

@@ -16,7 +16,7 @@ POINTS = [(0.7, -0.4, 0.5), (-0.3, 0.2, 1.5), (1e-3, 2e-3, 0.8), (0.9, 0.6, 0.02
 
 
 def _numerical_stress(load: str, point, nu):
-    """2 pi sigma from Hooke's law (4) and the displacements (5), differentiated numerically in 50 digits."""
+    """Return 2 pi sigma from Hooke's law (4) and the displacements (5), differentiated numerically in 50 digits."""
 
     def omega(x, y, z):
         r = mp.sqrt(x * x + y * y + z * z)

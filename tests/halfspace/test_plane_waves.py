@@ -24,7 +24,7 @@ def ray(patch, place, rule, work, out):
 
 
 def scratch(**values):
-    """Scratch array of the kernels with one entry a row."""
+    """Return a scratch array of the kernels with one entry a row."""
     work = np.zeros(ellipse_kernels.SCRATCH)
     for name, value in values.items():
         work[getattr(ellipse_kernels, name)] = value

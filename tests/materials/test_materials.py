@@ -55,7 +55,7 @@ def db():
 
 @pytest.fixture
 def user(tmp_path, monkeypatch):
-    """Writes a user's file and returns its path; nothing of the surroundings is read."""
+    """Write a user's file and return its path; no file of the machine is read."""
     monkeypatch.delenv(ENVIRONMENT, raising=False)
     monkeypatch.chdir(tmp_path)
 

@@ -32,7 +32,7 @@ OUTPUTS = ["forces", "contact", "friction_work", "peak_stress", "life"]
 
 
 def study(place, factors, base=None, models=MODELS, outputs=OUTPUTS, **more):
-    """A study solved at preview; path of the gathered file."""
+    """Solve a study at `preview` and return the path of the gathered file."""
     name = f"s{len(list(place.glob('*.yaml')))}"
     path = place / f"{name}.yaml"
     path.write_text(
@@ -52,14 +52,14 @@ def study(place, factors, base=None, models=MODELS, outputs=OUTPUTS, **more):
 
 
 def shown(gathered, place):
-    """Figures by name with their captions, and the text of the report without pictures."""
+    """Return the captions of the figures by name, and the text of the report without pictures."""
     infos = draw_all(gathered, place / "figures")
     text = write_report(gathered, place / "figures", place / "report.html").read_text(encoding="utf-8")
     return {i.name: i for i in infos}, re.sub(r'src="data[^"]*"', "", text)
 
 
 def compared(gathered, place):
-    """Figures that compare models by name, with their captions, and the text of the report."""
+    """Return the captions of the figures that compare models, and the text of the report."""
     with xr.open_dataset(gathered) as ds, style.look():
         infos = [drawn[1] for f in drawers(ds) if (drawn := f())]
     page = write_report(gathered, place / "figures", place / "report.html")
@@ -68,7 +68,7 @@ def compared(gathered, place):
 
 @pytest.fixture(scope="module")
 def own(tmp_path_factory):
-    """A user's study: two frictions and two drives, nothing special about it."""
+    """Return a user's study of two frictions and two drives."""
     place = tmp_path_factory.mktemp("own")
     factors = {"friction_coefficient": {"values": [0.04, 0.3]}, "motor_force": {"values": [0, -10]}}
     return study(place, factors), place

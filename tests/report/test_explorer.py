@@ -40,13 +40,13 @@ def study():
 
 
 def as_table(ds, **keys):
-    """The same results as those of a table of cases, from which `pareto` can restore the design."""
+    """Return the results as those of a table of cases, from which `pareto` can restore the design."""
     told = yaml.safe_load(ds.attrs["study"]) | {"design": "table", "factors": {}} | keys
     return ds.assign_attrs(study=yaml.safe_dump(told))
 
 
 def unpacked(header, block):
-    """Columns of a page by name: what the script reads, written a second time."""
+    """Return the columns of a page by name, decoded as the script decodes them."""
     data = np.frombuffer(zlib.decompress(base64.b64decode(block)), np.uint8)
     found = {}
     for entry in header:

@@ -43,20 +43,20 @@ TWELVE = {
 
 
 def as_table(ds):
-    """The same results as those of a table of cases, from which `pareto` can restore the design."""
+    """Return the results as those of a table of cases, from which `pareto` can restore the design."""
     told = yaml.safe_load(ds.attrs["study"]) | {"design": "table", "factors": {}}
     return ds.assign_attrs(study=yaml.safe_dump(told))
 
 
 def in_order(ds):
-    """The same results with the factors of the study file in the order of the dimensions, as `gather` writes them."""
+    """Return the results with the factors of the study file in the order of the dimensions, as `gather` writes them."""
     told = yaml.safe_load(ds.attrs["study"])
     told["factors"] = {name: told["factors"][name] for name in ds.dims if name in told["factors"]}
     return ds.assign_attrs(study=yaml.safe_dump(told, sort_keys=False))
 
 
 def failed(ds):
-    """The same study with no solution in any case."""
+    """Return the study with no solution in any case."""
     ds = ds.copy(deep=True)
     ds["regime"][:] = 3
     ds["validity"][:] = 0
@@ -197,7 +197,7 @@ def test_ten_pareto_sets_are_those_of_the_package(browser, pages, grid, sample):
 
 
 def robust_study():
-    """An inner/outer design of six points: what lengthens the life also costs friction power."""
+    """Return an inner/outer design of six points, in which a longer life costs friction power."""
     study = parse_study(
         {
             "name": "robust",

@@ -24,7 +24,7 @@ from trackroller.study.config import parse_study
 
 
 def study(columns, **results):
-    """A gathered study along `case` from columns of factors and results."""
+    """Return a gathered study along `case` from columns of factors and results."""
     n = len(next(iter(columns.values())))
     ds = xr.Dataset({k: ("case", np.asarray(v)) for k, v in results.items()}, coords={"case": np.arange(n)})
     ds = ds.assign_coords({k: ("case", np.asarray(v)) for k, v in columns.items()})
@@ -106,7 +106,7 @@ def test_plus_minus_is_half_the_interval_in_sentence_and_table():
 
 
 def with_error(middle):
-    """A sample whose friction energy misses the work put in by about `middle`."""
+    """Return a sample whose friction energy misses the work put in by about `middle`."""
     factors = {"axial_force": {"uniform": [0, 50]}, "velocity": {"uniform": [10, 60]}}
     asked = parse_study({"name": "e", "design": "lhs", "samples": 60, "factors": factors})
     ds = asked.design()

@@ -46,7 +46,7 @@ class Raw:
         self.valid = self.inside & np.all([self.meets(*text.split(" ", 2)) for text in self.limits or []], axis=0)
 
     def meets(self, name, how, limit):
-        """Rows that meet 'name how limit', (n,); an undefined value meets nothing."""
+        """Return the rows that meet 'name how limit', (n,); an undefined value does not meet it."""
         if name == "regime":
             return self.regime != ("rolling", "full_slip", "lift_off", "failed").index(limit)
         limit = limit.strip("'") if name == "material_pair" else float(limit)
@@ -55,30 +55,30 @@ class Raw:
         return met[how]
 
     def categories(self):
-        """Factors of a few levels without an order."""
+        """Return the factors of a few levels without an order."""
         names = ("material_pair", "motor_force", "guide_curve_radius")
         return {n: v for n, v in self.factors.items() if n in names}
 
     def column(self, name):
-        """Life, or the peak stress of a body in its worse contact, (n,)."""
+        """Return the life, or the peak stress of a body in its worse contact, (n,)."""
         if name == "roller_life_hours":
             return self.get(name)
         return self.get("peak_stress")[:, :, ("roller", "guide").index(name.removeprefix("peak_stress_"))].max(axis=1)
 
 
 def value(text):
-    """A number of a sentence as a float."""
+    """Return a number of a sentence as a float."""
     mantissa, _, power = text.replace(",", "").replace("−", "-").partition("·10")
     return float(mantissa) * (10.0 ** int(power.translate(PLAIN)) if power else 1.0)
 
 
 def close(text, exact, figures=3):
-    """Does a written number agree with the exact one to its figures?"""
+    """Return whether a written number agrees with the exact one to its figures."""
     return value(text) == pytest.approx(exact, rel=0.51 * 10.0 ** (1 - figures), abs=1e-12)
 
 
 def first(pattern, text):
-    """The groups of a pattern that must be in the text."""
+    """Return the groups of a pattern that must be in the text."""
     found = re.search(pattern, text)
     assert found, (pattern, text)
     return found.groups()
@@ -115,7 +115,7 @@ def check_valid(raw, said):
 
 
 def inside(raw, name, levels):
-    """Rows that meet a condition of a sentence, (n,)."""
+    """Return the rows that meet a condition of a sentence, (n,)."""
     own = raw.columns[name]
     if isinstance(levels, tuple):
         return (own >= levels[0]) & (own <= levels[1])
@@ -167,7 +167,7 @@ def check_occurrence(raw, said, hit, among):
 
 
 def ratios(raw, column, factor, low, high, rows):
-    """Ratios of the output at two levels of designs that differ in nothing else."""
+    """Return the ratios of the output at two levels, over designs that agree in all other factors."""
     values, seen = raw.column(column), {}
     others = [f for f in raw.factors if f != factor]
     for i in np.flatnonzero(rows & (values > 0)):
@@ -181,7 +181,7 @@ def ratios(raw, column, factor, low, high, rows):
 
 
 def in_categories(raw, factor, rows):
-    """Rows of each level of each category besides a factor."""
+    """Return the rows of each level of each category besides a factor."""
     for name, values in raw.categories().items():
         if name != factor:
             yield from (rows & (values == level) for level in dict.fromkeys(values.tolist()))
@@ -220,7 +220,7 @@ def check_pairs(raw, said):
 
 
 def third_ratio(raw, v, rows):
-    """Ratio of medians between the two classes, and the number of rows in the smaller one."""
+    """Return the ratio of medians between the two classes, and the number of rows in the smaller one."""
     x, y = raw.columns[v["factor"]].astype(float), raw.column(v["column"])
     good = rows & np.isfinite(y) & (y > 0)
     low, high = (np.log10(y[good & part]) for part in (x <= v["low"], x >= v["high"]))
@@ -274,7 +274,7 @@ def check_best(raw, said):
 
 
 def check_others(raw, view):
-    """Sentences on extremes, surfaces, known errors and accuracies."""
+    """Check sentences on extremes, surfaces, known errors and accuracies."""
     said = []
     if view.life:
         life = raw.get("roller_life_hours")

@@ -24,7 +24,7 @@ INDICES = {"saltelli": "ST", "grid": "main_share", "lhs": "first", "morris": "mu
 
 
 def analysis(rng, method):
-    """A made-up analysis of two outputs with intervals (none on a grid)."""
+    """Return a made-up analysis of two outputs with intervals (none on a grid)."""
     count = int(rng.integers(1, len(NAMES) + 1))
     index, shape = INDICES[method], (2, count)
     value = rng.dirichlet(np.full(count, 0.4), 2) * rng.choice([1.0, 0.6])
@@ -60,7 +60,7 @@ def analysis(rng, method):
 
 
 def agrees(text, value, low, high, unit):
-    """Is '61 ± 3 %' the value and half its 95 % interval?"""
+    """Return whether '61 ± 3 %' is the value and half its 95 % interval."""
     found = re.match(r"(−?[\d.,]+)(?: ± ([\d.]+))?", text)
     told = float(found[1].replace(",", "").replace("−", "-"))
     digits = len(found[1].partition(".")[2])
@@ -88,7 +88,7 @@ def test_every_sentence_on_indices_is_true(method):
 
 
 def check_samples(sens, said):
-    """Yes or no by the widest interval of all outputs; the number and its half width by one over the root."""
+    """Check the verdict on the samples by the widest interval, and the number to write by its square-root law."""
     times, half = sens["take_times"].values, sens["half_width"].values
     if sens.attrs["method"] == "grid" or np.isnan(times).all():
         assert said is None

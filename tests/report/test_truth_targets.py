@@ -24,7 +24,7 @@ WORDS = {"velocity": "mean travel speed", "contact_angle": "contact angle", "axi
 
 
 def random_aims(seed, design):
-    """A study with random targets; outputs depend on all factors, some cases slip, some have no value, some tie."""
+    """Return a study with random targets; outputs depend on all factors, some slip, some are undefined, some tie."""
     rng = np.random.default_rng(seed)
     names = [str(n) for n in rng.permutation(list(LISTS))][: rng.integers(1, 4)]
     factors = {n: {"values": LISTS[n][: rng.integers(1, 4)]} for n in names}
@@ -55,7 +55,7 @@ def random_aims(seed, design):
 
 
 def hits(ds, data):
-    """Which rows meet each target, and all of them, read without the code under test: name -> (n,)."""
+    """Return which rows meet each target and all targets, without the code under test: name -> (n,)."""
     usable = ds["regime"].values == 0
     if "constraints" in data:
         usable = usable & (ds["friction_coefficient"].values < 0.25)
@@ -67,13 +67,13 @@ def hits(ds, data):
 
 
 def agrees(told, exact):
-    """Is a written share the exact one to its figures, 0 and 100 % only for none and all?"""
+    """Return whether a written share is the exact one to its figures, with 0 and 100 % only for none and all."""
     assert float(told) == pytest.approx(100 * exact, abs=0.51)
     assert (told == "0") == (exact == 0) and (told == "100") == (exact == 1)
 
 
 def check_levels(ds, met, text):
-    """'Fit changes it most: from 12 % (..) at fit 1.1 to ..': least and largest share of the levels of this factor."""
+    """Check the least and the largest share over the levels of a factor: 'Fit changes it most: from 12 % (..)'."""
     found = re.search(rf"changes it most: from {CHANCE} at (.+) to {CHANCE} at (.+)\.$", text)
     if found is None:
         return 0

@@ -33,7 +33,7 @@ def scene_of(cases):
 
 @pytest.fixture(scope="module")
 def both():
-    """The corrected equilibrium, and the one that asks the elements every time."""
+    """Solve the equilibrium with and without the correction of the table."""
     scene = scene_of(CASES)
     return scene, balance(scene), solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
 

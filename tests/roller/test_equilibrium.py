@@ -64,7 +64,7 @@ def test_regimes_are_results():
 
 
 def imbalance(case: tr.Case, ds) -> float:
-    """Largest violation of eqs (7), (9) and the drive torque over the load, from the data set alone."""
+    """Return the largest violation of eqs (7), (9) and the drive torque over the load, from the data set alone."""
     alpha = np.deg2rad(case.contact_angle)
     s, c = np.sin(alpha), np.cos(alpha)
     r_a = case.axis_distance - case.guide_profile_radius * c

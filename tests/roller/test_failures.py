@@ -23,7 +23,7 @@ POINTS = [[x, 0.5 * (x * x) / -7] for x in np.linspace(-1, 1, 21).tolist()]
 
 
 def said(case: dict, *, failed: bool = True, bits: int = 0, **options) -> str:
-    """The reason of a case that fails (or just misses its tolerance), without solving it."""
+    """Return the reason of a case that fails (or just misses its tolerance), without solving it."""
     ds = xr.Dataset(
         {"regime": ((), 3 if failed else 0), "converged": ((), 0), "residual": ((), 3.21e-4), "validity": ((), bits)}
     )
@@ -42,7 +42,7 @@ def test_hints_name_what_is_known_to_fail():
 
 
 def reasons_of(**options) -> list[str]:
-    """Reasons of cases on concave guides, whose contacts lie before and beyond the axis of the curve."""
+    """Return the reasons of cases on concave guides, whose contacts lie before and beyond the axis of the curve."""
     radii = (-8.0, -7.0, -6.0, -5.5, -5.19, -5.0, -4.5)
     told = [said({"axis_distance": 9.0, "guide_curve_radius": radius}, **options) for radius in radii]
     return ["axis of the inner curve" in words for words in told]

@@ -18,7 +18,7 @@ EVERYTHING = ("forces", "contact", "friction_work", "peak_stress", "life", "trac
 
 
 def searched_patches(monkeypatch):
-    """Grows by the number of patches with every search for peaks."""
+    """Return a list that grows by the number of patches with every search for peaks."""
     seen, search = [], ellipse_stresses.find_peaks
     watched = lambda patches, *more: seen.append(len(patches)) or search(patches, *more)  # noqa: E731
     monkeypatch.setattr(ellipse_stresses, "find_peaks", watched)
@@ -26,7 +26,7 @@ def searched_patches(monkeypatch):
 
 
 def scenes(n=10, seed=3):
-    """Symmetric, frictionless, repeated and plain scenes, some of them slipping fully or lifting off."""
+    """Return symmetric, frictionless, repeated and plain scenes, of which some slip fully and some lift off."""
     rng = np.random.default_rng(seed)
     found = [
         {

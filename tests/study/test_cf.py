@@ -47,7 +47,7 @@ def files(tmp_path_factory) -> dict[str, Path]:
 
 @pytest.fixture(scope="module")
 def reports(files, tmp_path_factory) -> dict[str, dict]:
-    """What the checker says of each file; one process checks them all, because its start takes the most time."""
+    """Return the checker's report on each file; one process checks all files, because its start takes the most time."""
     folder = tmp_path_factory.mktemp("checked")
     command = [sys.executable, "-m", "compliance_checker.runner"]
     script = Path(sys.executable).parent / "compliance-checker"

@@ -35,7 +35,7 @@ accuracy: preview
 
 @pytest.fixture(scope="module")
 def crate(tmp_path_factory) -> Path:
-    """Folder of a solved study with a table and materials of the user."""
+    """Return the folder of a solved study with a table and materials of the user."""
     home = tmp_path_factory.mktemp("home")
     (home / "config").mkdir()
     (home / "tables").mkdir()

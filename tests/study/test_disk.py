@@ -23,7 +23,7 @@ chunk_size: 100
 
 @pytest.fixture
 def study(tmp_path):
-    """A study file."""
+    """Return a study file."""
     path = tmp_path / "study.yaml"
     path.write_text(STUDY)
     return path
@@ -31,7 +31,7 @@ def study(tmp_path):
 
 @pytest.fixture
 def disk(tmp_path):
-    """A disk of its own: `disk(options)` mounts or changes it."""
+    """Return a function `disk(options)` that mounts a separate disk or changes its options."""
     place = tmp_path / "disk"
     place.mkdir()
 

@@ -52,7 +52,7 @@ STEEL = {
 
 
 def solved(data=LHS, regime=None, **fake):
-    """A study through its reader, with functions of the axial force and the velocity in the solver's place."""
+    """Return a study through its reader, with functions of axial force and velocity as the solver."""
     study = parse_study(data)
     ds = study.design()
     x, v = ds["axial_force"].values, ds["velocity"].values

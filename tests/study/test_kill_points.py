@@ -79,7 +79,7 @@ def count_solved(tmp_path, monkeypatch):
 
 
 def same(one: Path, other: Path) -> None:
-    """The same variables, coordinates and attributes; only the date may differ."""
+    """Check that variables, coordinates and attributes agree; only the date may differ."""
     sets = [xr.load_dataset(path) for path in (one, other)]
     for ds in sets:
         ds.attrs.pop("date_created", None)

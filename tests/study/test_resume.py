@@ -37,13 +37,13 @@ DATA = {
 
 
 def changed(**factors):
-    """The study with other or further factors."""
+    """Return the study with other or further factors."""
     return DATA | {"factors": DATA["factors"] | {k: {"values": v} for k, v in factors.items()}}
 
 
 @pytest.fixture
 def solved(tmp_path, monkeypatch):
-    """Counts how often each case was solved."""
+    """Return a function that counts how often each case was solved."""
     file = tmp_path / "solved.txt"
     file.touch()
     monkeypatch.setenv("FAKE_SOLVED", str(file))
@@ -58,7 +58,7 @@ def run(data, results, **more):
 
 
 def run_apart(results, kill=None):
-    """The same run in a process of its own, which may kill itself with SIGKILL."""
+    """Run the study in a separate process, which may kill itself with SIGKILL."""
     code = f"import test_resume as t; t.run(t.DATA, {str(results)!r})"
     paths = os.pathsep.join(map(str, (HERE.parent, HERE, HERE / "study")))
     env = os.environ | ({"FAKE_KILL": str(kill)} if kill else {}) | {"PYTHONPATH": paths}

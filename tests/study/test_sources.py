@@ -20,7 +20,7 @@ FILES = sorted(sources.PACKAGE.rglob("*.py")) + sorted((ROOT / "validation").rgl
 
 
 def tree(text: str, drop_docstrings: bool) -> str:
-    """Syntax tree as text; raw and plain line breaks within strings are the same."""
+    """Return the syntax tree as text, with raw and plain line breaks within strings made equal."""
     parsed = ast.parse(text)
     for node in ast.walk(parsed):
         has_docstring = isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node)
@@ -32,7 +32,7 @@ def tree(text: str, drop_docstrings: bool) -> str:
 
 
 def imports(path: Path) -> set[str]:
-    """Absolute names that a module may import when it runs, by its syntax tree."""
+    """Return the absolute names that a module may import when it runs, by its syntax tree."""
     found: set[str] = set()
     pending: list[ast.AST] = [ast.parse(path.read_text(encoding="utf-8"))]
     while pending:
@@ -117,7 +117,7 @@ def edit(package: Path, change: str) -> None:
 
 @pytest.fixture
 def copied(tmp_path):
-    """A copy of the package."""
+    """Copy the package and return the folder of the copy."""
     return shutil.copytree(sources.PACKAGE, tmp_path / "trackroller", ignore=shutil.ignore_patterns("__pycache__"))
 
 

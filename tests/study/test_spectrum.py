@@ -35,7 +35,7 @@ def spectrum(*blocks, **more):
 
 
 def stand_in(regimes=None, stress=None):
-    """A solver whose peak stress is 2 MPa per N of radial force in contact 1 and 3 in contact 2, both bodies."""
+    """Return a solver whose peak stress is 2 MPa per N of radial force in contact 1 and 3 in contact 2, both bodies."""
 
     def solve(cases, outputs, database, **options):
         force = np.array([-case.radial_force for case in cases])

@@ -10,7 +10,7 @@ from validation.known_indices import functions
 
 
 def measured(kind: str, name: str, seeds: int) -> dict[str, dict[str, float]]:
-    """Numbers of both estimators in the comparison whose name starts with `name`."""
+    """Return the numbers of both estimators in the comparison whose name starts with `name`."""
     data, truth = next((d, t) for k, n, d, t in tool.cases() if k == kind and n.startswith(name))
     return {who: tool.measure(one, data, truth, seeds) for who, one in tool.ESTIMATORS[kind].items()}
 

@@ -26,7 +26,7 @@ SOLVER = {
 
 
 def modules(rules: str) -> list[tuple[str, ...]]:
-    """The modules that each rule of a file depends on."""
+    """Return the modules that each rule of a file depends on."""
     text = (ROOT / rules).read_text(encoding="utf-8")
     calls = re.findall(r"digest_file\((.*?)\)", text, re.DOTALL)
     return [tuple(re.findall(r'"((?:trackroller|validation)[\w.]+)"', call)) for call in calls]

@@ -23,7 +23,7 @@ THREE = Group("three", [{}, {"motor_force": 0.0}, {"motor_force": -500.0}], QUIC
 
 @pytest.fixture
 def files(tmp_path):
-    """Two recordings of the same three cases, solved twice."""
+    """Return two recordings of the same three cases, solved twice."""
     paths = tmp_path / "before.npz", tmp_path / "after.npz"
     for path in paths:
         save(path, record_cases([THREE]))

@@ -18,7 +18,7 @@ exit 1
 
 @pytest.fixture
 def stub(tmp_path):
-    """Environment with a cluster that takes no job, and the file in which it keeps what it was asked for."""
+    """Return the environment of a cluster that takes no job, and the file in which it records requests."""
     tools, told = tmp_path / "bin", tmp_path / "submitted.txt"
     tools.mkdir()
     texts = {"sbatch": SBATCH.format(told=told), "sinfo": "#!/bin/sh\necho 'main*'\n", "squeue": "#!/bin/sh\n"}

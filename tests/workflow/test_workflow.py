@@ -23,7 +23,7 @@ from trackroller.study.crate import damaged_files, read_crate
 
 @pytest.fixture
 def place(tmp_path):
-    """A folder with a study; the workflow itself stays where it is."""
+    """Return a folder with a study, outside the folder of the workflow."""
     return lay_study(tmp_path)
 
 

@@ -35,7 +35,7 @@ pytestmark = pytest.mark.slurm
 
 @pytest.fixture(scope="module")
 def slurm(tmp_path_factory):
-    """Environment of a running cluster."""
+    """Return the environment of a running cluster."""
     if shutil.which("slurmctld") is None:
         pytest.skip("Slurm is not installed: apt-get install slurmctld slurmd slurm-client munge")
     script = Path(__file__).with_name("cluster.sh")
@@ -52,7 +52,7 @@ def slurm(tmp_path_factory):
 
 @pytest.fixture
 def place(tmp_path):
-    """A folder with a study, and the solver that waits."""
+    """Return a folder with a study, and the solver that waits."""
     (tmp_path / "hook").mkdir()
     (tmp_path / "hook" / "sitecustomize.py").write_text(HOLD)
     return lay_study(tmp_path, levels=20, outputs="forces", size=10)
@@ -94,7 +94,7 @@ def finish(process, seconds=480):
 
 
 def wait_for(place, seconds=120):
-    """The number of a Slurm job that is at work inside the solver."""
+    """Wait for a Slurm job that works inside the solver, and return its number."""
     for _ in range(10 * seconds):
         if working := sorted(place.glob("working-*")):
             return working[0].name.removeprefix("working-")

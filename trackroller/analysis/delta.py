@@ -110,7 +110,10 @@ def _kernels(x: _Cells, y: _Cells) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray]], seed: int) -> tuple[float, float]:
-    """Return how far the best rule separates linked from unlinked pairs, on held-out rows and on its own rows."""
+    """Return how well the best rule tells rows of the sample from independent pairs of x and y.
+
+    The first number is the score on held-out rows, the second that on the rule's own rows.
+    """
     rows, size = len(x.place), x.number * y.number
     rng = np.random.default_rng(seed)
     held, own = np.zeros(len(kernels)), np.zeros(len(kernels))

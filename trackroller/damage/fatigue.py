@@ -179,7 +179,7 @@ def line_at_probability(
 def _at_probability(
     curve: SNCurve, rule: str, probability: ArrayLike, *scatter: float | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Knee (sigma_D, N_k) at the failure probability and exponent k of a curve."""
+    """Return the knee (sigma_D, N_k) at the failure probability, and the exponent k of a curve."""
     if rule not in LIFE_RULES:
         raise unknown_name("life_rule", rule, LIFE_RULES)
     k = woehler_exponent(curve)

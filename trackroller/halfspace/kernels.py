@@ -15,7 +15,7 @@ FLOOR = 1e-10
 
 @numba.njit(cache=True, error_model="numpy", inline="never")
 def point_kernel(x, y, z):
-    """Stresses at (x, y, z) due to unit forces at the origin [1/length^2]."""
+    """Return the stresses at (x, y, z) due to unit forces at the origin [1/length^2]."""
     x2, y2, z2 = x * x, y * y, z * z
     R = sqrt(x2 + y2 + z2)
     iR = 1.0 / R if R > 0.0 else 0.0
@@ -112,7 +112,7 @@ def point_kernel(x, y, z):
 
 @numba.njit(cache=True, error_model="numpy", inline="never")
 def uniform_corner(x, y, z):
-    """Corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless."""
+    """Return the corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless."""
     x2, y2, z2 = x * x, y * y, z * z
     R = sqrt(x2 + y2 + z2)
     iR = 1.0 / R if R > 0.0 else 0.0
@@ -194,7 +194,7 @@ def uniform_corner(x, y, z):
 
 @numba.njit(cache=True, error_model="numpy", inline="never")
 def bilinear_corner(x, y, z):
-    """Corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2]."""
+    """Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2]."""
     x2, y2, z2 = x * x, y * y, z * z
     R = sqrt(x2 + y2 + z2)
     S = R + z

@@ -43,7 +43,7 @@ class Patches:
 
     @property
     def gridded(self) -> bool:
-        """Are there traction fields?"""
+        """Return whether there are traction fields."""
         return self.fields.shape[-1] > 1
 
     @functools.cached_property

@@ -85,7 +85,10 @@ def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
 
 
 def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
-    """B10 and regimes; percentiles stand apart where B10 holds the scatter of the material and they do not."""
+    """Return the tables of B10, regimes and percentiles of the design points.
+
+    Percentiles have a table of their own where B10 holds the scatter of the material, because they do not hold it.
+    """
     part, scatter = table.sel(output=output), float(table.attrs.get("log_life_scatter", 0.0))
     safe = np.nan_to_num(part["b10_safe"].values)
     points = np.lexsort((-np.nan_to_num(part["b10"].values), -safe))[:MAX_POINTS]
@@ -113,7 +116,7 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
 
 
 def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points: np.ndarray | None = None) -> Table:
-    """Mean and percentiles of an output at each design point, from the scatter of the study's factors alone."""
+    """Return the mean and percentiles of an output at each design point, by the scatter of the study's factors only."""
     part = table.sel(output=output)
     points = np.arange(min(table.sizes["point"], MAX_POINTS)) if points is None else points
     shares = (5.0, 50.0, 95.0)

@@ -58,7 +58,7 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
 
 
 def _span(view: StudyView, effect: Effect) -> str:
-    """'Friction coefficient 0 → 0.4', or the two levels of a list."""
+    """Return 'Friction coefficient 0 → 0.4', or the two levels of a list."""
     if view.ordered(effect.factor):
         low = level_text(effect.factor, effect.low, unit=False)
         high = level_text(effect.factor, effect.high, words=False)
@@ -105,7 +105,7 @@ def _of_pairs(
 
 
 def _by_category(parts: Strata, words: str) -> list[str]:
-    """Median change within each level of the category whose levels disagree most."""
+    """Return the words on the median change within each level of the category whose levels disagree most."""
     spread: dict[str, list[float]] = {}
     for category, _, effect in parts:
         spread.setdefault(category, []).append(np.log(effect.ratio))

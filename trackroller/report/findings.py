@@ -44,7 +44,7 @@ def valid_designs(view: StudyView) -> Sentence:
 
 
 def _outside(view: StudyView) -> list[tuple[str, str, np.ndarray]]:
-    """Rolling cases outside the model by flag and, where the data tell, by body."""
+    """Return the rolling cases outside the model by flag and, where the data tell, by body."""
     found = []
     for flag in (f for f in OUTSIDE if f in view.flags):
         for body in BODIES if view.by_body and flag in OF_BODY else ("",):
@@ -110,7 +110,7 @@ def meets(view: StudyView, name: str, levels: Any) -> np.ndarray:
 
 
 def _confined(view: StudyView, hit: np.ndarray, among: np.ndarray) -> list[tuple[str, Any]]:
-    """Factors whose levels confine an event, those that leave out most cases first; at most three."""
+    """Return at most three factors whose levels confine an event, sorted by the cases that they leave out."""
     found = []
     for name in view.factors:
         own = view.table[name].to_numpy()
@@ -171,7 +171,7 @@ def _most_frequent(
 
 
 def _shared(view: StudyView, name: str, hit: np.ndarray, among: np.ndarray, ends: tuple) -> bool:
-    """Whether the order of two levels is the same within every category (Simpson's paradox is told, not hidden)."""
+    """Return whether the order of two levels is the same within every category (otherwise: Simpson's paradox)."""
     own = view.table[name].to_numpy()
     for category in (c for c in view.categories if c != name):
         values = view.table[category].to_numpy()

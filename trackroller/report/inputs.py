@@ -36,7 +36,7 @@ def factor_table(view: StudyView) -> Table | None:
 
 
 def _spec(spec: Any) -> str:
-    """A factor of the study file in words: 'uniform 0.1, 0.3'."""
+    """Return a factor of the study file in words: 'uniform 0.1, 0.3'."""
     if not isinstance(spec, Mapping):
         return ""
     if "weights" in spec:

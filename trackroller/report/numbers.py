@@ -51,7 +51,7 @@ def number(value: float) -> str:
 
 
 def rounded(value: float, figures: int = 3) -> str:
-    """Write a number cut to so many figures."""
+    """Return a number as text, rounded to `figures` significant figures."""
     return number(float(f"{value:.{figures}g}"))
 
 

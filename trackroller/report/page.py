@@ -118,10 +118,7 @@ def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
 
 
 def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of the sections.
-
-    Decide, why, where the study ends, contact models.
-    """
+    """Return the tables of the sections "decide", "why", "where the study ends" and "contact models"."""
     error = friction_error(view)
     decide: list[Table | None] = [best_table(view)]
     front = _guarded(lambda: None, study_pareto, ds, sens)
@@ -158,7 +155,7 @@ def _guarded(empty: Callable[[], Any], make: Callable[..., Any], *arguments: Any
 
 
 def _facts(view: StudyView, merged: dict[str, Any]) -> str:
-    """The line under the title: date, design, size, model, accuracy."""
+    """Return the line under the title: date, design, size, model, accuracy."""
     design = str(merged.get("design", "grid" if view.grid else "sample")).replace("_", " ")
     samples = view.study.get("samples") if design.replace(" ", "_") not in (*ARRAYS, "table", "sample") else None
     date = str(merged.get("date_created") or merged.get("date") or merged.get("created") or "")

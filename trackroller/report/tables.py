@@ -53,10 +53,7 @@ def heading(name: str) -> str:
 
 
 def factor_cell(name: str, value: Any) -> Any:
-    """Return a level for a table.
-
-    A plain number under a head with its unit, else words.
-    """
+    """Return a level for a table: a number if the head of the column holds the unit, otherwise words."""
     if isinstance(value, str) or name in _SPOKEN or not np.isfinite(value):
         return level_text(name, value)
     return float(value)

@@ -99,7 +99,7 @@ class StudyView:
 
     @cached_property
     def categories(self) -> tuple[str, ...]:
-        """Factors without an order, by whose levels alone every pooled statement must hold as well."""
+        """Return the factors without an order; every pooled statement must hold within each of their levels."""
         return tuple(f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= MOST_LEVELS)
 
     def behind(self, name: str) -> tuple[str, ...]:
@@ -141,7 +141,7 @@ class StudyView:
 
     @cached_property
     def life(self) -> tuple[str, str, str] | None:
-        """Column, wording and unit of the life to show, or None when the study has no life."""
+        """Return the column, wording and unit of the life to show, or None when the study has no life."""
         for column, words, unit in LIVES:
             if column in self.table and (self.table[column] > 0).any():
                 return column, words, unit
@@ -149,7 +149,7 @@ class StudyView:
 
     @cached_property
     def regime(self) -> np.ndarray:
-        """Regime of every case, shape (n,); 0 (rolling) where the data set has none."""
+        """Return the regime of every case, shape (n,); 0 (rolling) where the data set has none."""
         return self.column("regime", 0.0)
 
     def column(self, name: str, missing: float = np.nan) -> np.ndarray:
@@ -172,17 +172,17 @@ class StudyView:
 
     @property
     def by_body(self) -> bool:
-        """Whether the flags are known for each body."""
+        """Return whether the flags are known for each body."""
         return all(f"validity_{body}" in self.table for body in BODIES)
 
     @cached_property
     def rolling(self) -> np.ndarray:
-        """Cases that roll and converged, shape (n,)."""
+        """Return the cases that roll and converged, shape (n,)."""
         return (self.regime == 0) & (self.column("converged", 1.0) == 1)
 
     @cached_property
     def inside(self) -> np.ndarray:
-        """Cases that roll, converged, and carry no flag of a design outside the model, shape (n,)."""
+        """Return the cases that roll, converged, and carry no flag of a design outside the model, shape (n,)."""
         outside = np.zeros(len(self.table), dtype=bool)
         for flag in OUTSIDE:
             if flag in self.flags:
@@ -191,7 +191,7 @@ class StudyView:
 
     @cached_property
     def valid(self) -> np.ndarray:
-        """Cases inside the model that meet the constraints of the study, shape (n,)."""
+        """Return the cases inside the model that meet the constraints of the study, shape (n,)."""
         return self.inside if self.met is None else self.inside & self.met
 
     def has(self, *columns: str) -> bool:

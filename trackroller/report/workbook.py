@@ -52,7 +52,7 @@ _PACKAGE = "http://schemas.openxmlformats.org/package/2006"
 
 
 def _workbook(tables: Sequence[Table]) -> dict[str, str]:
-    """The parts of an Office Open XML workbook (ISO/IEC 29500), one sheet a table."""
+    """Return the parts of an Office Open XML workbook (ISO/IEC 29500), one sheet a table."""
     names = [re.sub(r"[\[\]:*?/\\]", " ", t.name)[:31] for t in tables]
     kind = "application/vnd.openxmlformats-officedocument.spreadsheetml"
     sheets = [f'<sheet name="{escape(n)}" sheetId="{i}" r:id="rId{i}"/>' for i, n in enumerate(names, 1)]

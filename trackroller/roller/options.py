@@ -48,7 +48,7 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
 
     @property
     def settings(self) -> Accuracy:
-        """Discretisation of each stage that the accuracy stands for."""
+        """Return the discretisation of each stage that belongs to the accuracy."""
         return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
 
     def expected_errors(self, contact_model: str, constant_friction: bool) -> dict[str, Levels]:

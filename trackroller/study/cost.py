@@ -41,7 +41,7 @@ _BYTES = {
 
 
 def rate(options: Mapping[str, Any]) -> float:
-    """Expected cases a second on one core for keyword arguments of `solve`."""
+    """Return the expected cases a second on one core for keyword arguments of `solve`."""
     accuracy = options.get("accuracy", "standard")
     if isinstance(accuracy, str):
         level = _LEVELS.index(accuracy) if accuracy in _LEVELS else 1
@@ -60,19 +60,19 @@ def rate(options: Mapping[str, Any]) -> float:
 
 
 def study_rate(study: Study) -> float:
-    """As `rate` for the cases of a study, in which contact model and normal problem may be factors."""
+    """Return the expected cases a second of a study, in which contact model and normal problem may be factors."""
     varied = {name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS}
     several = [rate(study.options | dict(zip(varied, values, strict=True))) for values in product(*varied.values())]
     return len(several) / sum(1.0 / each for each in several)
 
 
 def bytes_a_case(outputs: tuple[str, ...]) -> int:
-    """Expected size of a case on the disk, chunk and gathered set together."""
+    """Return the expected size of a case on the disk, chunk and gathered set together."""
     return 2 * (60 + sum(_BYTES[group] for group in set(outputs)))
 
 
 def duration(seconds: float) -> str:
-    """A time in words: '45 s', '3 min 20 s', '2 h 5 min'."""
+    """Return a time in words: '45 s', '3 min 20 s', '2 h 5 min'."""
     whole = int(seconds + 0.5)
     if whole < 60:
         return f"{whole} s"
@@ -82,7 +82,7 @@ def duration(seconds: float) -> str:
 
 
 def size(number: float) -> str:
-    """Bytes in words."""
+    """Return a number of bytes in words."""
     for unit in ("B", "kB", "MB", "GB"):
         if number < 1000:
             return f"{number:.0f} {unit}"

@@ -85,7 +85,7 @@ def _copy_inputs(study: Study, root: Path) -> None:
 
 
 def _files(root: Path, *names: str) -> Iterator[str]:
-    """Paths of the files below `names`, from the root of the crate, in a fixed order."""
+    """Return the paths of the files below `names`, from the root of the crate, in a fixed order."""
     for name in names:
         place = root / name
         found = sorted(p for p in place.rglob("*") if p.is_file()) if place.is_dir() else [place]

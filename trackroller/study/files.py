@@ -31,17 +31,17 @@ class StudyFolder:
 
     @property
     def design(self) -> Path:
-        """The cases of the study."""
+        """Return the cases of the study."""
         return self.root / "design.nc"
 
     @property
     def gathered(self) -> Path:
-        """The gathered results."""
+        """Return the gathered results."""
         return self.root / "study.nc"
 
     @property
     def study_file(self) -> Path:
-        """The study file with every default written out."""
+        """Return the study file with every default written out."""
         return self.root / "study.yaml"
 
     def earlier(self) -> dict[str, Any]:
@@ -55,7 +55,7 @@ class StudyFolder:
 
     @property
     def plan_file(self) -> Path:
-        """The names of the chunks that the study consists of."""
+        """Return the names of the chunks that the study consists of."""
         return self.root / "plan.json"
 
     @property
@@ -64,19 +64,19 @@ class StudyFolder:
         return self.root / "plan" / ".lock"
 
     def case_list(self, chunk: str) -> Path:
-        """The cases of a chunk."""
+        """Return the cases of a chunk."""
         return self.root / "plan" / f"{chunk}.npz"
 
     def mark(self, chunk: str) -> Path:
-        """Empty file that tells the workflow that a chunk is solved. The workflow may delete it at any time."""
+        """Return the empty file by which the workflow knows that a chunk is solved. It may be deleted at any time."""
         return self.root / "plan" / f"{chunk}.solved"
 
     def chunk(self, chunk: str) -> Path:
-        """The results of a solved chunk."""
+        """Return the results of a solved chunk."""
         return self.root / "chunks" / f"{chunk}.nc"
 
     def part(self, chunk: str, first_case: str) -> Path:
-        """The results of one block of a chunk that is not complete yet."""
+        """Return the results of one block of a chunk that is not complete yet."""
         return self.root / "parts" / f"{chunk}-{first_case}.nc"
 
     def parts(self, chunk: str = "*") -> list[Path]:
@@ -89,7 +89,7 @@ class StudyFolder:
         yield from sorted((self.root / "chunks").glob("*.nc"))
 
     def checksum(self, path: Path) -> Path:
-        """The file that holds the checksum of `design.nc` or `study.nc`."""
+        """Return the file that holds the checksum of `design.nc` or `study.nc`."""
         return self.root / "plan" / f"{path.name}.sha256"
 
     def create(self) -> StudyFolder:

@@ -30,7 +30,7 @@ _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:
-    """Options that matter to the contact model and the digest of the solver, as canonical bytes."""
+    """Return the options that matter to the contact model and the digest of the solver, as canonical bytes."""
     given = {option.name: options.get(option.name, option.default) for option in OPTIONS.values()}
     told = {
         option.name: sorted(value) if isinstance(value := given[option.name], (list, tuple)) else value

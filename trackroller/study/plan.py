@@ -82,7 +82,7 @@ class Plan:
 
     @property
     def open(self) -> list[str]:
-        """Names of the chunks that are not complete."""
+        """Return the names of the chunks that are not complete."""
         return [name for name in self.chunks if not self.folder.chunk(name).is_file()]
 
 

@@ -43,7 +43,7 @@ class Repeat:
 
     @property
     def largest(self) -> float:
-        """Largest relative difference of all variables [1]."""
+        """Return the largest relative difference of all variables [1]."""
         return max(self.differences.values(), default=0.0)
 
     def command(self) -> str:

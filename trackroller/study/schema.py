@@ -42,7 +42,7 @@ def _option(option: Option) -> dict[str, Any]:
 
 
 def schema() -> dict[str, Any]:
-    """The schema: pydantic's, with the names and bounds of the parameters and options filled in."""
+    """Return the schema: pydantic's, with the names and bounds of the parameters and options filled in."""
     found = StudyFile.model_json_schema()
     properties = found["properties"]
     properties["name"]["pattern"] = f"^{NAME.pattern}$"
@@ -65,7 +65,7 @@ def schema() -> dict[str, Any]:
 
 
 def text() -> str:
-    """The schema as it stands in the repository."""
+    """Return the schema as it stands in the repository."""
     return json.dumps(schema(), indent=2) + "\n"
 
 

@@ -132,7 +132,7 @@ def digest_file(folder: str | Path, *modules: str) -> str:
 
 
 def _split(source: str, docstring: str = "") -> tuple[str, list[str]]:
-    """Code without comments and blank lines, each docstring replaced, and the literal strings in it."""
+    """Return the code without comments and blank lines, each docstring replaced, and the literal strings in it."""
     kept: list[str] = []
     strings: list[str] = []
     last = 0
@@ -185,7 +185,7 @@ def _closure(modules: tuple[str, ...]) -> tuple[Path, ...]:
 
 @cache
 def _file_of(name: str) -> Path | None:
-    """File of a module or package beside this package, or None."""
+    """Return the file of a module or package beside this package, or None."""
     base = PACKAGE.parent.joinpath(*name.split("."))
     for path in (base.with_name(base.name + ".py"), base / "__init__.py"):
         if path.is_file():
@@ -194,7 +194,7 @@ def _file_of(name: str) -> Path | None:
 
 
 def _names(path: Path, module: str) -> Iterator[str]:
-    """Dotted names that a module may mean by its imports and by texts such as "trackroller.roller.solver"."""
+    """Yield the dotted names that a module may mean by its imports and by texts like "trackroller.roller.solver"."""
     code, strings = _read(path)
     package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     for origin, names, plain in _IMPORT.findall(_TYPE_CHECKING.sub("", code + "\n")):
@@ -213,7 +213,7 @@ def _names(path: Path, module: str) -> Iterator[str]:
 
 
 def _data_of(path: Path) -> Iterator[Path]:
-    """Data files whose names stand in a module, and those whose names stand in these templates."""
+    """Yield the data files named in a module, and the files named in templates among these data files."""
     known = _data_files(path.parents[len(path.relative_to(PACKAGE.parent).parts) - 2])
     pending = [data for text in _read(path)[1] for data in known.get(text.rpartition("/")[2], ())]
     seen = set()
@@ -230,7 +230,7 @@ def _data_of(path: Path) -> Iterator[Path]:
 
 @cache
 def _data_files(root: Path) -> dict[str, list[Path]]:
-    """Files of a package that are no Python, by their last name."""
+    """Return the files of a package that are no Python, by their last name."""
     found: dict[str, list[Path]] = {}
     for folder, folders, names in os.walk(root):
         folders[:] = sorted(set(folders) - {"__pycache__"})

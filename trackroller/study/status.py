@@ -61,12 +61,12 @@ class Status:
 
     @property
     def missing(self) -> int:
-        """Cases that are not solved."""
+        """Return the cases that are not solved."""
         return self.total - self.done
 
     @property
     def seconds_left(self) -> float:
-        """Expected time to solve the missing cases on one processor [s]."""
+        """Return the expected time to solve the missing cases on one processor [s]."""
         return self.missing / self.speed
 
 

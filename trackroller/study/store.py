@@ -45,12 +45,12 @@ class Layout:
 
     @property
     def size(self) -> int:
-        """Number of columns."""
+        """Return the number of columns."""
         return int(np.prod(self.shape, dtype=int))
 
     @property
     def missing(self) -> float:
-        """Value that marks a missing result."""
+        """Return the value that marks a missing result."""
         return np.nan if self.dtype.startswith("f") else 0.0
 
 
@@ -95,7 +95,7 @@ class Block:
 
     @property
     def failed(self) -> np.ndarray:
-        """Whether each case failed, shape (n,)."""
+        """Return whether each case failed, shape (n,)."""
         return self.columns("regime")[:, 0] == FAILED
 
     def take(self, index: np.ndarray) -> Block:

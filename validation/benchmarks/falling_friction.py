@@ -54,7 +54,7 @@ def laws() -> list[dict[str, Any]]:
 
 
 def sample(n: int, seed: int) -> list[tr.Case]:
-    """`n` cases that roll or slip under constant friction; those that lift off there are drawn again."""
+    """Return `n` cases that roll or slip under constant friction; cases that lift off are drawn again."""
     rng = np.random.default_rng(seed)
     cases: list[tr.Case] = []
     while len(cases) < n:
@@ -77,7 +77,10 @@ def sample(n: int, seed: int) -> list[tr.Case]:
 
 
 def followed(cases: list[tr.Case], model: str, accuracy: str) -> tuple[np.ndarray, np.ndarray]:
-    """Slip measure w (n,) followed from constant friction, NaN where it ended; and the velocity share reached."""
+    """Return the slip measure w (n,) followed from constant friction, and the share of the velocity reached.
+
+    w is NaN where the path ended.
+    """
     w_end, reached = np.full(len(cases), np.nan), np.full(len(cases), np.nan)
     groups: dict[str, list[int]] = {}
     for i, case in enumerate(cases):
@@ -164,7 +167,7 @@ def compared(cases: list[tr.Case], ds: Any, model: str, accuracy: str) -> dict[s
 
 
 def _told(cases: list[tr.Case], ds: Any) -> np.ndarray:
-    """Slip measure of rolling cases, and a number beyond for the other regimes."""
+    """Return the slip measure of rolling cases, and for the other regimes a number outside its range."""
     regime = ds.regime.values
     return np.where(regime == ROLLING, measures(cases, ds.rolling_radius_shift.values), 9.0 + regime)
 

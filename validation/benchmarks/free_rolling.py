@@ -35,7 +35,7 @@ DATA = Path(__file__).resolve().parents[2] / "tests" / "data" / "contact.json"
 
 
 def on_one_grid(case: dict, elements: int) -> float:
-    """r_Delta0 [mm] of a case on one grid, without extrapolation."""
+    """Return r_Delta0 [mm] of a case on one grid, without extrapolation."""
     scene = stages.prepare(to_table([case], None), Options(outputs=("forces",), contact_model="kalker"))
     steel = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
     elastic = Elastic(*(np.full(1, float(v)) for v in (steel.shear_modulus, steel.poisson_ratio, 0.0)))

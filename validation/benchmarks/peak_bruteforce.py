@@ -43,7 +43,7 @@ def random_patches(n: int, seed: int, slenderness: tuple[float, float] = (1.0, 5
 
 
 def stresses(row: np.ndarray, nu: np.ndarray, u: np.ndarray, order: int) -> np.ndarray:
-    """von Mises stress (m, 2) of roller and guide at points u (m, 3) over (a, b, smaller semi-axis)."""
+    """Return the von Mises stress (m, 2) of roller and guide at points u (m, 3) over (a, b, smaller semi-axis)."""
     points = np.ascontiguousarray(u * np.array([row[0], row[1], min(row[0], row[1])]))
     rule = unit_rule(order)
     parts = near_parts(row[None], NO_FIELD[None], np.zeros(len(u), np.int64), points, rule, rule)
@@ -58,7 +58,7 @@ def project(u: np.ndarray) -> np.ndarray:
 
 
 def sampled(row: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarray:
-    """n points all over the patch, a sixth of them on its edge, and n/3 near the lines where the slip turns."""
+    """Return n points all over the patch, a sixth of them on its edge, and n/3 near the lines where the slip turns."""
     r, t = np.sqrt(rng.random(n)), rng.uniform(0, 2 * np.pi, n)
     r[: n // 6] = 1.0
     everywhere = np.stack([r * np.cos(t), r * np.sin(t), rng.exponential(0.4, n) * (rng.random(n) < 0.45)], axis=1)
@@ -76,7 +76,7 @@ def sampled(row: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarray:
 
 
 def climbed(row: np.ndarray, nu: np.ndarray, rng: np.random.Generator, points: int = 3000) -> np.ndarray:
-    """Highest stress found, and its place, of both bodies, shape (2, 4)."""
+    """Return the highest stress found, and its place, of both bodies, shape (2, 4)."""
     fine = 96
     u = sampled(row, rng, points)
     rough, out = stresses(row, nu, u, 24), np.empty((2, 4))

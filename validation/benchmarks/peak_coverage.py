@@ -56,7 +56,7 @@ def random_case(rng: np.random.Generator) -> tr.Case:
 
 
 def sample(n: int, seed: int) -> list[tr.Case]:
-    """`n` cases; draws without point contact are drawn again."""
+    """Return `n` cases; draws without point contact are drawn again."""
     rng = np.random.default_rng(seed)
     cases: list[tr.Case] = []
     while len(cases) < n:
@@ -68,7 +68,7 @@ def sample(n: int, seed: int) -> list[tr.Case]:
 
 
 def compare(standard: Any, reference: Any) -> dict[str, np.ndarray]:
-    """Per peak, arrays (n, contact, body): `error` (signed), `estimate`, `slack` of the reference, `present`.
+    """Return arrays (n, contact, body) by name: `error` (signed), `estimate`, `slack` of the reference, `present`.
 
     `present` are peaks found by either; one found by only one of them has an infinite error.
     """

@@ -85,8 +85,10 @@ def shared_derivatives():
 
 
 def simpson_weights(x: np.ndarray) -> np.ndarray:
-    """Weights of the composite Simpson rule on equidistant nodes; for an even number of nodes the last interval is
-    integrated with the parabola through the last three nodes."""
+    """Return the weights of the composite Simpson rule on equidistant nodes.
+
+    For an even number of nodes the last interval is integrated with the parabola through the last three nodes.
+    """
     h, n = x[1] - x[0], x.size
     w = np.zeros(n)
     odd = n if n % 2 else n - 1
@@ -98,7 +100,7 @@ def simpson_weights(x: np.ndarray) -> np.ndarray:
 
 
 def _integrals(contact: Contact, point: Sequence[float], style: str):
-    """Function Q(load, along): the derivative of the potential Q_load, eq. (1), along the axes named, at the point."""
+    """Return a function Q(load, along): the derivative of the potential Q_load, eq. (1), along the named axes."""
     x, y, z = point
     # Omega depends on x - xi: derivatives with respect to x
     u, v = x - contact.x[None, :], y - contact.y[:, None]
@@ -122,12 +124,12 @@ def _integrals(contact: Contact, point: Sequence[float], style: str):
 
 
 def stress_at(contact: Contact, point: Sequence[float], style: str = "printed") -> np.ndarray:
-    """sigma_x, sigma_y, sigma_z, tau_xy, tau_yz, tau_xz [MPa] at one point z > 0, eqs. (1)-(5). (6,)."""
+    """Return sigma_x, sigma_y, sigma_z, tau_xy, tau_yz, tau_xz [MPa] at one point z > 0, eqs. (1)-(5). (6,)."""
     z, nu = point[2], contact.poisson_ratio
     Q = _integrals(contact, point, style)
 
     def gradient(i: str, j: str) -> float:
-        """d(E / (1 + nu) u_i) / dj, eq. (5) and its two companions; the last term by the product rule."""
+        """Return d(E / (1 + nu) u_i) / dj, eq. (5) and its two companions; the last term by the product rule."""
         value = -z * sum(Q(load, load + "z" + i + j) for load in AXES)
         if j == "z":
             value -= sum(Q(load, load + "z" + i) for load in AXES)
@@ -148,7 +150,7 @@ def stress_at(contact: Contact, point: Sequence[float], style: str = "printed") 
 
 
 def equivalent(stress: np.ndarray) -> float:
-    """sigma_DEH, eq. (6) [MPa]."""
+    """Return sigma_DEH, eq. (6) [MPa]."""
     sx, sy, sz, txy, tyz, txz = stress
     return float(np.sqrt(0.5 * ((sx - sy) ** 2 + (sz - sx) ** 2 + (sy - sz) ** 2 + 6 * (txy**2 + txz**2 + tyz**2))))
 
@@ -162,7 +164,7 @@ def search_box(contact: Contact) -> list[tuple[float, float]]:
 
 
 def peak_by_differential_evolution(contact: Contact, seed: int = 1, style: str = "printed", evaluate=None) -> dict:
-    """Largest equivalent stress by scipy's differential evolution, default settings (popsize 15, polish), seeded.
+    """Return the largest equivalent stress by SciPy's differential evolution with a seed (popsize 15, polish).
 
     `evaluate(point) -> MPa` stands in for the transcription where only the number of evaluations matters.
     Returns dict(peak [MPa], position [mm], evaluations, seconds).
@@ -210,8 +212,11 @@ def tractions_of_paper(
     poisson_ratio: float,
     points: int = POINTS,
 ) -> Contact:
-    """Tractions on the roller by eqs. (21)-(30), assumption 2. sine, cosine of the SIGNED contact angle; lengths in mm,
-    shift = r_Delta0; omega_r cancels. The misprint of eq. (21) is set right."""
+    """Return the tractions on the roller by eqs. (21)-(30), assumption 2.
+
+    `sine` and `cosine` belong to the signed contact angle, `shift` is r_Delta0, lengths are in mm; omega_r cancels. The
+    misprint of eq. (21) is corrected.
+    """
     x, y = np.linspace(-a, a, points), np.linspace(-b, b, points)
     xx, yy = np.meshgrid(x, y)
     pole = shift / sine
@@ -229,7 +234,7 @@ def tractions_of_paper(
 
 
 def contacts_of_case(case=None, points: int = POINTS) -> list[Contact]:
-    """Both contacts of a case (default: the paper's own), from our forces and ellipses and the paper's tractions."""
+    """Return both contacts of a case (default: the paper's), from our forces and ellipses and the paper's tractions."""
 
     case = Case() if case is None else case
     ds = tr.solve(case, outputs=("forces", "contact"), contact_model="sliding").squeeze()

@@ -11,7 +11,7 @@ from trackroller.materials import load_database
 
 
 def load_study(n: int, seed: int = 1) -> list[tr.Case]:
-    """Load, friction and material vary; the curvatures are fixed."""
+    """Return cases with varying load, friction and material, and fixed curvatures."""
     rng = np.random.default_rng(seed)
     steel = "1.7225-normalised"
     materials = (steel, "PA6", "POM", "EN AW-7075")
@@ -29,7 +29,7 @@ def load_study(n: int, seed: int = 1) -> list[tr.Case]:
 
 
 def geometry_study(n: int, seed: int = 2) -> list[tr.Case]:
-    """Every curvature is new."""
+    """Return cases in which every curvature is new."""
     rng = np.random.default_rng(seed)
     return [
         tr.Case(

@@ -37,7 +37,7 @@ ACCURACY_CASES = 1000  # of the comparison of accuracies and of the yardstick
 
 
 def peak_memory() -> float:
-    """Largest resident memory of this process so far [MB]."""
+    """Return the largest resident memory of this process so far [MB]."""
 
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1e6 if sys.platform == "darwin" else peak * 1024 / 1e6
@@ -70,7 +70,7 @@ def measure_here(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
 
 
 def measure_apart(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
-    """The same in a fresh process."""
+    """Measure as `measure_here` does, in a fresh process."""
     task = json.dumps({"n": n, "outputs": outputs, "accuracy": accuracy})
     done = subprocess.run(
         [sys.executable, str(Path(__file__).resolve()), "--one", task], stdout=subprocess.PIPE, text=True, check=True
@@ -79,13 +79,16 @@ def measure_apart(n: int, outputs: str, accuracy: str) -> dict[str, Any]:
 
 
 def sizes(largest: int) -> list[int]:
-    """10, 30, 100, 300, ... and `largest` itself."""
+    """Return 10, 30, 100, 300, ... and `largest` itself."""
     steps = [m * 10**k for k in range(1, 10) for m in (1, 3)]
     return [*(n for n in steps if n < largest), largest]
 
 
 def exponent(rows: list[dict[str, Any]]) -> float:
-    """Slope of log time over log cases by least squares, from 100 cases on; 1 is linear, NaN for too few sizes."""
+    """Return the slope of log time over log cases by least squares, from 100 cases on; NaN for too few sizes.
+
+    A slope of 1 is linear growth.
+    """
     points = [(math.log(r["cases"]), math.log(r["over_yardstick"] * r["cases"])) for r in rows if r["cases"] >= 100]
     if len(points) < 2:
         return math.nan

@@ -48,14 +48,14 @@ def scenes(n: int) -> dict[str, tuple[list[dict], dict]]:
 
 
 def seconds(cases, **told) -> tuple[float, object]:
-    """CPU time of a solution and its data set."""
+    """Return the CPU time of a solution and its data set."""
     start = time.process_time()
     found = tr.solve(cases, contact_model="sliding", **told)
     return time.process_time() - start, found
 
 
 def difference(one, other) -> float:
-    """Largest relative difference of forces and peaks where both have them."""
+    """Return the largest relative difference of forces and peaks where both have them."""
     worst = 0.0
     for name in ("normal_force", "spin_moment", "peak_stress", "life_cycles"):
         if name in one and name in other:

@@ -32,7 +32,7 @@ def as_parabolas(case: tr.Case) -> tr.Case:
 
 
 def differences(hertz, grid, friction: np.ndarray) -> dict[str, np.ndarray]:
-    """Relative differences (cases, 2) by quantity, and for the peaks (cases, 2, 2)."""
+    """Return the relative differences (cases, 2) by quantity, and for the peaks (cases, 2, 2)."""
     limit = friction[:, None] * hertz.normal_force.values
     arm = np.sqrt(hertz.semi_axis_lateral * hertz.semi_axis_rolling).values
     shift = (grid.rolling_radius_shift - hertz.rolling_radius_shift).values[:, None]

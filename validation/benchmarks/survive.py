@@ -92,7 +92,7 @@ def start(place: Path, how: str) -> subprocess.Popen:
 
 
 def members(session: int) -> dict[int, str]:
-    """Living processes of a session: number and command line."""
+    """Return the living processes of a session: number and command line."""
     found = subprocess.run(["ps", "-s", str(session), "-o", "pid=,stat=,args="], capture_output=True, text=True).stdout
     lines = [line.split(None, 2) for line in found.splitlines()]
     return {int(pid): words for pid, state, words in lines if not state.startswith("Z")}
@@ -108,7 +108,7 @@ def workers(session: int) -> list[int]:
 
 
 def results(place: Path) -> Path:
-    """Folder of the study."""
+    """Return the folder of the study."""
     return place / "results" / "survive"
 
 

@@ -52,7 +52,7 @@ class Patch:
         return solve_patch(patch, Creepage(creep * one, none, spin * one), friction, self.elastic, settings)
 
     def lifted(self, traction: np.ndarray) -> np.ndarray:
-        """w of tractions (2, ny, nx) [MPa] at the element centres [mm]."""
+        """Return w of tractions (2, ny, nx) [MPa] at the element centres [mm]."""
         return lift(*traction, *self.sides, float(self.elastic.coupling[0] / self.elastic.shear_modulus[0]))
 
 

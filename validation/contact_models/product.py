@@ -102,7 +102,7 @@ def draw_patches(case: Any, out: Path) -> list[FigureInfo]:
 
 
 def patch_fields(case: Any, wanted: Sequence[tuple[float, float]] = PATCHES) -> xr.Dataset:
-    """Tractions, slip and stick over both patches of `case` by model; dimensions contact_model x row.
+    """Return tractions, slip and stick over both patches of `case` by model; dimensions contact_model x row.
 
     `wanted`: friction coefficient of each row, and the drive as a share of mu times the sum of the normal forces that
     the load alone causes.

@@ -64,16 +64,16 @@ class Run:
     warned: int
 
     def again(self, cases: list[Any]) -> xr.Dataset:
-        """Other cases solved in the same way."""
+        """Solve other cases in the same way."""
         return run_cases(cases, self.model, self.accuracy)[0]
 
     def regime(self) -> np.ndarray:
-        """Regime of each case (n,)."""
+        """Return the regime of each case (n,)."""
         return np.asarray(self.result.regime.values)
 
 
 def run_cases(cases: Any, model: str, accuracy: str) -> tuple[xr.Dataset, int]:
-    """Result and number of warnings that came through."""
+    """Return the result and the number of warnings."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         result = solve(list(cases), OUTPUTS, contact_model=model, accuracy=accuracy)
@@ -99,7 +99,7 @@ def _rows(values: np.ndarray) -> np.ndarray:
 
 
 def finite(run: Run) -> Finding:
-    """Share of undefined numbers where both contacts carry; warnings count as one each."""
+    """Return the share of undefined numbers where both contacts carry; each warning counts as one."""
     carries = run.regime() <= FULL_SLIP
     bad = np.mean([np.isnan(_rows(run.result[v].values)).mean(axis=1) for v in NEEDED], axis=0)
     return _worst(run, "finite", np.where(carries, bad, 0.0) + run.warned, 0.0)
@@ -111,13 +111,13 @@ def solved(run: Run) -> Finding:
 
 
 def residual(run: Run) -> Finding:
-    """Relative residual of the equilibrium."""
+    """Return the relative residual of the equilibrium."""
     values = np.where(run.regime() == ROLLING, run.result.residual.values, 0.0)
     return _worst(run, "residual", values, RESIDUAL[run.model])
 
 
 def _difference(run: Run, other: xr.Dataset, length: float, modulus: float, mirror: bool) -> np.ndarray:
-    """Largest relative difference of each case; another regime counts as infinite."""
+    """Return the largest relative difference of each case; another regime counts as infinite."""
     worst = np.zeros(len(run.scene.cases))
     both = (run.regime() <= FULL_SLIP) & (other.regime.values <= FULL_SLIP)
     for name, (p, q) in COMPARED.items():
@@ -145,14 +145,14 @@ def _difference(run: Run, other: xr.Dataset, length: float, modulus: float, mirr
 
 
 def scaling(run: Run) -> Finding:
-    """Change of the results when the units change: lengths x 7.3, stresses x 0.37, forces accordingly."""
+    """Return the change of the results when the units change: lengths x 7.3, stresses x 0.37, forces accordingly."""
     other = run.again([scaled(c, 7.3, 0.37) for c in run.scene.cases])
     deviation = _difference(run, other, 7.3, 0.37, False)
     return _worst(run, "scaling", deviation, NUMERICAL[run.model])
 
 
 def mirror(run: Run) -> Finding:
-    """Change of the results when the axial force turns and the contacts swap."""
+    """Return the change of the results when the axial force turns and the contacts swap."""
     other = run.again([mirrored(c) for c in run.scene.cases])
     return _worst(run, "mirror", _difference(run, other, 1.0, 1.0, True), NUMERICAL[run.model])
 
@@ -176,7 +176,7 @@ def _quantity(run: Run, name: str) -> np.ndarray:
 
 
 def monotone(run: Run) -> Finding:
-    """Largest relative step in the wrong direction."""
+    """Return the largest relative step in the wrong direction."""
     worst = np.zeros(len(run.scene.cases))
     for names, sign in ((run.scene.rising, 1.0), (run.scene.falling, -1.0)):
         for name in names:
@@ -189,7 +189,7 @@ def monotone(run: Run) -> Finding:
 
 
 def constant(run: Run) -> Finding:
-    """Largest relative change of what must not change along the series."""
+    """Return the largest relative change of a quantity that must be constant along the series."""
     worst = np.zeros(len(run.scene.cases))
     for name in run.scene.constant:
         values = _quantity(run, name)
@@ -198,7 +198,7 @@ def constant(run: Run) -> Finding:
 
 
 def border(run: Run) -> Finding:
-    """Jump between the nearest cases on both sides of a border of regimes.
+    """Return the jump between the nearest cases on both sides of a border of regimes.
 
     Into full slip: normal forces, peak stress and transmitted force. Into lift-off: the load of the contact that
     leaves, over the other's. Infinite unless all cases below are of one regime and all above of another.
@@ -219,7 +219,7 @@ def border(run: Run) -> Finding:
 
 
 def limit(run: Run) -> Finding:
-    """Difference between the last case and the one before, which tends to it."""
+    """Return the difference between the last case and the one before, which tends to it."""
     gaps = np.zeros(len(run.scene.cases))
     for name in ("normal_force", "max_pressure", "peak_stress", "slip"):
         x = _rows(run.result[name].values)
@@ -230,7 +230,7 @@ def limit(run: Run) -> Finding:
 
 
 def close(run: Run) -> Finding:
-    """Relative change of normal forces and peak stress between neighbours closer than 1e-4."""
+    """Return the relative change of normal forces and peak stress between neighbours closer than 1e-4."""
     near = np.flatnonzero(np.abs(np.diff(run.scene.values)) < 1e-4)
     gaps = np.zeros(len(run.scene.cases))
     for name in ("normal_force", "peak_stress"):

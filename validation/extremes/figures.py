@@ -168,7 +168,7 @@ def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
 
 
 def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
-    """Relative errors of kernels against many digits, in double and in single precision."""
+    """Draw the relative errors of kernels against many digits, in double and in single precision."""
     kernels = record["kernels"]
     with look():
         figure = new_figure(30 + 9.5 * len(kernels), 180.0)

@@ -35,7 +35,7 @@ class KernelError:
 
     @property
     def holds(self) -> bool:
-        """Are all errors tolerated?"""
+        """Return whether all errors are tolerated."""
         return max(self.errors) <= self.tolerance
 
 
@@ -50,7 +50,7 @@ def _digits(function: Callable[[], KernelError]) -> Callable[[], KernelError]:
 
 
 def _curvature_ratio(kappa):
-    """Smaller over larger curvature of a Hertzian ellipse of axis ratio kappa, Johnson (4.26), in many digits."""
+    """Return the smaller over the larger curvature of an ellipse of axis ratio kappa, by Johnson (4.26) and mpmath."""
 
     m = 1 - kappa**2
     if m == 0:
@@ -70,7 +70,7 @@ def axis_ratios() -> KernelError:
 
 
 def _single_ratio(values: tuple[float, ...]) -> float:
-    """Worst error of the curvature ratio written with K and E, as books do, in single precision."""
+    """Return the worst error of the curvature ratio written with K and E, as books do, in single precision."""
 
     kappa = np.array(values, np.float32)
     m_1 = kappa * kappa
@@ -96,7 +96,10 @@ def _on_axis(z):
 
 @_digits
 def depth() -> KernelError:
-    """Stresses under the centre of a circle from the surface to a million radii; the closed form in single."""
+    """Return the errors of stresses under the centre of a circle, from the surface to a million radii.
+
+    The closed form is evaluated in single precision.
+    """
 
     values = (0.0, 1e-12, 1e-8, 1e-4, 1e-2, 0.5, 1.0, 2.9, 3.1, 30.0, 1e3, 1e6)
     one = np.ones(1)
@@ -114,7 +117,7 @@ def depth() -> KernelError:
 
 
 def _single_axis(z: np.ndarray) -> float:
-    """Worst error of Johnson's closed form in single precision, over the larger stress."""
+    """Return the worst error of Johnson's closed form in single precision, over the larger stress."""
     low = z.astype(np.float32)
     one, tail = np.float32(1), 1 / (2 * (1 + low * low))
     found = -np.float32(1.3) * (one - low * np.arctan(1 / low)) + tail, -2 * tail
@@ -127,7 +130,10 @@ def _single_axis(z: np.ndarray) -> float:
 
 @_digits
 def surface_centre() -> KernelError:
-    """Stresses at the centre of slender ellipses, Johnson (4.47): sigma_x from -(2 nu + (1 - 2 nu) b/(a + b)) p_0."""
+    """Return the error of stresses at the surface centre of slender ellipses, Johnson (4.47).
+
+    There sigma_x = -(2 nu + (1 - 2 nu) b/(a + b)) p_0.
+    """
     values = (1e-3, 1e-2, 0.1, 0.5, 1.0, 2.0, 10.0, 1e2, 1e3)
     errors = []
     for ratio in values:  # b/a
@@ -141,7 +147,7 @@ def surface_centre() -> KernelError:
 
 
 def pole_positions() -> KernelError:
-    """Sliding forces with the pole at the centre, on the edge and far outside, 12 points against 600."""
+    """Return the sliding forces with the pole at the centre, on the edge and far outside, 12 points against 600."""
     values = (0.0, 1e-12, 1e-6, 0.3, 0.999999, 1.0, 1.000001, 3.0, 1e3, 1e6, 1e12)
     n, sine = np.ones(len(values)), 0.5
     ellipse = Ellipse(n, 0.5 * n, n)
@@ -157,7 +163,7 @@ def pole_positions() -> KernelError:
 
 
 def far_pole() -> KernelError:
-    """Driving force with the pole far outside against the series of F_A in powers of b over its distance."""
+    """Return the driving force with the pole far outside against the series of F_A in powers of b over its distance."""
     values = (1e3, 1e6, 1e9, 1e12)
     n = np.ones(len(values))
     ellipse = Ellipse(n, 0.5 * n, n)
@@ -186,7 +192,7 @@ def _corners(x, y, nu, f) -> list:
 
 
 def _over_element(hx: Any, hy: Any, nu: Any, place: tuple[int, int], f: Any, pi: Any) -> list[Any]:
-    """xx, yy, xy and the two of the pressure over the element `place` = (i, j)."""
+    """Return the displacements xx, yy, xy by shear and x, y by pressure of uniform loads on the element `place`."""
     (x0, x1), (y0, y1) = (((k - 0.5) * h, (k + 0.5) * h) for k, h in zip(place, (hx, hy), strict=True))
     four = [_corners(x, y, nu, f) for x, y in ((x1, y1), (x0, y1), (x1, y0), (x0, y0))]
     total = [a - b - c + d for a, b, c, d in zip(*four, strict=True)]
@@ -202,7 +208,7 @@ class _Single:
 def _influence_errors(cases) -> tuple[tuple[float, ...], float]:
     """Return errors of double evaluation at each (hx, hy, place) and the worst of single precision.
 
-    Over the largest of the like: displacements by tractions, and by pressure.
+    An error is relative to the largest displacement of its kind: by tractions, or by pressure.
     """
 
     errors: list[float] = []
@@ -250,7 +256,10 @@ def kalker_edges() -> KernelError:
 
 @_digits
 def von_mises_near_hydrostatic() -> KernelError:
-    """Equivalent stress of a nearly hydrostatic state, over its largest stress: only input's digits are lost."""
+    """Return the error of the von Mises stress of a nearly hydrostatic state, over its largest stress.
+
+    Only the digits of the input are lost.
+    """
     values = (1e-1, 1e-3, 1e-5, 1e-7, 1e-9)
     state = np.array([[-1.0, -1.0 + v, -1.0 - v, v, 0.0, 0.0] for v in values])
     exact = np.array(values) * 6**0.5

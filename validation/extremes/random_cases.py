@@ -57,7 +57,7 @@ def _draw(rng: np.random.Generator) -> dict[str, Any]:
 
 
 def random_extremes(count: int, seed: int) -> list[dict[str, Any]]:
-    """`count` valid cases; those whose surfaces conform or interlock are drawn anew."""
+    """Return `count` valid cases; cases whose surfaces conform or interlock are drawn again."""
     rng = np.random.default_rng(seed)
     found: list[dict[str, Any]] = []
     while len(found) < count:

@@ -24,7 +24,10 @@ SEED = 7
 
 
 def random_record(model: str, count: int, seed: int = SEED) -> Record:
-    """Random extremes with one model: regimes, undefined numbers, warnings, and the change when units change."""
+    """Return the record of random extremes with one model.
+
+    It holds regimes, undefined numbers, warnings, and the change of the results when the units change.
+    """
     cases = random_extremes(count, seed)
     ds, warned = run_cases(cases, model, ACCURACIES[model] if count <= 1000 else "preview")
     other = solve([scaled(c, 7.3, 0.37) for c in cases], "forces", contact_model=model, accuracy=ACCURACIES[model])

@@ -152,7 +152,7 @@ def _over(curvature: float) -> float:
 
 
 def _lift_share() -> float:
-    """Axial force over |F_rad| tan(alpha) at which a frictionless contact carries but `LIFTED` of the load."""
+    """Return the axial force over |F_rad| tan(alpha) at which a frictionless contact carries `LIFTED` of the load."""
     share = 2.0 * LIFTED * math.cos(math.radians(30.0))
     return (1.0 - share) / (1.0 + share * FLAT_TAN)
 
@@ -414,7 +414,7 @@ FORCES = ("radial_force", "axial_force", "motor_force")
 
 
 def scaled(case: Mapping[str, Any], length: float, modulus: float) -> CaseDict:
-    """The case in other units: lengths times `length`, moduli and strengths times `modulus`, forces accordingly."""
+    """Return the case in other units: lengths times `length`, moduli and strengths times `modulus`, forces to match."""
     changed = {k: case[k] * length for k in LENGTHS} | {k: case[k] * length**2 * modulus for k in FORCES}
     for body in ("roller_material", "guide_material"):
         m = case[body]

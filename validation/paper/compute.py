@@ -72,7 +72,7 @@ def as_published(case: Case) -> xr.Dataset:
 
 
 def stress_at(scene: str, points: list[list[float]]) -> list[float]:
-    """Von Mises stress [MPa] of the sliding model on the roller, at one point (x, y, z) [mm] below each contact."""
+    """Return the von Mises stress [MPa] of `sliding` on the roller, at one point (x, y, z) [mm] below each contact."""
 
     ds, case = solved(scene, "sliding"), case_of(scene)
     alpha = np.deg2rad(case.contact_angle) * np.array([1.0, -1.0])
@@ -136,5 +136,5 @@ def results() -> dict[str, Any]:
 
 
 def life_ratio(of: float, to: float, exponent: float) -> float:
-    """Life at the stress `of` over that at the stress `to` on an S-N curve of this exponent."""
+    """Return the life at the stress `of` over the life at the stress `to`, on an S-N curve of this exponent."""
     return (to / of) ** exponent

@@ -77,7 +77,7 @@ def _values(source: str, name: str, contact: int) -> float:
 
 
 def bars() -> Drawn:
-    """Figure 8: forces and stresses of both contacts by program."""
+    """Draw figure 8: forces and stresses of both contacts by program."""
     figure = style.new_figure(122, style.COLUMN_MM)
     upper, lower = figure.subplots(2, 1)
     groups = [
@@ -121,7 +121,7 @@ def bars() -> Drawn:
 
 
 def tractions() -> Drawn:
-    """Figure 9: pressure and both shear components of contact 1, both models."""
+    """Draw figure 9: pressure and both shear components of contact 1, both models."""
     names = (("pressure", "$p$"), ("shear_lateral", "$\\tau_x$"), ("shear_rolling", "$\\tau_y$"))
     figure = style.new_figure(94, style.COLUMN_MM)
     grid = figure.subplots(3, 2, sharex=True, sharey=True)

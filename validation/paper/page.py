@@ -273,7 +273,7 @@ def _table_2(found: dict[str, Any]) -> list[Block]:
 
 
 def write_results(folder: Path) -> None:
-    """`paper.json`, `figures/` and `paper.html` in `folder`; each whole or not at all."""
+    """Write `paper.json`, `figures/` and `paper.html` into `folder`, each whole or not at all."""
 
     found = results()
     text = json.dumps(found, indent=1) + "\n"

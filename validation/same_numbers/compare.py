@@ -53,7 +53,7 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """True if no problem was found and no difference is beyond the tolerance."""
+        """Return whether there is no problem and no difference beyond the tolerance."""
         return not self.problems and not any(difference.beyond for difference in self.differences)
 
 

@@ -44,7 +44,7 @@ def _details(verdict: Verdict) -> list[str]:
 
 
 def _table(differences: list[Difference]) -> list[str]:
-    """Return one line a variable, then the groups that contribute, the largest difference first."""
+    """Return one line for each variable and below it the groups in which it differs, the largest difference first."""
     by_name: dict[str, list[Difference]] = defaultdict(list)
     for difference in differences:
         by_name[difference.key.rpartition("/")[2]].append(difference)

@@ -25,7 +25,7 @@ QUANTITIES = {
 
 
 def relative_errors(result: xr.Dataset, reference: xr.Dataset) -> dict[str, np.ndarray]:
-    """Largest error over contacts and bodies by quantity, shape (n,), of two solutions of the same cases.
+    """Return the largest error over contacts and bodies by quantity, shape (n,), of two solutions of the same cases.
 
     A row whose regime differs counts as infinite, one that neither has as NaN.
     """
@@ -72,7 +72,7 @@ def percentiles(errors: np.ndarray, levels: tuple[float, ...] = (50, 95, 99)) ->
 
 
 def tolerance_bound(errors: np.ndarray, share: float = 0.99, confidence: float = 0.95) -> float:
-    """Error that `share` of all cases keep, with `confidence`, where the sample is large enough for that.
+    """Return the error that `share` of all cases keep, with `confidence`, where the sample is large enough for that.
 
     Distribution-free (Wilks 1941): the k-th largest with k as large as the binomial law allows. A sample below
     log(1 - confidence)/log(share) (299 designs) cannot say so much: ASSUME then half as much again as its 95th
@@ -89,7 +89,7 @@ def tolerance_bound(errors: np.ndarray, share: float = 0.99, confidence: float =
 
 
 def observed_order(points: np.ndarray, errors: np.ndarray) -> tuple[float, float]:
-    """Slope of log error over log 1/points by least squares, and R^2; NaN with fewer than three usable points.
+    """Return the slope of log error over log 1/points by least squares, and R^2; NaN with fewer than 3 usable points.
 
     Errors at the floor of rounding (below 1e-12) are left out.
     """

@@ -191,7 +191,7 @@ def _sentence(series: dict[Any, list[Record]], quantity: str, words: str) -> str
 
 
 def convergence(summary: dict[str, Any]) -> Drawn | None:
-    """Median error against points per length with the observed orders."""
+    """Draw the median error against points per length with the observed orders."""
     order = {(o["stage"], o["model"], o["method"], o["quantity"]): o["order"] for o in summary["orders"]}
     figure = style.new_figure(112, style.COLUMN_MM)
     axes = figure.add_subplot()
@@ -237,7 +237,7 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
 
 
 def spread(summary: dict[str, Any], ds: xr.Dataset) -> Drawn | None:
-    """Share of designs whose peak stress errs by more than x, for the presets."""
+    """Draw the share of designs whose peak stress errs by more than x, for the presets."""
     figure = style.new_figure(72, style.COLUMN_MM)
     axes = figure.add_subplot()
     axes.set_xscale("log")

@@ -19,7 +19,7 @@ Patch = dict[str, Any]
 
 
 def cpu(work: Any, *arguments: Any, **options: Any) -> tuple[Any, float]:
-    """Result and CPU time [s] of a call, all threads of the process together."""
+    """Return the result and CPU time [s] of a call, over all threads of the process."""
     start = time.process_time()
     result = work(*arguments, **options)
     return result, time.process_time() - start

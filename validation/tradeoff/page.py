@@ -293,7 +293,7 @@ def _error(value: float | None) -> str:
 
 
 def write_results(tradeoff_nc: str, summary_json: str, figures: str, page: str) -> None:
-    """Summary, figures and report from the gathered measurement."""
+    """Write summary, figures and report from the gathered measurement."""
 
     ds = xr.load_dataset(tradeoff_nc)
     found = summary(ds)

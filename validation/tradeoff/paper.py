@@ -23,7 +23,9 @@ REPEATS = 10
 
 
 def paper_table() -> list[dict[str, Any]]:
-    """Rows: `what`, `discretisation`, `seconds` of CPU time, `inner` and `peak` [MPa] of contact 1 on the roller.
+    """Return the rows of the table: settings with their CPU time and peak stresses of contact 1 on the roller.
+
+    Keys: `what`, `discretisation`, `seconds`, and `inner` and `peak` [MPa].
 
     `inner` is the highest point of the published kind of search, from 1.5 grid steps below the surface on, and `peak`
     the highest with the surface. ASSUME: the paper does not tell its range of depths; here 1.5 times the smaller
@@ -82,7 +84,7 @@ def paper_table() -> list[dict[str, Any]]:
 
 
 def _inner(patches: Patches) -> float:
-    """Local maximum below the surface in contact 1 of the roller [MPa], by a search that may not rise to it."""
+    """Return the highest local maximum below the surface in contact 1 of the roller [MPa]."""
 
     e, nu = patches.ellipse, float(patches.poisson[0])
     size = np.array(

@@ -68,7 +68,7 @@ def load_sizes(path: Path | str) -> Sizes:
 
 
 def settings_of(model: str) -> list[settings.Setting]:
-    """Everything that is measured with complete solutions of one contact model."""
+    """Return all settings that are measured with complete solutions of one contact model."""
     if model == "sliding":
         return [*settings.quadratures(), *settings.searches(), *settings.ellipses()]
     return settings.elements(model)

@@ -58,7 +58,9 @@ def design_at(u: np.ndarray) -> Case:
 
 
 def sample(count: int, seed: int = SEED) -> list[Case]:
-    """The first `count` designs of a scrambled Sobol sequence that roll or slide on both contacts within the groove.
+    """Return the first `count` usable designs of a scrambled Sobol sequence.
+
+    Usable designs roll or slide on both contacts within the groove.
 
     Left out: surfaces without point contact, lift-off, self-locking without a solution, and patches in which the slip
     of the sliding model makes the stress itself infinite (bits `conformal` and `split_pole`).

@@ -78,7 +78,7 @@ def accuracy_of(nodes: int = 24, coarse: int = 6, peak: PeakSettings = FINE, ele
 
 
 def floor_of(step: float) -> float:
-    """Share of the error estimate for what no search sees: it shrinks with the smallest step of the search."""
+    """Return the floor of the error estimate: the smallest step of a search limits the error that it can see."""
     return 2e-3 if step > 0.02 else 0.02 * step
 
 
@@ -104,7 +104,7 @@ def searches() -> list[Setting]:
 
 
 def quadratures() -> list[Setting]:
-    """Quadrature of the slip integrals in the equilibrium of full sliding."""
+    """Return the quadrature of the slip integrals in the equilibrium of full sliding."""
     return [
         Setting(
             "equilibrium",
@@ -120,7 +120,7 @@ def quadratures() -> list[Setting]:
 
 
 def ellipses() -> list[Setting]:
-    """Exact Hertz ellipses and those of the published table, with all that follows from them."""
+    """Return exact Hertz ellipses and ellipses of the published table, with the quantities that follow from them."""
     return [
         Setting("ellipse", "sliding", method, method, float("nan"), accuracy_of(), {"hertz": method}, ALL)
         for method in ("exact", "published")

@@ -126,7 +126,7 @@ def _axes(k_x: float, k_y: float, modulus: float) -> tuple[float, float]:
 
 
 def traction_stage(patches: Patches) -> list[Found]:
-    """Friction force and energy summed over a grid of tractions, against the integrals."""
+    """Measure friction force and energy summed over a grid of tractions against the integrals."""
     exact, power = vars(sliding.integrals(patches.ellipse, patches.slip, patches.friction, nodes=64)).values()
     power = power / patches.slip.rolling_radius
     bound = patches.friction * patches.ellipse.normal_force
@@ -177,7 +177,7 @@ def _largest(found: np.ndarray, exact: np.ndarray) -> np.ndarray:
 
 
 def _waves(patches: Patches, points: np.ndarray, order: int) -> np.ndarray:
-    """von Mises stress over p_max of the roller at points (n, m, 3), shape (n, m)."""
+    """Return the von Mises stress over p_max of the roller at points (n, m, 3), shape (n, m)."""
     out = np.empty(points.shape[:2])
     for i, row in enumerate(patches.rows):
         parts, nu = stress_parts(row, points[i], order, order), patches.poisson[i]
@@ -205,7 +205,10 @@ def _elements(patches: Patches, points: np.ndarray, count: int, few: int, kind: 
 
 
 def grid_search_stage(patches: Patches, few: int = 10) -> list[Found]:
-    """The peak as the highest point of a regular grid, from the surface and from 1.5 steps below it as published."""
+    """Measure the highest point of a regular grid as the peak.
+
+    The grid begins at the surface or, as published, 1.5 steps below it.
+    """
     few = min(few, len(patches))
     exact = patches.solution["peak_stress"].isel(contact=0, body=0).values[:few]
     out: list[Found] = []
@@ -222,7 +225,9 @@ def _grid_peaks(patches: Patches, count: int, few: int, start: float) -> np.ndar
 
 
 def grid_peak(patches: Patches, i: int, count: int, depths: int, start: float, stride: int = 1) -> float:
-    """Largest von Mises stress [MPa] of the roller over every `stride`-th of count x count points and some depths.
+    """Return the largest von Mises stress [MPa] of the roller over some depths of a grid.
+
+    Of count x count points on the surface every `stride`-th is taken.
 
     From `start` steps below the surface down to 1.5 times the smaller semi-axis; bilinear tractions on the same grid.
     """

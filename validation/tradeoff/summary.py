@@ -34,7 +34,7 @@ Record = dict[str, Any]
 
 
 def summary(ds: xr.Dataset) -> dict[str, Any]:
-    """Everything that page, figures and ladders are made of, ready for JSON."""
+    """Return all data of page, figures and accuracy tables, ready for JSON."""
     records = [_record(ds.isel(setting=i)) for i in range(ds.sizes["setting"])]
     whole = {k: ds.attrs[k] for k in sorted(ds.attrs) if k.startswith(("designs_", "reference_cost_"))}
     chosen = {name: ladder(records, *key) for key, name in LADDERS.items()}
@@ -94,12 +94,12 @@ def _number(value: float) -> float | None:
 
 
 def levels(record: Record, quantity: str) -> tuple[float, float, float, float]:
-    """Median, 95th and 99th percentile and bound of a record; inf where the regime is another."""
+    """Return the median, 95th and 99th percentile and bound of a record; inf where the regime is another."""
     return tuple(math.inf if v is None else v for v in record["errors"][quantity][:4])  # type: ignore[return-value]
 
 
 def orders(records: list[Record]) -> list[Record]:
-    """Observed order of convergence of each refinement and quantity, by the median over the designs.
+    """Return the observed order of convergence of each refinement and quantity, by the median over the designs.
 
     Those with points per length; searches for the peak have none, their effort is no length.
     """
@@ -161,7 +161,7 @@ def ladder(records: list[Record], stage: str, model: str) -> list[Record]:
 
 
 def _thinned(rows: list[Any], table: np.ndarray) -> list[Any]:
-    """At most MOST_RUNGS of the rows: the one that gains least on its neighbours goes, the ends stay."""
+    """Return at most MOST_RUNGS rows: rows that gain least over their neighbours are dropped, the ends stay."""
     rows = list(rows)
     while len(rows) > MOST_RUNGS:
         error = np.log(np.maximum(table[rows, 1], _FLOOR))
@@ -171,7 +171,10 @@ def _thinned(rows: list[Any], table: np.ndarray) -> list[Any]:
 
 
 def life_against_peak(ds: xr.Dataset) -> dict[str, float]:
-    """Ratio of the errors of life and of the peak in the searches: the exponent of the S-N curve, for small errors."""
+    """Return the ratio of the errors of life to those of the peak stress in the searches.
+
+    For small errors it is the exponent of the S-N curve.
+    """
     search = ds.where((ds["stage"] == "peak") & (ds["method"] == "search"), drop=True)
     peak = search["error"].sel(quantity="peak_stress").values
     life = search["error"].sel(quantity="life").values

@@ -67,9 +67,10 @@ def one_strip(strips, i, j):
 
 @njit(cache=True)
 def _shortened(zx, zy, l_x, l_y, g):
-    """Return (x, y) of length g with (x - z) L along it: the traction that slides under the trial traction z, |z| > g.
+    """Return the traction (x, y) of length g at a slipping point with the trial traction z, |z| > g.
 
-    x = L z/(L + k) with the root k >= 0 of |x| = g, by Newton's method from the mean of L.
+    The springs move by L (z - x), which is parallel to x. So x = L z/(L + k) with the root k >= 0 of |x| = g, found by
+    Newton's method from the mean of L.
     """
     mean = 0.5 * (l_x + l_y)
     k = mean * (math.hypot(zx, zy) / g - 1.0)

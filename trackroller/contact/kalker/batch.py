@@ -80,7 +80,7 @@ class Report:
 
     @property
     def energy_residual(self) -> np.ndarray:
-        """Dissipation over the work of rigid slip and pressures, less 1; shape (n,)."""
+        """Return the dissipation over the work of rigid slip and pressures, less 1; shape (n,)."""
         work = self.work + self.pressure_work
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(work != 0, self.dissipation / work - 1.0, 0.0)

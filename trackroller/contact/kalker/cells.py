@@ -11,7 +11,10 @@ from trackroller.contact.grid_patch import GridPatch
 
 
 def _column_integrals(x: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Integrals over y up to `edges` of sqrt(1 - x^2 - y^2) and of 1 inside the circle, shape (edges, x...)."""
+    """Return the integrals over y of sqrt(1 - x^2 - y^2) and of 1 inside the circle, up to `edges`.
+
+    Each has the shape (edges, x...).
+    """
     square = np.maximum(1.0 - x**2, 1e-300)
     root = np.sqrt(square)
     y = np.clip(edges.reshape(-1, *(1,) * x.ndim), -root, root)
@@ -21,7 +24,7 @@ def _column_integrals(x: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.
 
 @lru_cache(maxsize=32)
 def unit_cells(ny: int, nx: int) -> tuple[np.ndarray, np.ndarray]:
-    """Mean of sqrt(1 - x^2 - y^2) over each of ny x nx elements of [-1, 1]^2, and the share inside the circle.
+    """Return the mean of sqrt(1 - x^2 - y^2) over ny x nx elements of [-1, 1]^2, and the share inside the circle.
 
     Both (ny, nx). Exact along y, 12 Gauss points along x; scaled so that the total is the circle's 2 pi/3 and pi.
     The mean over the whole element keeps the friction of a patch independent of the grid.

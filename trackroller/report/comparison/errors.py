@@ -27,7 +27,7 @@ def _largest(value: xr.DataArray) -> xr.DataArray:
 
 
 def _apart(value: xr.DataArray, ref: xr.DataArray) -> xr.DataArray:
-    """Relative difference; none where both are unlimited."""
+    """Return the relative difference; 0 where both values are unlimited."""
     return abs(value / ref - 1.0).where(value != ref, 0.0 * (ref == ref)).where(ref.notnull() & value.notnull())
 
 
@@ -106,5 +106,5 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
 
 
 def measured(found: xr.Dataset) -> list[Quantity]:
-    """The quantities of which the errors `found` have a number."""
+    """Return the quantities for which the errors `found` hold a number."""
     return [q for q in QUANTITIES if q.name in found and bool(found[q.name].notnull().any())]

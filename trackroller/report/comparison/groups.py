@@ -33,7 +33,7 @@ class Groups:
 
 
 def factors(ds: xr.Dataset) -> list[str]:
-    """What varies besides the contact model."""
+    """Return the factors that vary besides the contact model."""
     return list(json.loads(ds.attrs["factors"]))
 
 
@@ -63,7 +63,7 @@ def groups(ds: xr.Dataset, name: str) -> Groups:
 
 
 def _categories(name: str, values: np.ndarray) -> Groups:
-    """Also numbers of which one is no finite one, as the curve of a straight guide."""
+    """Return one group for each value: a word, or a number of a list with infinity (the curve of a straight guide)."""
     kinds = list(dict.fromkeys(values.tolist())) if values.dtype.kind != "f" else np.unique(values).tolist()
     index = np.array([kinds.index(v) if v == v else -1 for v in values.tolist()])
     texts = tuple(short_levels([level_text(name, k) for k in kinds]))
@@ -72,7 +72,7 @@ def _categories(name: str, values: np.ndarray) -> Groups:
 
 
 def span(name: str, low: float, high: float) -> str:
-    """A level, or a range, in words."""
+    """Return a level or a range in words."""
     figures = 2 if name in (FRICTION, *DERIVED) else 4 if low == high else 3
     low, high = float(f"{low:.{figures}g}"), float(f"{high:.{figures}g}")
     if low == high:
@@ -101,12 +101,12 @@ def drives(ds: xr.Dataset) -> Groups:
 
 
 def name_of(name: str) -> str:
-    """A factor, or the spin, in running text."""
+    """Return a factor or the spin in running text."""
     return DERIVED.get(name) or ("friction" if name == FRICTION else long_name(name))
 
 
 def spin_is_its_own(ds: xr.Dataset) -> bool:
-    """Does the spin vary?"""
+    """Return whether the spin varies."""
     values = ds["spin"].values
     good = values[np.isfinite(values)]
     return bool(good.size) and float(good.max()) > 1.1 * float(good.min())

@@ -27,7 +27,7 @@ RESULTS = ("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress",
 
 
 def pairs(ds: xr.Dataset) -> xr.Dataset | None:
-    """The designs of a study by contact model; None if the study has but one model.
+    """Return the designs of a study by contact model; None if the study has but one model.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def pairs(ds: xr.Dataset) -> xr.Dataset | None:
 
 
 def _inputs(ds: xr.Dataset, order: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Every input that the data set knows, one value a case, (rows,)."""
+    """Return every input that the data set knows, one value a case, (rows,)."""
     study, found = read_study(ds), {}
     names = [n for n in dict.fromkeys((*INPUTS, *study.get("factors", {}), *order)) if n not in (MODEL, "case")]
     rows = int(np.prod([ds.sizes[d] for d in order]))
@@ -75,7 +75,9 @@ def _inputs(ds: xr.Dataset, order: tuple[str, ...]) -> dict[str, np.ndarray]:
 
 
 def _matched_rows(own: np.ndarray, columns: Mapping[str, np.ndarray], models: list[str]) -> np.ndarray:
-    """Row of each model and design, (models, designs), -1 where the design lacks it; designs in order of rows.
+    """Return the row of each model and design, shape (models, designs), -1 where the design lacks it.
+
+    The designs stand in the order of their rows.
 
     `own` is the model of each row (n,), `columns` are its inputs.
     """
@@ -123,7 +125,7 @@ def _sorted_out(
 
 
 def _factors(study: Mapping[str, Any], inputs: Mapping[str, np.ndarray], order: tuple[str, ...]) -> list[str]:
-    """What varies besides the contact model, in the study's order; what is computed from factors is none."""
+    """Return the factors that vary besides the contact model, in the study's order, without derived ones."""
     given = study.get("factors", {})
     free = [str(n) for n, spec in given.items() if not (isinstance(spec, Mapping) and "expression" in spec)]
     free += [n for n in OPTION_FACTORS if isinstance(study.get(n), list)] + [d for d in order if d != "case"]
@@ -132,7 +134,7 @@ def _factors(study: Mapping[str, Any], inputs: Mapping[str, np.ndarray], order: 
 
 
 def _with_life(ds: xr.Dataset) -> xr.Dataset:
-    """With `life`, the first of `LIVES` that has numbers."""
+    """Add the variable `life`: the first of `LIVES` that has numbers."""
     for name, words, unit in LIVES:
         if name in ds and bool((ds[name] > 0).any()):
             life = ds[name].min([d for d in ("contact", "body") if d in ds[name].dims])

@@ -133,12 +133,12 @@ def _compared(one: xr.Dataset) -> int:
 
 
 def _spread(e: np.ndarray) -> tuple[float, float, float]:
-    """Median, what nine in ten stay below, and the largest; each is an error that was found."""
+    """Return the median, the 90th percentile and the largest error, each an error that was found."""
     return tuple(float(np.percentile(e, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]
 
 
 def _by_drive(one: xr.Dataset, model: str) -> list[str]:
-    """A sentence a drive: up to which friction each quantity is good enough."""
+    """Return a sentence for each drive: up to which friction each quantity is good enough."""
     if FRICTION not in factors(one):
         return []
     drive, varies = drives(one), DRIVE in factors(one)
@@ -195,7 +195,7 @@ def levels_kept(along: Groups, e: np.ndarray) -> str:
 
 
 def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
-    """First and last index of every run of True."""
+    """Return the first and last index of every run of True."""
     edge = np.flatnonzero(np.diff(np.concatenate([[False], keeps, [False]]).astype(int)))
     return [(int(a), int(b) - 1) for a, b in edge.reshape(-1, 2)]
 
@@ -215,12 +215,12 @@ def telling_factors(one: xr.Dataset) -> list[str]:
 
 
 def _shares_along(e: np.ndarray, along: Groups) -> np.ndarray:
-    """Share of good designs in every group, NaN where none rolls."""
+    """Return the share of good designs in every group, NaN where none rolls."""
     return np.array([_share(e[along.index == k]) for k in range(len(along))])
 
 
 def _share(e: np.ndarray) -> float:
-    """Share of good designs among those that roll, NaN if none does."""
+    """Return the share of good designs among those that roll, NaN if none does."""
     e = e[~np.isnan(e)]
     return float(np.mean(e <= GOOD)) if e.size else np.nan
 

@@ -42,7 +42,10 @@ def drawers(ds: xr.Dataset) -> list[partial[Drawn]]:
 
 
 def _lines(shown: Frame, axes: Any, values: Values) -> dict[str, Any]:
-    """One line a model in every column of a row of panels; of many designs the medians, with the reference's band."""
+    """Draw one line a model in every column of a row of panels.
+
+    Of many designs the line is the median, with the band of the reference.
+    """
     handles, rolls = {}, rolling(shown.ds)
     for model in map(str, shown.ds["contact_model"].values):
         own = np.where(rolls, values(shown.ds.sel(contact_model=model)).values, np.nan)
@@ -77,7 +80,7 @@ def error(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
 
 
 def _error_row(shown: Frame, row: Any, found: xr.Dataset, name: str) -> dict[str, Any]:
-    """Errors of all cheaper models in a row of panels."""
+    """Draw the errors of all cheaper models in a row of panels."""
     handles, top = {}, 1.0
     for model in map(str, found["contact_model"].values):
         e = np.clip(found[name].sel(contact_model=model).values, LEAST, 1e3)

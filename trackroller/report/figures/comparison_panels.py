@@ -38,11 +38,11 @@ class Frame:
     held: str
 
     def titles(self) -> list[str]:
-        """Headings of the columns."""
+        """Return the headings of the columns."""
         return [capital(t) for t in self.columns.texts] if self.columns is not None else [""]
 
     def inside(self, column: int) -> np.ndarray:
-        """Designs of a column, (n,)."""
+        """Return the designs of a column, (n,)."""
         return np.ones(self.ds.sizes["design"], bool) if self.columns is None else self.columns.index == column
 
     def bands(self, values: np.ndarray, column: int) -> np.ndarray:
@@ -60,7 +60,7 @@ class Frame:
 
     @property
     def many(self) -> bool:
-        """Does a place on the axis stand for several designs?"""
+        """Return whether a place on the axis stands for several designs."""
         column = np.zeros(len(self.x.index), int) if self.columns is None else self.columns.index
         pairs = column * (len(self.x) + 1) + self.x.index
         return bool(np.unique(pairs, return_counts=True)[1].max(initial=0) > 1)
@@ -76,7 +76,7 @@ def axis_name(ds: xr.Dataset) -> str | None:
 
 
 def frame(ds: xr.Dataset, name: str | None = None, hold: bool = False, split: bool = True) -> Frame | None:
-    """The frame of a figure over `name`; None where nothing varies.
+    """Return the frame of a figure over `name`; None if no factor varies.
 
     `hold`: of a grid, only designs with all other factors at the base's level (else the middle one); where none of
     them rolls, all designs. `split`: a column a drive.
@@ -110,12 +110,12 @@ def _held(ds: xr.Dataset, shown: tuple[str, ...]) -> tuple[np.ndarray, str]:
 
 
 def rolling(ds: xr.Dataset) -> np.ndarray:
-    """Designs that roll by every model, (n,): only these are compared."""
+    """Return the designs that roll by every model, (n,): only these are compared."""
     return np.asarray((ds["regime"] == 0).all("contact_model").values)
 
 
 def panels(shown: Frame, labels: list[str], row_mm: float) -> tuple[Figure, Any]:
-    """Rows of panels, one a label, over the columns of the frame."""
+    """Return rows of panels, one row for each label, over the columns of the frame."""
     titles = shown.titles()
     figure = style.new_figure(30.0 + row_mm * len(labels) + label_mm(shown.x))
     axes = figure.subplots(len(labels), len(titles), sharex=True, sharey="row", squeeze=False)
@@ -128,7 +128,7 @@ def panels(shown: Frame, labels: list[str], row_mm: float) -> tuple[Figure, Any]
 
 
 def label_mm(x: Groups) -> float:
-    """Height that names of categories take under an axis [mm]."""
+    """Return the height that names of categories take under an axis [mm]."""
     if x.ordered:
         return 0.0
     lines = [textwrap.wrap(text, WRAP) for text in x.texts]
@@ -136,7 +136,7 @@ def label_mm(x: Groups) -> float:
 
 
 def set_axis(axes: Axes, x: Groups) -> None:
-    """Scale, ticks and label of the axis of groups."""
+    """Set scale, ticks and label of the axis of groups."""
     axes.set_xlabel(axis_label(x.name))
     if not x.ordered:
         texts = [textwrap.fill(text, WRAP) for text in x.texts]
@@ -149,7 +149,7 @@ def set_axis(axes: Axes, x: Groups) -> None:
 
 
 def axis_label(name: str) -> str:
-    """Axis label of a factor or of what is computed from factors."""
+    """Return the axis label of a factor or of a quantity computed from factors."""
     derived = {"spin": r"Spin $\varphi\,\rho$ [–]", "lean": r"$\mu\,\tan\alpha$ [–]"}
     return derived[name] if name in DERIVED else factor_label(name)
 
@@ -157,7 +157,7 @@ def axis_label(name: str) -> str:
 def line(
     axes: Axes, x: Groups, band: np.ndarray, model: str, hollow: bool = False, shade: bool = False, **more: Any
 ) -> Any:
-    """Median of a model over the groups, and its band where asked for."""
+    """Draw the median of a model over the groups, and its band where asked for."""
     look = LOOKS[model] | more
     at = x.at if x.ordered else x.at + 0.14 * (list(LOOKS).index(model) - 1)
     if shade and np.nanmax(band[2] - band[0], initial=0.0) > 0:
@@ -171,7 +171,7 @@ def line(
 
 
 def close(figure: Figure, handles: dict[str, Any], title: str, words: str, columns: int = 3) -> Figure:
-    """The figure with its legend (label -> line) and its heading."""
+    """Add the legend (label -> line) and the heading, and return the figure."""
     figure.legend(
         list(handles.values()),
         list(handles),

@@ -25,23 +25,23 @@ class Patch:
 
     @property
     def there(self) -> bool:
-        """Does the contact exist?"""
+        """Return whether the contact exists."""
         return bool(np.isfinite(self.x).all() and np.isfinite(self.y).all() and np.isfinite(self.a * self.b))
 
     def field(self, name: str) -> np.ndarray:
-        """A field with 0 where it is not defined."""
+        """Return a field with 0 where it is not defined."""
         return np.nan_to_num(self.ds[name].values)
 
     @property
     def inside(self) -> np.ndarray:
-        """The points or elements that bear."""
+        """Return the points or elements that bear."""
         if self.solved:
             return _bears(self.ds)
         return (self.x[None, :] / self.a) ** 2 + (self.y[:, None] / self.b) ** 2 < 1.0
 
     @property
     def box(self) -> tuple[float, float, float, float]:
-        """Ends of the patch: left, right, rear, front [mm]."""
+        """Return the ends of the patch: left, right, rear, front [mm]."""
         if not self.solved:
             return -self.a, self.a, -self.b, self.b
         across, along = _strips(self.ds, "x"), _strips(self.ds, "y")
@@ -49,7 +49,7 @@ class Patch:
 
     @property
     def outline(self) -> Path:
-        """The edge of the patch: an ellipse, or the closed lines around its loaded elements."""
+        """Return the edge of the patch: an ellipse, or the closed lines around its loaded elements."""
         if not self.solved:
             circle = Path.unit_circle()
             return Path(np.asarray(circle.vertices) * np.array([self.a, self.b]), circle.codes)
@@ -85,7 +85,7 @@ def _slides(ds: xr.Dataset) -> bool:
 
 
 def patches_of(ds: xr.Dataset, *names: str) -> list[Patch]:
-    """The contacts that exist, if the fields `names` are there."""
+    """Return the contacts that exist, or none if a field of `names` is missing."""
     if not all(n in ds for n in ("patch_x", "patch_y", *names)):
         return []
     return [p for p in (Patch(ds, int(c)) for c in ds["contact"].values) if p.there]
@@ -101,13 +101,13 @@ def framed(x: np.ndarray, y: np.ndarray, field: np.ndarray, rim: float | None = 
 
 
 def _bears(part: xr.Dataset) -> np.ndarray:
-    """The loaded elements (ny, nx) of one contact whose pressure was solved on a grid."""
+    """Return the loaded elements (ny, nx) of one contact whose pressure was solved on a grid."""
     pressure = np.nan_to_num(part["pressure"].values)
     return pressure > SLIGHT * pressure.max()
 
 
 def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
-    """First and last edge [mm] of each run of loaded elements along 'x' or 'y'."""
+    """Return the first and last edge [mm] of each run of loaded elements along 'x' or 'y'."""
     centres, loaded = part[f"patch_{axis}"].values, np.any(_bears(part), axis=0 if axis == "x" else 1)
     half = 0.5 * (centres[1] - centres[0])
     steps = np.diff(np.concatenate([[0], loaded.astype(int), [0]]))

@@ -37,7 +37,7 @@ def case_name(ds: xr.Dataset) -> str:
 
 
 def case_text(ds: xr.Dataset) -> str:
-    """What the case is, as far as the data set tells."""
+    """Return regime and normal forces of the case as a sentence, as far as the data set holds them."""
     regime = int(ds["regime"]) if "regime" in ds else 0
     forces = ds["normal_force"].values if "normal_force" in ds else np.array([])
     text = f"Regime: {REGIME_LABELS[regime]}"
@@ -50,7 +50,10 @@ def _shapes(patches: list[Patch]) -> str:
 
 
 def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
-    """A figure with the patches side by side, to one scale unless they are very slender, and room for a profile."""
+    """Return a figure with the patches side by side and, on request, axes for a profile.
+
+    The patches are drawn to one scale unless they are very slender.
+    """
     boxes, count = np.array([p.box for p in patches]), len(patches)
     (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     a, b = 0.5 * (right - left), 0.5 * (front - rear)
@@ -72,7 +75,7 @@ def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[A
 
 
 def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
-    """Filled contours cut along the edge of the patch, and this edge."""
+    """Draw filled contours cut along the edge of the patch; return this edge."""
     levels = np.linspace(0, top, 17)
     x, y, shown = framed(patch.x, patch.y, values) if patch.solved else (patch.x, patch.y, values)
     image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
@@ -84,7 +87,7 @@ def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -
 
 
 def _light(name: str = "YlGnBu", end: float = 0.62) -> Any:
-    """The lighter part of a colour map, on which black arrows are seen."""
+    """Return the lighter part of a colour map, on which black arrows are seen."""
     return ListedColormap(matplotlib.colormaps[name](np.linspace(0, end, 64)))
 
 
@@ -94,7 +97,7 @@ def _bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
 
 
 def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
-    """Direction and size of the shear traction on the roller, with the spin pole."""
+    """Draw direction and size of the shear traction on the roller, with the spin pole."""
     patches = patches_of(ds, "shear_lateral", "shear_rolling")
     sizes = [np.hypot(p.field("shear_lateral"), p.field("shear_rolling")) for p in patches]
     top, image = max((float(s.max()) for s in sizes), default=0.0), None
@@ -152,7 +155,7 @@ def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
 
 
 def _every(length: int, count: int) -> np.ndarray:
-    """About `count` evenly spaced indices, symmetric about the middle."""
+    """Return about `count` evenly spaced indices, symmetric about the middle."""
     step = max(-(-(length - 1) // (count - 1)), 1)
     return np.arange((length - 1) % step // 2, length, step)
 
@@ -176,7 +179,7 @@ def _pole(axes: Axes, patch: Patch) -> None:
 
 
 def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
-    """Friction energy per area over both patches, and its profile across the running track."""
+    """Draw the friction energy per area over both patches, and its profile across the running track."""
     name = "friction_energy_density"
     patches = patches_of(ds, name)
     fields = [np.where(p.inside, p.field(name), 0.0) for p in patches]

@@ -64,7 +64,7 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
 
 
 def _life_pair(view: StudyView) -> Pair | None:
-    """Of the pairs of numeric factors, return the one with several levels and most effect on life."""
+    """Return the pair of numeric factors with several levels and the largest effect on life."""
     names = [f for f in view.factors if view.numeric(f) and len(view.levels(f)) > 1]
     column = view.life[0] if view.life else ""
     swing = {f: _swing(view, f, column) for f in names}
@@ -86,7 +86,7 @@ def _life_pair(view: StudyView) -> Pair | None:
 
 
 def _swing(view: StudyView, name: str, column: str) -> float:
-    """Largest difference of the mean log life between levels of a factor; chooses what is drawn, states nothing."""
+    """Return the largest difference of the mean log life between levels, by which the drawn factor is chosen."""
     life = view.column(column)
     good = np.isfinite(life) & (life > 0)
     if not good.any():
@@ -118,7 +118,7 @@ def cell_name(name: str, end: Any) -> str:
 
 
 def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) -> np.ndarray:
-    """Medians over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
+    """Return the medians over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
     cells = np.full(shape, np.nan)
     medians = values.groupby([keys[1], keys[0]]).median()
     cells[medians.index.get_level_values(0), medians.index.get_level_values(1)] = medians

@@ -49,7 +49,7 @@ def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
 
 
 def _spread(view: StudyView, name: str) -> float:
-    """How much the share of a regime changes over the levels of a factor; chooses what is drawn, states nothing."""
+    """Return how much the share of a regime changes over the levels of a factor; it decides which factor is drawn."""
     index, ends = classes(view, name, np.ones(len(view.table), dtype=bool), BINS)
     spread = 0.0
     for code in (1, 2, 3):

@@ -98,7 +98,10 @@ def material_of(view: StudyView, body: str) -> np.ndarray:
 
 
 def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str) -> Points:
-    """For each material: stress [MPa] and life [1] of every rolling case that has a life; else of all that have one."""
+    """Return stress [MPa] and life [1] of the rolling cases of each material.
+
+    If no rolling case has a life, return those of all cases with a life.
+    """
     life = view.column(f"life_cycles_{body}")
     rows = (life > 0) & view.rolling if ((life > 0) & view.rolling).any() else life > 0
     given, found = material_of(view, body), {}

@@ -97,7 +97,7 @@ def _saved(draw: Draw, out_dir: Path) -> style.FigureInfo | None:
 
 
 def _jobs(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None) -> Iterator[Draw]:
-    """Drawings from the cases: contact models side by side, the study's own, the Pareto front."""
+    """Yield the drawings of the cases: contact models side by side, the study's own figures, the Pareto front."""
     for make in (drawers, lambda study: [partial(draw, view) for draw in OF_CASES], partial(_front, view, sens)):
         try:
             yield from make(ds)
@@ -111,7 +111,7 @@ def _front(view: StudyView, sens: xr.Dataset | None, ds: xr.Dataset) -> list[Dra
 
 
 def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:
-    """Drawings from the analysis that stand before and after those of the cases."""
+    """Return the drawings of the analysis: those before and those after the figures of the cases."""
     if words.robust_design(sens):
         return [partial(robust_points, sens, str(n)) for n in sens["output"].values if "life" in str(n)], []
     parts: list[list[Draw]] = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]

@@ -83,7 +83,7 @@ def _roller(alpha: float, r_guide: float, r_roller: float, height: float) -> np.
 
 
 def _forces(ds: xr.Dataset, values: dict[str, Any], alpha: float, r_guide: float, height: float) -> list:
-    """Forces on the roller in the section: (start, vector, label) in mm and N."""
+    """Return the forces on the roller in the section: (start, vector, label) in mm and N."""
     found = []
     for number, sign in ((1, 1.0), (2, -1.0)):
         own = ds.sel(contact=number)

@@ -208,7 +208,7 @@ def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Material, pr
 
 
 def _verdict(regime: str, ds: xr.Dataset, lives: list[Row], found: Limits, inputs: Mapping[str, Any]) -> str:
-    """Return the one line that an engineer reads first."""
+    """Return the summary of the sheet: regime, life of the roller, distance to lift-off."""
     if regime == "failed":
         return f"No solution: {ds['reason'].item()}"
     if regime == "lift_off":
