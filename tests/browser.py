@@ -88,7 +88,7 @@ class Browser:
             self.events.append(message)
 
     def open(self, path: Path, fragment: str = "", before: str = "", **size: int) -> Page:
-        """Open a file; `before` is a script that runs ahead of those of the page."""
+        """Open a file; the script `before` runs before the scripts of the page."""
         return Page(self, path.as_uri() + fragment, before, **size)
 
 

@@ -1,4 +1,4 @@
-"""The command line as tests call it: in this process, or in one of its own where that is the claim."""
+"""Call the command line in tests: in this process, or in a new one where the test is about processes."""
 
 from __future__ import annotations
 

@@ -25,6 +25,6 @@ def pytest_runtest_makereport(item, call):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Say how many tests were skipped, so that nobody takes them for passed ones."""
+    """Say how many tests were skipped, so that they are not taken for passed tests."""
     if skipped := len(terminalreporter.stats.get("skipped", ())):
         terminalreporter.write_line(f"{skipped} tests did not run here for the reasons above; .ci/run runs them all.")

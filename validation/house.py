@@ -1,4 +1,4 @@
-"""Count what the rules of the code speak of: rooms, arrows between them, lines, long functions, late imports.
+"""Count what the rules of the code limit: rooms, arrows between them, lines, long functions, late imports.
 
 `python -m validation.house [FOLDER]` prints the counts of a checkout, by default of the one this file lies in.
 `tests/test_house.py` holds the limits. A line of code is a line that is no docstring, comment or blank.

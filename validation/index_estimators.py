@@ -87,7 +87,7 @@ def our_sobol(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
 
 
 def their_sobol(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
-    """Return the same by SALib, whose intervals do not repeat with seed 0."""
+    """Return first-order and total indices by SALib, whose intervals do not repeat with seed 0."""
     found = salib_sobol.analyze(problem(unit.shape[1]), y, num_resamples=RESAMPLES, seed=seed + 1)
     return _symmetric(np.append(found["S1"], found["ST"]), np.append(found["S1_conf"], found["ST_conf"]))
 
@@ -99,7 +99,7 @@ def our_first(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
 
 
 def their_first(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
-    """Return the same by SALib's RBD-FAST alone."""
+    """Return first-order indices by SALib's RBD-FAST without our treatment of categories."""
     found = rbd_fast.analyze(problem(unit.shape[1]), unit, y, num_resamples=givendata.FAST_RESAMPLES, seed=seed)
     return _symmetric(np.array(found["S1"], float), np.array(found["S1_conf"], float))
 

@@ -83,7 +83,7 @@ def category_rows(size: int, seed: int) -> Data:
 
 
 def normal_pair(size: int, correlation: float, factor: float, seed: int) -> Data:
-    """Return a pair of normal variables; with a factor, the exponential of the second, whose delta is the same."""
+    """Return a pair of normal variables. With a factor, take the exponential of the second; delta stays the same."""
     x, noise = np.random.default_rng(seed).standard_normal((2, size))
     y = correlation * x + np.sqrt(1 - correlation**2) * noise
     return x[:, None], np.exp(factor * y) if factor else y

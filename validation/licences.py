@@ -1,7 +1,7 @@
 """List the licences of every package that the lock files pin: `python -m validation.licences [--write]`.
 
 The list comes from the metadata of the installed packages. Without `--write` the program compares the packages of the
-lock files with those of `LICENCES.md` and ends with 1 if they differ.
+lock files with the licences in `LICENCES.md` and ends with 1 if they differ.
 """
 
 from __future__ import annotations

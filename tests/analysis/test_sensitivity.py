@@ -311,7 +311,7 @@ def test_mostly_unusable_saltelli_design_is_marked_and_given_data_still_stand():
 
 
 def test_grid_with_holes_drops_levels_and_says_how_many_cells():
-    """A corner without results costs levels, not the balance of the rest."""
+    """A corner without results removes levels; the remaining levels stay balanced."""
     y = np.add.outer(np.arange(5.0) ** 2, 10 * np.arange(4.0))
     y[4, 3] = np.nan
     found = indices.grid_shares(y)

@@ -1,4 +1,4 @@
-"""The ladder of contact models inside the roller: CONTACT's numbers, energy balance, stress on gridded tractions."""
+"""Contact models inside the roller: CONTACT's numbers, energy balance, stress by tractions on a grid."""
 
 import dataclasses
 import json

@@ -205,7 +205,7 @@ def test_the_largest_shear_is_that_of_the_solution(kind, normal):
     ],
 )
 def test_friction_that_falls_steeply_is_solved_and_keeps_its_forces_on_finer_grids(law):
-    """Slips of neighbours would swing against each other, if friction saw that of its own element alone."""
+    """Friction by the slip of one element alone would let the slips of neighbours swing against each other."""
     case = tr.Case(motor_force=0, friction_law=law)
     rough, fine = (
         tr.solve(case, contact_model="kalker", accuracy=accuracy, outputs=("forces", "friction_work"))

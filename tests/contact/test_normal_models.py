@@ -141,7 +141,7 @@ def test_peak_below_a_grid_matches_the_peak_below_the_ellipse(shift):
 @pytest.mark.parametrize("model", ["sliding", "kalker"])
 @pytest.mark.long
 def test_hertz_is_the_special_case_of_the_whole_chain(model):
-    """Parabolas give what normal='hertz' gives; so do circles that small, to what their shape changes."""
+    """Parabolas give the results of normal='hertz'; so do small circles, up to the change by their shape."""
     outputs = ("forces", "contact", "peak_stress", "life", "friction_work")
     case = tr.Case(**LOADS)
     hertz = tr.solve(case, outputs, contact_model=model)

@@ -1,4 +1,4 @@
-"""Drawn and measured cross-sections: what is accepted, what shape they give, where the material ends."""
+"""Drawn and measured cross-sections: accepted inputs, resulting shapes, ends of the material."""
 
 import json
 import math
@@ -296,7 +296,7 @@ def test_coarse_and_uneven_points_give_the_circle():
 
 @pytest.mark.long
 def test_a_groove_worn_hollow_carries_in_two_patches():
-    """Beside a hollow at the nominal contact: no pressure in the middle, the load on both sides, through the chain."""
+    """A hollow at the nominal contact: no pressure in the middle, the load on both sides; all stages run."""
     hollow = [[float(u), float(-u * u / 14 + 0.02 * math.exp(-((u / 0.3) ** 2)))] for u in np.linspace(-2, 2, 201)]
     case = tr.Case(roller_profile={"points": hollow, "frame": "contact"}, motor_force=0.0)
     for model in ("sliding", "fastsim", "kalker"):

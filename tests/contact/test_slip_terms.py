@@ -1,4 +1,4 @@
-"""What the rigid slip may count beyond the tangent of a straight guide: equilibria against CONTACT's variants."""
+"""Terms of the rigid slip beyond the tangent of a straight guide: equilibria against CONTACT's variants."""
 
 import json
 
@@ -45,7 +45,7 @@ def roller(ds, name):
     ],
 )
 def test_whole_equilibria_agree_with_contact(name, change, terms):
-    """Normal forces within 0.1 %, lateral forces and spin moments within 0.3 %, the rest within 1 %."""
+    """Normal forces within 0.1 %, lateral forces and spin moments within 0.3 %, other results within 1 %."""
     record = VARIANTS[f"sens_{name}"]
     ds = tr.solve(tr.Case(**change), outputs=OUTPUTS, contact_model="kalker", slip_terms=terms)
     assert ds.converged == 1

@@ -138,7 +138,7 @@ def test_scatter_range_spans_ten_to_ninety_percent():
 
 
 def test_scatter_of_life_and_of_strength_belong_together():
-    """With T_N = T_S^k only the fatigue limit moves, the knee's cycles stay, and either gives the other."""
+    """With T_N = T_S^k only the fatigue limit moves and N_k stays; each of T_N and T_S gives the other."""
     t_n, t_s = scatter_ranges(K, scatter_stress=1.2)
     assert t_n == pytest.approx(1.2**K) and t_s == pytest.approx(1.2)
     assert scatter_ranges(K, scatter_cycles=float(t_n))[1] == pytest.approx(1.2)

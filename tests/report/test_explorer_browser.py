@@ -1,4 +1,4 @@
-"""The explorer in a real browser without a network: what it selects, shows, finds, exports and survives."""
+"""The explorer in a real browser without a network: selection, display, search, export and bad input."""
 
 from __future__ import annotations
 
@@ -268,7 +268,7 @@ def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, gri
 def test_a_brush_drawn_with_the_pointer_selects_and_a_click_takes_it_back(page, grid):
     left, top, width, _ = page.box("#explorer .stack canvas + canvas")
     axes = page.run("document.querySelectorAll('[data-axis]:checked').length")
-    life = len(FACTORS)  # the axis of the first output stands behind those of the factors
+    life = len(FACTORS)  # the axis of the first output stands behind the axes of the factors
     x = left + 46 + life * (width - 92) / (axes - 1)
     page.drag((x, top + 70), (x, top + 190))
     selected, valid, rest = shown(page)

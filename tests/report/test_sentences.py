@@ -39,7 +39,7 @@ def test_a_trend_that_pooling_turns_is_told_by_category():
     friction = np.where(pair == "PA6 / steel", rng.uniform(0.0, 0.3, 400), rng.uniform(0.2, 0.5, 400))
     life = 10 ** (2 - 3 * friction + 3 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
     low, high = np.median(life[friction < 0.2]), np.median(life[friction > 0.3])
-    assert high > low  # what a pooled sentence would say
+    assert high > low  # all rows together suggest that friction lengthens the life
     view = StudyView.of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
     said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
     assert said is None  # the materials share too little of the range to be compared

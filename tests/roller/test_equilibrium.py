@@ -140,7 +140,7 @@ def test_driving_braking_and_the_slip_limit():
 
 
 def test_scale_of_units_does_not_matter():
-    """All lengths times s and all forces times s^2 leave pressures and slip as they are and scale the rest."""
+    """All lengths times s and all forces times s^2 leave pressures and slip as they are and scale all other results."""
     base, s = tr.Case(), 7.3
     lengths = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius")
     loads = ("radial_force", "axial_force", "motor_force")

@@ -1,4 +1,4 @@
-"""Rolling radius, relative curvatures and lever arms of the publication's example, and what is no point contact."""
+"""Rolling radius, curvatures and lever arms of the publication's example; geometries without point contact."""
 
 import math
 

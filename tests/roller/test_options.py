@@ -1,4 +1,4 @@
-"""Options are declared once: what else names them is derived from that list or held to it."""
+"""Options are declared once: other lists of options are derived from the declaration or compared with it."""
 
 from __future__ import annotations
 

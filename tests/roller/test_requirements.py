@@ -1,4 +1,4 @@
-"""Only what the scene requires is computed, and sparing it changes no number."""
+"""Only the patches that the scene requires are computed, and this changes no number."""
 
 import numpy as np
 import pytest

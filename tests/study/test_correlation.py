@@ -1,4 +1,4 @@
-"""Correlated factors and weighted lists: what is asked for comes out, and the distributions stay as they are."""
+"""Correlated factors and weighted lists: samples have both, and their distributions stay."""
 
 import numpy as np
 import pytest

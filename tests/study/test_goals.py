@@ -376,7 +376,7 @@ def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
         lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
         told = [t for t in contents(ds, sens)["decide"] if t.name.startswith(("b10", "percentiles"))]
         assert len(told[0].rows) == 2 and told[0].heads[4].startswith("Full slip") and "5" in told[0].rows[0][4]
-        assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # percentiles hold no scatter of the material
+        assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # the table of percentiles stands apart
     spread = np.hypot(0.1, np.log10(9) / 2.5631)
     assert np.log10(lives[9]) == pytest.approx(3 - 1.2816 * spread, abs=0.03)
     assert lives[9] < lives[False] and "T_N = 9" in told[0].note

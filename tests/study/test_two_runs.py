@@ -42,7 +42,7 @@ def solved(tmp_path, monkeypatch):
 
 
 def snapshot(folder: Path) -> dict[Path, int]:
-    """Return the files that a worker may need, with their identity on the disk."""
+    """Return the files that a worker may need, with their inodes."""
     return {path: path.stat().st_ino for place in ("plan", "chunks") for path in (folder / place).glob("*.n*")}
 
 

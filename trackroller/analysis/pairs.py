@@ -99,7 +99,7 @@ def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, degrees: tuple[in
 
 
 def held_out(y: np.ndarray, table: np.ndarray) -> np.ndarray | None:
-    """Return what a linear fit misses of each row that it was not fitted to.
+    """Return the residual of a linear fit at each row that was held out of the fit.
 
     Parameters
     ----------

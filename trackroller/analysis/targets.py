@@ -16,8 +16,8 @@ from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output, outputs
 
-WITHOUT_CHANCE = ("grid", "table")  # shares of given designs, without an interval
-MOST_LEVELS = 12  # a number with more of them is looked at in classes
+WITHOUT_CHANCE = ("grid", "table")  # designs whose shares are no probabilities and have no interval
+MOST_LEVELS = 12  # a number with more levels is divided into CLASSES classes
 CLASSES = 4
 ENDS = ("", "_low", "_high")
 Found = tuple[np.ndarray, np.ndarray, np.ndarray]  # probability and its bounds, shape (targets,) each

@@ -1,4 +1,4 @@
-"""The command line, one module for each group of commands, and what the workflow's scripts call."""
+"""The command line: one module for each group of commands, and the functions that the workflow's scripts call."""
 
 from __future__ import annotations
 

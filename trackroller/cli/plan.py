@@ -18,7 +18,7 @@ from trackroller.study.explain import explain as stages_of
 from trackroller.study.plan import case_options, chunk_size
 from trackroller.study.status import status_of
 
-MOST = 20_000  # cases of a study that --explain looks at
+MOST = 20_000  # --explain examines at most this many cases of a study
 
 
 def print_plan(path: Path | None, results: Path, explain: bool, words: list[str], no_shortcuts: bool) -> None:

@@ -145,7 +145,7 @@ class Resultants(_Rows):
     spin_moment: np.ndarray
 
     def replaced(self, rows: np.ndarray, other: Resultants) -> Resultants:
-        """Return the same resultants with those of the patches `rows` taken from `other`."""
+        """Return a copy in which the patches `rows` have the resultants of `other`."""
         parts = [np.array(getattr(self, field.name)) for field in dataclasses.fields(self)]
         for part, field in zip(parts, dataclasses.fields(other), strict=True):
             part[rows] = getattr(other, field.name)

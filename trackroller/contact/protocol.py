@@ -1,4 +1,4 @@
-"""Interfaces of the contact room: what every contact patch offers and what every contact model offers.
+"""Interfaces of the contact room: the attributes and methods of every contact patch and every contact model.
 
 The solver uses these two interfaces only and never asks for the class of a patch or of a model. Arrays, units and the
 contact frame are those of `trackroller.contact.common`.

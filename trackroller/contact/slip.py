@@ -1,4 +1,4 @@
-"""The rigid slip, eqs (20)-(25): formulas, creepages, and what a curved guide or a drawn contour adds to it.
+"""The rigid slip, eqs (20)-(25): formulas, creepages, and the terms of a curved guide or a drawn contour.
 
 The formulas stand in `trackroller.halfspace.rigid_slip`, because the stress kernels of the room below need them too.
 Kernels and models of this room import them from this module.

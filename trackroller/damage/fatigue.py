@@ -171,7 +171,7 @@ def line_at_probability(
     t_n, t_s = scatter_ranges(exponent, scatter_cycles, scatter_stress)
     deviate = ndtri(p) / DECADES
     fall = t_s**deviate
-    # The curve moves along with the strength; what T_N demands beyond this move is a shift in cycles.
+    # The curve moves along with the strength. If T_N is larger than this move gives, the curve also moves in cycles.
     beyond = t_n**deviate * fall ** -np.asarray(exponent, dtype=float)
     return np.asarray(fatigue_limit) * fall, np.asarray(n_k) * beyond
 

@@ -20,16 +20,16 @@ from trackroller.halfspace.peak import Peak
 from trackroller.halfspace.stress import FRICTION_SIGNS, body_stress, von_mises
 from trackroller.numerics.threads import share_rows
 
-DEPTHS = (0.0, 0.06, 0.15, 0.3, 0.48, 0.7, 1.0)  # of the scanned planes, over the smaller half side of the patch
-EDGE_ROWS, EDGE_DEPTHS = 9, (0.0, 0.25, 0.5, 1.0)  # points below a sharp edge; depths over the width of an element
-APART = 0.25  # smallest distance between seeds, over the half sides
+DEPTHS = (0.0, 0.06, 0.15, 0.3, 0.48, 0.7, 1.0)  # of the scanned planes / smaller half side of the patch [1]
+EDGE_ROWS, EDGE_DEPTHS = 9, (0.0, 0.25, 0.5, 1.0)  # points below a sharp edge; depth / width of an element [1]
+APART = 0.25  # smallest distance between seeds / half sides of the patch [1]
 WORTH = 0.9  # share of the highest seed that a seed needs for a climb
 # For smooth pressures the error falls nearly with the square of the element size. A third of the change from a grid
 # with elements of twice the size is therefore added. A relative change above SMOOTH shows a singular pressure, to
 # which nothing is added.
 SMOOTH = 0.05
 ERROR_SHARE = 0.3  # share of this change that is the estimated error; above SMOOTH it is the whole change
-STEEP = 0.35  # step of the pressure between neighbours over the largest pressure, above which there is an edge
+STEEP = 0.35  # an edge has a larger step of pressure between neighbours, divided by the largest pressure
 ERROR_FLOOR = 2e-3  # relative error of the solved pressure itself
 
 

@@ -36,7 +36,7 @@ class Sentence:
     kind : name of the kind of sentence; each kind has its own check in the truth test
     text : the sentence
     values : what it claims, in plain numbers and names
-    rows : cases that it speaks of, shape (n,) bool; None for a statement on the analysis
+    rows : cases that the statement is on, shape (n,) bool; None for a statement on the analysis
     """
 
     kind: str

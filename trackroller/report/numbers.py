@@ -212,10 +212,7 @@ def setting(name: str, value: Any) -> str:
 
 
 def short_levels(names: Sequence[str]) -> list[str]:
-    """Drop from names of pairs the part that all of them share.
-
-    Only what differs tells them apart.
-    """
+    """Drop the part of names of pairs that all pairs share, because it does not distinguish them."""
     parts = [_parts(name) for name in names]
     if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
         for keep in (0, 1):

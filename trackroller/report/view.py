@@ -90,9 +90,9 @@ class StudyView:
         return bool(np.issubdtype(np.asarray(self.table[name]).dtype, np.number))
 
     def ordered(self, name: str) -> bool:
-        """Say whether more of the factor means something.
+        """Return whether the levels of a factor have an order.
 
-        Not for materials, nor for a few drives or curves.
+        Materials, few drives and few curves have no order.
         """
         spoken = name in SPOKEN and len(self.levels(name)) <= MOST_LEVELS
         return self.numeric(name) and not spoken and bool(np.isfinite(self.table[name]).all())
@@ -103,9 +103,9 @@ class StudyView:
         return tuple(f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= MOST_LEVELS)
 
     def behind(self, name: str) -> tuple[str, ...]:
-        """Name the factors that decide a parameter.
+        """Return the factors that decide a parameter.
 
-        Itself, those it is computed from, or none when it is fixed.
+        These are the parameter itself or the factors that it is computed from. A fixed parameter has no such factor.
         """
         return (name,) if name in self.factors else self.derived.get(name, ())
 

@@ -1,9 +1,9 @@
 """Choose the settings of each stage for an accuracy, and state the error that remains.
 
-The settings come from ladders of measured settings (`roller/accuracy.json`, written by
-`python -m validation.adopt.tradeoff`). There is one ladder for the quadrature of forces, one for the search of the peak
-stress, and one for the elements of each rolling contact model. A preset or a tolerance takes from each ladder the
-cheapest setting whose measured error is small enough.
+A ladder is a list of measured settings of one stage, sorted by cost; each setting is a rung. There is one ladder for
+the quadrature of forces, one for the search of the peak stress, and one for the elements of each rolling contact model
+(`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff`). A preset or a tolerance takes from each
+ladder the cheapest setting whose measured error is small enough.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Levels:
 
 @dataclass(frozen=True)
 class Rung:
-    """One measured setting of a ladder: its cost [s of processor time a case] and its errors by quantity."""
+    """One measured setting of a ladder: cost (processor time of a case [s]) and errors by quantity [1]."""
 
     settings: Mapping[str, Any]
     cost: float

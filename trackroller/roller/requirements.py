@@ -164,14 +164,14 @@ class Mirror:
         return full, twin
 
     def spread(self, good: np.ndarray, found: np.ndarray, sign: float = 1.0) -> np.ndarray:
-        """Return values of all patches `good` from those of `asked(good)`; `sign` is -1 if the mirror changes it."""
+        """Copy the values of the solved patches `asked(good)` to all patches `good`; `sign` -1: a mirror flips it."""
         full, twin = self._copies(good, found, self.asked(good))
         if sign < 0:
             full[twin] = -full[twin] + 0.0
         return full[good]
 
     def spread_surface(self, good: np.ndarray, found: SurfaceTractions) -> SurfaceTractions:
-        """Return tractions of all patches `good` from those of `asked(good)`; x rises in each patch."""
+        """Copy the tractions of the solved patches `asked(good)` to all patches `good`; x rises in each patch."""
 
         out = {}
         for field in fields(SurfaceTractions):

@@ -69,7 +69,7 @@ def write_crate(study: Study, root: Path) -> Path:
 
 
 def _copy_inputs(study: Study, root: Path) -> None:
-    """Write the inputs of a study, and remove those of an earlier version of it."""
+    """Write the inputs of a study, and remove the inputs of an earlier version."""
     text, user, copies = study.merged(), find_user_file(), {}
     if study.config.table is not None:
         name = Path(study.config.table).name

@@ -1,4 +1,4 @@
-"""The plan of stages of a solution: which run, for how many cases or patches, which are spared and why."""
+"""The plan of stages of a solution: which run, for how many cases or patches, which are skipped and why."""
 
 from __future__ import annotations
 

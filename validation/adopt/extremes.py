@@ -1,4 +1,4 @@
-"""Take results/extremes over into docs/validation/extremes.md, its data and figures.
+"""Copy results/extremes into docs/validation/extremes.md, its data and figures.
 
 `snakemake -s validation/Snakefile --cores all extremes; python -m validation.adopt.extremes`; with `--check` it only
 compares the page with the kept data and ends with 1 if the page is not up to date.

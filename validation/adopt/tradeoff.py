@@ -1,4 +1,4 @@
-"""Take results/tradeoff over: ladders into the package, page, data and figures into the docs.
+"""Copy results/tradeoff: ladders into the package; page, data and figures into the docs.
 
     python -m validation.adopt.tradeoff [results/tradeoff]
 

@@ -2,11 +2,11 @@
 
     python -m validation.benchmarks.scaling [--largest N]
 
-Every row is measured in a process of its own, so that memory is that of this row alone: the peak of the whole process
-with interpreter, libraries and the list of cases. Times are processor times over all threads, which other work on the
-machine disturbs least, over that of the yardstick: a complete case in full sliding at `standard`, of 1,000. Loading or
-compiling the kernels and making the cases are not in the time. Friction, loads and material vary, the curvatures are
-fixed (`load_study` of samples.py).
+Every row is measured in a process of its own, so that no other row adds to its memory: the peak of the whole process
+with interpreter, libraries and the list of cases. Times are processor times of all threads, which other work on the
+machine disturbs least. They are ratios to the yardstick: a complete case in full sliding at `standard`, one of 1,000.
+Loading or compiling the kernels and making the cases are not in the time. Friction, loads and material vary, the
+curvatures are fixed (`load_study` of samples.py).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ OUTPUTS = {
     "complete": ("forces", "contact", "peak_stress", "life"),
 }
 ACCURACIES = ("preview", "standard", "reference")
-ACCURACY_CASES = 1000  # of the comparison of accuracies and of the yardstick
+ACCURACY_CASES = 1000  # number of cases that compare the accuracies and give the yardstick
 
 
 def peak_memory() -> float:
@@ -135,7 +135,7 @@ def linear(by_size: list[dict[str, Any]]) -> bool:
 
 def measure(largest: int = 10_000) -> dict[str, Any]:
     """Return all rows, the yardstick [ms] and the growth of the time with the number of cases."""
-    measure_apart(2, "complete", "standard")  # compiles what is not yet, whose memory belongs to no row
+    measure_apart(2, "complete", "standard")  # compiles the kernels, so that no row counts the memory of the compiler
     by_size = [measure_apart(n, outputs, "standard") for outputs in OUTPUTS for n in sizes(largest)]
     few = min(largest, ACCURACY_CASES)
     by_accuracy = [measure_apart(few, outputs, accuracy) for outputs in OUTPUTS for accuracy in ACCURACIES]

@@ -2,10 +2,10 @@
 
     python -m validation.benchmarks.solved_patches [--cases N] [--seed S] [--accuracy PRESET] [--model NAME] [--circles]
 
-The random designs of `peak_coverage.py`; patches that reach an edge of guide or groove are left out, for Hertz knows
-none. `--circles` takes the circles instead of parabolas: then the difference of their shapes is in the numbers too.
+The random designs of `peak_coverage.py`; patches that reach an edge of guide or groove are left out, because
+Hertzian theory has no edges. `--circles` takes circles instead of parabolas; the numbers then hold the change of shape.
 Found are median and 95th percentile of the relative differences: forces over mu F_N, the moment over
-mu F_N sqrt(a b), r_Delta0 over a, the rest over itself; and how often a peak is within its two error estimates.
+mu F_N sqrt(a b), r_Delta0 over a, other results relative; and how often a peak is within its two error estimates.
 """
 
 from __future__ import annotations

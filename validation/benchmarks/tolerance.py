@@ -2,7 +2,7 @@
 
     python -m validation.benchmarks.tolerance [--cases N] [--seed S] [--model NAME] [--tolerances T ...]
 
-Every quantity that the tolerance speaks of counts (F_N, F_T and F_A, M_R, peak stress; the worst of both contacts and
+Every quantity with a tolerance counts (F_N, F_T and F_A, M_R, peak stress; the worst of both contacts and
 bodies), against the reference of the trade-off. The sample is drawn like the one the settings were measured on,
 with another seed. Printed: share of cases within, and percentiles of error over tolerance. Kalker's reference takes
 seconds a case.

@@ -134,7 +134,7 @@ def _difference(run: Run, other: xr.Dataset, length: float, modulus: float, mirr
                 axis=1,
             )
         gap = np.max(np.abs(x - y), axis=1)
-        if name == "peak_stress":  # a search: what lies within its own estimate is not told apart
+        if name == "peak_stress":  # differences within the error estimates of both searches do not count
             known = np.nanmax(
                 _rows(run.result.error_estimate.values) + _rows(other.error_estimate.values), axis=1, initial=0.0
             )

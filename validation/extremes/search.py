@@ -48,7 +48,7 @@ def _places(scene: Scene, model: str, accuracy: str) -> np.ndarray:
             [scene.build(float(v)) for v in x[active]], ("forces", "contact"), contact_model=model, accuracy=accuracy
         )
         place = ds.spin_pole_lateral.values[:, 0] / ds.semi_axis_lateral.values[:, 0]
-        # beyond the last slip the pole is as far as can be
+        # beyond the last slip the pole stays at its largest distance
         f = _bounded(np.where(np.isfinite(place), place, np.copysign(np.inf, x[active]))) - target[active]
         better = np.abs(f) < gap[active]
         best[active[better]], gap[active[better]] = x[active][better], np.abs(f)[better]

@@ -12,8 +12,8 @@ from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.contact.table.coordinates import HALF_WAY, RATIOS, coupling_creepage, spin_arm
 
-FRICTION, SHEAR_MODULUS = 0.3, 1e3  # of the problem solved for the table; the dimensionless results do not see them
-PARTS = 16  # of rho from 0 to 1; its nodes lie between some of them
+FRICTION, SHEAR_MODULUS = 0.3, 1e3  # of the solved problem; the dimensionless results do not depend on these values
+PARTS = 16  # equal parts of the range of rho, 0 to 1; the nodes of rho are ends of some parts
 LOG_RATIOS = (math.log(RATIOS[0]), math.log(RATIOS[1]))
 SLIDING = 1e5  # r of the nodes at rho = 1
 # Half the nodes of theta [deg], close where the spin pole leaves a slender patch and the forces bend sharply.
@@ -26,7 +26,7 @@ class Nodes:
 
     Attributes
     ----------
-    levels : nodes of rho above 0, in parts of `PARTS`
+    levels : numbers n of the nodes rho = n / `PARTS` above 0
     chi : number of nodes of chi
     half_theta : nodes of theta above 0 [rad]
     ratios : number of nodes of ln g

@@ -13,7 +13,7 @@ from validation.pages import Block, page_html
 from validation.paper.compute import reference, results
 from validation.paper.figures import draw_all
 
-EXPONENT = 8.966  # ln(N_k/N_Rm)/ln(R_m/sigma_D) of 1.7225: life goes with stress to this power
+EXPONENT = 8.966  # k = ln(N_k/N_Rm)/ln(R_m/sigma_D) of 1.7225: N is proportional to stress^-k
 ROWS = (
     ("normal_force", "F_N [N]", 2),
     ("lateral_force", "F_T [N]", 2),

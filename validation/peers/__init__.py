@@ -1,1 +1,1 @@
-"""Reference numbers of other programs beside those of this package."""
+"""Reference numbers of other programs beside numbers of this package."""

@@ -12,7 +12,7 @@ FORCES = ("forces", "contact", "friction_work")
 PEAKS = ("forces", "contact", "peak_stress", "life")
 ALL = ("forces", "contact", "friction_work", "peak_stress", "life")
 
-# nodes of the second pass by those of the first; scan, climb, polish, summit of the peak search
+# nodes of the second pass by nodes of the first; scan, climb, polish, summit of the peak search
 FORCE_NODES = (4, 6, 8, 10, 12, 16, 20, 24, 32)
 QUADRATURES = {
     "a": (6, 6, 8, 16),

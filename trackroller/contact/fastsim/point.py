@@ -34,7 +34,7 @@ class Strips(NamedTuple):
 
 
 class State(NamedTuple):
-    """Traction [MPa] and slip [1] at a point, friction over its value at rest, and what this friction lacks."""
+    """Traction [MPa] and slip [1] at a point, friction over its value at rest, and its difference from the law."""
 
     shear_x: float
     shear_y: float
@@ -136,7 +136,7 @@ def advance(strip, h, middles, bounds, law, state):
 
 @njit(cache=True)
 def march(total, strip, edge, h, area, middles, bounds, law):
-    """Return the totals with those of a strip from its leading edge [mm]; `area` is that of a step [mm^2]."""
+    """Add a strip, marched from its leading edge [mm], to the totals; `area` is the area of a step [mm^2]."""
     old = enter(strip, edge, law)
     for j in range(bounds.size):
         middle, bound = middles[j], bounds[j]

@@ -108,7 +108,7 @@ def _scale(p, interval, steps):
 
 @njit(cache=True)
 def _sum(total, p, loaded, i, strip, middles, bounds, law):
-    """Return the totals with those of one strip of patch i with pressures p (N,).
+    """Add one strip of patch i with pressures p (N,) to the totals and return them.
 
     `middles` and `bounds` have one entry for each step; they are overwritten.
     """

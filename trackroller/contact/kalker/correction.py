@@ -54,7 +54,7 @@ class Correction:
         self.store = Store(2 * n)
 
     def _table(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and what it holds, (m,)."""
+        """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and its validity, (m,)."""
         elastic = self.elastic.take(rows)
         forces, place, held = table.nearest_forces(patch, slip.longitudinal, slip.spin, friction, elastic)
         return forces.T, place, held

@@ -70,7 +70,7 @@ class Law(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Work space of one patch: fields (ny, nx) of the iteration and what its linear systems need."""
+    """Work space of one patch: fields (ny, nx) of the iteration and arrays of its linear systems."""
 
     bound: np.ndarray
     slope: np.ndarray

@@ -81,7 +81,7 @@ def _fields(ellipse: Ellipse | GridPatch, found: batch.Found | PatchSolution) ->
 
 
 def shares(ellipse: Ellipse | GridPatch, solution: PatchSolution) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tractions over mu p between the elements, and those of elements of twice the size."""
+    """Return the tractions over mu p between the elements, and the same for elements of twice the size."""
     return subgrid.both_shares(_fields(ellipse, solution))
 
 

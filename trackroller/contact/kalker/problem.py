@@ -71,7 +71,7 @@ class PatchSolution:
     energy_residual : ndarray, shape (n,)
         Dissipation summed over the elements, over `friction_energy_per_distance`, less 1 [1]; extrapolated.
     limit : ndarray, shape (n, 3)
-        What the extrapolation has added to the resultants [N, N, N mm]; 0 without extrapolation.
+        Change of the resultants by the extrapolation [N, N, N mm]; 0 without extrapolation.
     error_estimate : ndarray, shape (n, 3)
         |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation.
     force_error : ndarray, shape (n,)

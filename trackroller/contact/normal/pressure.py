@@ -19,7 +19,7 @@ from scipy import fft
 
 from trackroller.contact.influence import displacements, pressure_displacements
 
-TOLERANCE = 1e-7  # largest gap in the patch, over the approach
+TOLERANCE = 1e-7  # the iteration ends when the largest gap in the patch, divided by the approach, is below
 ITERATIONS = 400
 
 

@@ -1,4 +1,4 @@
-"""The ladder of contact models: what the cheaper ones miss, in pairs of cases that differ in nothing else."""
+"""Compare contact models: errors of the cheaper models, in pairs of cases that agree in all other inputs."""
 
 from trackroller.report.comparison.errors import GOOD, QUANTITIES, errors
 from trackroller.report.comparison.pairs import pairs

@@ -1,4 +1,4 @@
-"""Designs in groups along a factor: each of few levels, else parts with as many designs in each."""
+"""Designs in groups along a factor: one group a level, or groups of equal size where the levels are many."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import xarray as xr
 
 from trackroller.report.numbers import level_text, long_name, number, rounded, short_levels
 
-MAX_LEVELS = 12  # as many are told apart
+MAX_LEVELS = 12  # a factor with more levels is divided into BINS groups
 BINS = 8
 FRICTION, DRIVE = "friction_coefficient", "motor_force"
-DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # what `pairs` computes from the inputs
+DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # quantities that `pairs` computes from the inputs
 
 
 @dataclass(frozen=True)

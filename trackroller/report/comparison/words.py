@@ -24,9 +24,9 @@ from trackroller.report.numbers import capital, percent
 from trackroller.report.tables import Table
 
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM"}
-MOST = 0.9  # share of the designs of a level that counts as the level
+MOST = 0.9  # a level is good enough if this share of its designs is
 FLAT = 0.1  # a factor whose levels differ less in the share of good designs is not worth a sentence
-FEWEST = 3  # designs that roll in both models; of fewer nothing is said
+FEWEST = 3  # smallest number of designs, rolling in both models, for a sentence
 
 
 def sentences(paired: xr.Dataset) -> list[str]:

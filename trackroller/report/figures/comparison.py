@@ -21,8 +21,8 @@ from trackroller.report.numbers import capital, percent, with_unit
 
 Drawn = tuple["Figure", style.FigureInfo] | None
 Values = Callable[["xr.Dataset"], "xr.DataArray"]
-LEAST = 6e-4  # error at the foot of the axes
-COLUMNS = 3  # factors that the errors are drawn over
+LEAST = 6e-4  # error at the lower end of the axes [1]
+COLUMNS = 3  # at most this many factors get a panel
 
 
 def drawers(ds: xr.Dataset) -> list[partial[Drawn]]:

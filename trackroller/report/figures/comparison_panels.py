@@ -30,7 +30,7 @@ WRAP, UPRIGHT = 13, 4  # letters of a line of a category's name, and how many ca
 
 @dataclass(frozen=True)
 class Frame:
-    """Designs of a figure, the groups along its axis, the drives of its columns, and what was held."""
+    """Designs of a figure, groups along its axis, drives of its columns, and words on the factors held constant."""
 
     ds: xr.Dataset
     x: Groups

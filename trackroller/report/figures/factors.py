@@ -80,7 +80,7 @@ def shown_output(view: StudyView) -> tuple[str, str, str] | None:
 
 
 def _lead(view: StudyView, column: str, rows: np.ndarray) -> str:
-    """Return the factor to colour by: the one that decides, or a category that matters, so that none is pooled."""
+    """Return the factor to colour by: the deciding factor, or a category that matters, which must not be pooled."""
     lead = leading_factor(view, column, rows) or view.factors[0]
     share = explained(view, column, rows, view.categories)
     category = max(share, key=lambda name: share[name], default=lead)

@@ -15,15 +15,15 @@ from trackroller.report.figures import style
 from trackroller.report.numbers import level_text, long_name, number, setting
 from trackroller.report.view import StudyView
 
-COLOURS = 5  # as many levels of the deciding factor are told apart
-CLASSES, FEWEST = 8, 5  # of a sample along an axis: most classes, and fewest rows of one
+COLOURS = 5  # most levels of the deciding factor that get a colour each
+CLASSES, FEWEST = 8, 5  # most classes of a sample along an axis, and fewest rows of a class
 Entries = list[tuple[str, dict[str, Any]]]
 
 
 def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
     """Place lives on a logarithmic axis.
 
-    Unlimited ones lie one decade above the longest finite one.
+    Unlimited lives lie one decade above the longest finite life.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
 
     Returns
     -------
-    Values with NaN where nothing can be drawn, and the height of the unlimited ones (None: there are none).
+    Values with NaN where nothing can be drawn, and the height of the unlimited lives, None without any.
     """
     life = np.asarray(life, dtype=float)
     finite = life[np.isfinite(life) & (life > 0)]

@@ -49,7 +49,7 @@ def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
 
     It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
-    A body of which no life lies on the axis gets no panel: a heap of marks at the edge says nothing.
+    A body of which no life lies on the axis gets no panel: marks piled up at the edge would not be readable.
     """
     known, rule = _known(view), str(view.study.get("life_rule", "elementary"))
     bodies = [(body, points) for body in BODIES if (points := _points(view, body, known, rule))]

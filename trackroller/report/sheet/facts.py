@@ -81,7 +81,7 @@ class ContactFacts:
 
 @dataclass(frozen=True)
 class Facts:
-    """All that a sheet tells of one roller."""
+    """All statements of a sheet on one roller."""
 
     verdict: str
     regime: str

@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.roller.equilibrium.roller import Roller
 
-SMALL = 0.01  # rolling radius over the size of the patch, below which the error of the forces is estimated
+SMALL = 0.01  # the error of the forces is estimated where rolling radius / size of the patch is below this ratio
 EPS = 2.0**-53
 # The iteration of a roller ends when a step changes its forces by less than SETTLED times the goal. Models in closed
 # form (goal up to CLOSED) are cheap and iterate until rounding ends them, which rollers at the ends of the parameter

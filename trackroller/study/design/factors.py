@@ -73,7 +73,7 @@ class Factor:
 
     @property
     def numeric(self) -> bool:
-        """Return whether all its values are numbers (those of an expression are)."""
+        """Return whether all values of the factor are numbers; an expression gives numbers."""
         return not self.discrete or all(_is_number(v) for v in self.levels)
 
     @property

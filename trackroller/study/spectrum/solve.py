@@ -154,7 +154,7 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
 
 
 def _loads(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, Any]:
-    """Return the loads of each block, (block), friction as the number that its pair of materials has."""
+    """Return the loads of each block, dimension `block`. Friction given by the pair of materials becomes a number."""
     table = to_table([block.case for block in spectrum.blocks], database)
     out = {}
     for name in LOAD_FIELDS:
