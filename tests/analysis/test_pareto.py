@@ -118,7 +118,7 @@ def test_figures_of_the_set_are_drawn_in_words():
     front = pareto(ds, {"roller_life_hours": "max", "friction_power": "min"})
     with style.look():
         _, first = pareto_front(front)
-    assert "Treated as free to choose" in first.caption
+    assert "a designer cannot choose: " in first.caption
     assert first.sentence == choices.pareto(front).text
 
 

@@ -305,7 +305,7 @@ def test_mostly_unusable_saltelli_design_is_marked_and_given_data_still_stand():
 
     result = analyse_dataset(solved({"name": "i", "design": "saltelli", "samples": 512, "factors": CARRIERS}, fake))
     part = result.sel(output="friction_power")
-    assert int(part["reliable"]) == 0 and "usable region" in str(part["note"].item())
+    assert int(part["reliable"]) == 0 and "not the whole range" in str(part["note"].item())
     assert float(part["first"].sel(factor="axial_force")) == pytest.approx(0.99, abs=0.03)
     assert "could be used" in words.caveat(result, "friction_power")
 

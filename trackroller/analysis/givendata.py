@@ -77,7 +77,7 @@ def given_data(
 
     Notes
     -----
-    Leaving rows out conditions every measure on the usable region.
+    If rows are left out, every measure describes the remaining rows only.
     """
     good = np.isfinite(y)
     y, unit = y[good], unit[good]

@@ -37,7 +37,7 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
     if column.excluded:
         text += "; rows left out: " + ", ".join(f"{n} {why}" for why, n in column.excluded.items())
     if used < RELIABLE * total:
-        text += "; the indices hold for the usable region only"
+        text += "; the indices describe the cases used, not the whole range of the factors"
     return text
 
 

@@ -52,7 +52,7 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
     Notes
     -----
     Valid for independent factors. A block with an unusable row is left out, because the rows of A, B and their
-    mixtures belong together; the indices then hold for the usable region (see `given_data`). The intervals treat
+    mixtures belong together; the indices then describe the remaining rows (see `given_data`). The intervals treat
     the blocks as random. The blocks of a Sobol sequence have smaller errors, so the intervals are conservative.
     """
     step = 2 * count + 2 if second_order else count + 2

@@ -53,7 +53,7 @@ function utilisation(study, row) {
   for (const body of ["roller", "guide"]) {
     const peak = study.columns.get(`${body}_peak_stress`)?.values[row];
     const known = study.strengths[material(study, row, body)];
-    if (peak >= 0 && known) found.push([`Peak of the ${body} over its fatigue limit`, `${number((100 * peak) / known[1], 3)} %`], [`Peak of the ${body} over its tensile strength`, `${number((100 * peak) / known[0], 3)} %`]);
+    if (peak >= 0 && known) found.push([`Peak stress of the ${body} as a share of its fatigue limit`, `${number((100 * peak) / known[1], 3)} %`], [`Peak stress of the ${body} as a share of its tensile strength`, `${number((100 * peak) / known[0], 3)} %`]);
   }
   return found;
 }

@@ -27,9 +27,9 @@ def _given(front: xr.Dataset) -> str:
     """Warn where conditions of use are among the factors: a designer cannot choose their best value."""
     names = front.attrs["factors"].split(", ")
     given = [plain(n) for n in names if n in CONDITIONS or "load" in n or "drive" in n]
-    told = f" Treated as free to choose, though set by the use: {listing(given)}." if given else ""
+    told = f" Factors that the use sets and a designer cannot choose: {listing(given)}." if given else ""
     models = [long_name(n) for n in names if n in OPTION_FACTORS]
-    return told + (f" Not a choice of design but of how it is computed: {listing(models)}." if models else "")
+    return told + (f" An option of the calculation, not of the design: {listing(models)}." if models else "")
 
 
 def _label(front: xr.Dataset, name: str) -> str:
