@@ -74,16 +74,12 @@ def stress_from_tractions(
 
     Parameters
     ----------
-    x : array_like, shape (nx,)
-        Equidistant node coordinates in the lateral direction [mm].
-    y : array_like, shape (ny,)
-        Equidistant node coordinates in the rolling direction [mm].
+    x, y : array_like, shapes (nx,) and (ny,)
+        Equidistant node coordinates in the lateral and the rolling direction [mm].
     pressure : array_like, shape (ny, nx) or ()
         Pressure on the body [MPa].
-    shear_lateral : array_like, shape (ny, nx) or ()
-        Lateral shear traction on the body [MPa].
-    shear_rolling : array_like, shape (ny, nx) or ()
-        Shear traction in the rolling direction on the body [MPa].
+    shear_lateral, shear_rolling : array_like, shape (ny, nx) or ()
+        Shear tractions on the body along x and y [MPa].
     points : array_like, shape (..., 3)
         Coordinates x, y, z with z >= 0 [mm].
     poisson_ratio : float
@@ -113,6 +109,12 @@ def stress_from_tractions(
     ----------
     Love, A. E. H. (1929). Phil. Trans. R. Soc. A 228, 377-420.
     Kalker, J. J. (1990). Three-Dimensional Elastic Bodies in Rolling Contact. Kluwer.
+
+    Examples
+    --------
+    >>> middle = stress_from_tractions([-1, 0, 1], [-1, 0, 1], 200.0, 0.0, 0.0, points=[0, 0, 0])
+    >>> round(float(middle[2]), 6)
+    -200.0
     """
     xa, ya = _axis("x", x), _axis("y", y)
     q = _tractions(xa, ya, pressure, shear_lateral, shear_rolling)
@@ -147,16 +149,12 @@ def stress_on_grid(
 
     Parameters
     ----------
-    x : array_like, shape (nx,)
-        Equidistant node coordinates in the lateral direction [mm].
-    y : array_like, shape (ny,)
-        Equidistant node coordinates in the rolling direction [mm].
+    x, y : array_like, shapes (nx,) and (ny,)
+        Equidistant node coordinates in the lateral and the rolling direction [mm].
     pressure : array_like, shape (ny, nx) or ()
         Pressure on the body [MPa].
-    shear_lateral : array_like, shape (ny, nx) or ()
-        Lateral shear traction on the body [MPa].
-    shear_rolling : array_like, shape (ny, nx) or ()
-        Shear traction in the rolling direction on the body [MPa].
+    shear_lateral, shear_rolling : array_like, shape (ny, nx) or ()
+        Shear tractions on the body along x and y [MPa].
     depths : array_like, shape (nz,)
         Depths z >= 0 [mm].
     poisson_ratio : float
@@ -182,6 +180,12 @@ def stress_on_grid(
     References
     ----------
     Liu, S. & Wang, Q. (2002). J. Tribology 124, 36-45.
+
+    Examples
+    --------
+    >>> stress = stress_on_grid([-1, 0, 1], [-1, 0, 1, 2], 200.0, 0.0, 0.0, depths=[0.0, 0.5])
+    >>> stress.shape, round(float(stress[0, 1, 1, 2]), 6)
+    ((2, 4, 3, 6), -200.0)
     """
     xa, ya = _axis("x", x), _axis("y", y)
     q = _tractions(xa, ya, pressure, shear_lateral, shear_rolling)
@@ -279,6 +283,11 @@ def principal_stresses(stress: ArrayLike) -> Array:
     -------
     numpy.ndarray, shape (..., 3)
         Principal stresses in descending order [MPa].
+
+    Examples
+    --------
+    >>> principal_stresses([-300.0, 0.0, 100.0, 0.0, 0.0, 0.0]).tolist()
+    [100.0, 0.0, -300.0]
     """
     s = np.asarray(stress, dtype=float)
     tensor = s[..., [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]

@@ -38,6 +38,12 @@ def load_database(user_file: Path | str | None = None) -> MaterialDatabase:
     Notes
     -----
     The user's file may add materials, change single values of built-in materials, and add friction pairs.
+
+    Examples
+    --------
+    >>> database = load_database()
+    >>> float(database.material("1.7225-normalised").tensile_strength)
+    720.0
     """
     return read_database(find_user_file(user_file))
 

@@ -39,7 +39,9 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     Examples
     --------
     >>> import trackroller as tr
-    >>> tr.report(tr.solve(tr.Case()), "sheet.html")  # doctest: +SKIP
+    >>> ds = tr.solve(tr.Case(), contact_model="sliding", accuracy="preview")
+    >>> tr.report(ds, "sheet.html").name
+    'sheet.html'
     """
     from trackroller.report.sheet.page import write_sheet  # heavy: jinja2, and matplotlib for the figures
 

@@ -125,7 +125,7 @@ def solve(
     >>> ds.normal_force.dims, ds.normal_force.attrs["units"]
     (('contact',), 'N')
     >>> float(ds.peak_stress.sel(contact=1, body="roller").round())
-    401.0
+    412.0
     >>> both = tr.solve([tr.Case(friction_coefficient=mu) for mu in (0.0, 0.3)])
     >>> dict(both.roller_life_hours.sizes)
     {'case': 2}

@@ -276,6 +276,13 @@ def load_study(path: str | Path, database: Any = None, planned: bool = False) ->
     InputError
         If the file is missing or is not YAML, a key or name is unknown, a value is out of bounds, or the geometry
         contradicts itself. The error names field, value, what is allowed and the nearest known name.
+
+    Examples
+    --------
+    >>> text = "{name: fit, factors: {roller_profile_radius: {values: [-6.5, -8]}}, contact_model: kalker}"
+    >>> characters = Path("study.yaml").write_text(text)
+    >>> load_study("study.yaml").design().sizes["case"]
+    2
     """
     path = Path(path)
     with files_beside(path):

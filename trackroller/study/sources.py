@@ -22,7 +22,7 @@ Examples
 --------
 >>> from trackroller.study.sources import code_digest, source_files
 >>> [path.name for path in source_files("trackroller.roller.geometry")]
-['__init__.py', 'geometry.py']
+['errors.py', '__init__.py', 'geometry.py']
 >>> len(code_digest("trackroller.roller.geometry"))
 16
 """
