@@ -143,7 +143,9 @@ def tractions(
     law: FrictionLaw | None = None,
     travel_speed=1.0,
 ) -> SurfaceTractions:
-    """Return pressure, shear and slip on a grid of `points` x `points` over each patch; 0 outside the ellipse.
+    """Return pressure, shear and slip on a grid of `points` x `points` over each patch, by eqs (26)-(30).
+
+    All fields are 0 outside the ellipse.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """Compiled sums of the half-space kernels over a loaded grid.
 
 A traction field that is bilinear between the nodes of a grid, or uniform in cells around them, is a sum of corner
-loads. With the corner function S of `kernels.py`, the stress at a point is the sum over the corners of S times the
-second (first) differences of the nodal tractions. This sum is exact: it needs no numerical integration, and no term is
-singular at z = 0. Far away the differences would cancel digits; there the load is a set of point forces with the same
-second moments.
+loads. With the corner function S of `kernels.py`, which follows from the potentials of eqs (1)-(5), the stress at a
+point is the sum over the corners of S times the second (first) differences of the nodal tractions. This sum is exact:
+it needs no numerical integration, and no term is singular at z = 0. Far away the differences would cancel digits; there
+the load is a set of point forces with the same second moments.
 
 The kernels are compiled at the first call and cached on disk. The sums release the interpreter lock, so that
 `stress.py` runs them in threads.

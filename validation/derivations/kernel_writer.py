@@ -43,9 +43,9 @@ _CORNER = """    P = x2 + z2
     Ay = atan2(t, y2 * R + x2 * z)
 """
 _TITLES = {
-    "point_kernel": "Stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
-    "uniform_corner": "Corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless.",
-    "bilinear_corner": "Corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
+    "point_kernel": "Return the stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
+    "uniform_corner": "Return the corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless.",
+    "bilinear_corner": "Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
 }
 
 
