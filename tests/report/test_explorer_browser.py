@@ -538,8 +538,10 @@ SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 300"><rect width
 def test_a_closed_figure_returns_to_its_place_and_keeps_the_focus(browser, place, grid):
     folder = place / "figures"
     folder.mkdir()
-    for name in ("life_map", "regime_map", "pareto-front"):
+    names = ("life_map", "regime_map", "pareto-front")
+    for name in names:
         (folder / f"{name}.svg").write_text(SVG)
+    (folder / "index.json").write_text(json.dumps([{"name": n, "caption": n, "sentence": ""} for n in names]))
     grid.to_netcdf(place / "enlarged.nc")
     page = browser.open(write_report(place / "enlarged.nc", folder, place / "report.html"))
     for close in ("document.querySelector('figure:target .close').click()", "escape"):
