@@ -181,6 +181,7 @@ def test_a_browser_shows_it_whole_and_without_console_errors(report):
         page = browser.open(report, width=1280)
         for width in (1280, 800, 400):
             page.resize(width)
+            page.until(f"{OVERFLOW}.out.length === 0")  # the explorer draws itself anew a moment later
             found = page.run(OVERFLOW)
             assert found["images"] == 0 and found["out"] == [] and found["page"] <= found["width"] == width
         page.run("document.querySelector('figure a').click()")
