@@ -112,7 +112,7 @@ def point_kernel(x, y, z):
 
 @numba.njit(cache=True, error_model="numpy", inline="never")
 def uniform_corner(x, y, z):
-    """Return the corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless."""
+    """Return the corner function of uniform tractions: d2/dxdy gives `point_kernel` [1]."""
     x2, y2, z2 = x * x, y * y, z * z
     R = sqrt(x2 + y2 + z2)
     iR = 1.0 / R if R > 0.0 else 0.0

@@ -44,7 +44,7 @@ _CORNER = """    P = x2 + z2
 """
 _TITLES = {
     "point_kernel": "Return the stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
-    "uniform_corner": "Return the corner function of uniform tractions: d2/dxdy gives `point_kernel`; A, B dimensionless.",
+    "uniform_corner": "Return the corner function of uniform tractions: d2/dxdy gives `point_kernel` [1].",
     "bilinear_corner": "Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
 }
 
