@@ -110,7 +110,7 @@ def test_wrong_goals_are_refused(objectives, constraints, says):
 
 
 def test_figures_of_the_set_are_drawn_in_words():
-    """The front is drawn, and conditions of use among the factors are told."""
+    """The front is drawn, and its caption names conditions of use among the factors."""
     from trackroller.report.figures import style
     from trackroller.report.figures.pareto import pareto_front
 

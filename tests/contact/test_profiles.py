@@ -55,7 +55,7 @@ def test_arcs_follow_one_another_tangentially():
 
 
 def test_points_of_a_circle_give_back_the_circle():
-    """In the picture of the whole cross-section, and turned by the contact angle."""
+    """Points of the whole cross-section, and points in a frame turned by the contact angle, give the same circle."""
     u = np.linspace(-1.5, 1.0, 11)
     exact = np.sqrt(36 - u * u) - 6
     whole = cross_section(text({"points": circle_points(6.0)}), "guide_profile", 6.0, ALPHA, 6.0, 1)

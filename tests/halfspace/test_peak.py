@@ -102,7 +102,7 @@ def test_surface_is_the_limit_of_depth():
 
 
 def test_peaks_match_the_reference_maxima():
-    """True maxima over the closed half-space within 0.25 % (the reference claims about 0.05 % for itself)."""
+    """True maxima over the closed half-space within 0.25 % (the error of the reference is about 0.05 %)."""
     records = [c for c in published_cases() if c.get("exact_peak")]
     ds = solve_sliding([case_of(c) for c in records])
     for i, record in enumerate(records):

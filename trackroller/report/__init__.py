@@ -51,7 +51,7 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
         return write_spectrum(ds, path)
     if "study" not in ds.attrs:
         return write_sheet(ds, path)
-    from trackroller.report.build import build_report
+    from trackroller.report.build import build_report  # heavy: pandas and seaborn, for studies only
     from trackroller.study.files import StudyFolder
 
     with tempfile.TemporaryDirectory() as place:

@@ -17,7 +17,7 @@ from trackroller.report.view import MOST_LEVELS, StudyView
 if TYPE_CHECKING:
     import xarray as xr
 
-FEW = 20  # events below this number are named one by one and attributed to nothing
+FEW = 20  # fewer events are named one by one, without a cause
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # rows of a class below which its median is not compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts

@@ -164,7 +164,7 @@ def plain(name: str) -> str:
 
 def long_name(name: str) -> str:
     """Name a factor in running text."""
-    if name == "normal":  # an option whose name alone says little
+    if name == "normal":  # the word "normal" alone would not be understood
         return "normal problem"
     return PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
 

@@ -66,7 +66,7 @@ def _work(cases: CaseList, database: Any) -> store.Block:
 
 def _solve(client: Any, cases: CaseList, database: Any) -> Iterator[store.Block]:
     """Yield the blocks of a list; halve a batch that kills its workers until the responsible case is alone."""
-    from distributed import KilledWorker, as_completed  # dask is optional and slow to import
+    from distributed import KilledWorker, as_completed  # optional and slow to import, as dask is
 
     def submit(index: np.ndarray) -> Any:
         future = client.submit(_work, cases.take(index), database, pure=False)

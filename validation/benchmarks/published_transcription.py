@@ -67,7 +67,7 @@ def derivatives_of_omega() -> dict:
     name = sp.Symbol("rho", positive=True)
     rho = sp.sqrt(x**2 + y**2 + z**2)
     omega = z * sp.log(rho + z) - rho
-    # factor in place of simplify, which takes minutes; rho is named once, as anybody would
+    # `factor` replaces `simplify`, which takes minutes; the symbol rho shortens the expressions
     return {
         (i, j, k): sp.lambdify((x, y, z, name), sp.factor(sp.diff(omega, x, i, y, j, z, k).subs(rho, name)), "numpy")
         for i, j, k in _ORDERS

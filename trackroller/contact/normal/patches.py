@@ -30,7 +30,7 @@ SCALARS = (
 
 @dataclass(frozen=True)
 class Pressing:
-    """The m of n patches whose pressures shear changes.
+    """The m patches, of n, in which shear changes the pressure because the materials differ.
 
     Attributes
     ----------

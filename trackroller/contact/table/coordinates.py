@@ -26,7 +26,7 @@ from trackroller.contact.protocol import Patch
 
 HALF_WAY = 3.0  # r at rho = 1/2
 RATIOS = (0.05, 20.0)  # of b/a
-LARGEST_SLIP = 1e100  # r where friction can bend nothing
+LARGEST_SLIP = 1e100  # creepages are cut off here; far below, the patch already slides completely
 
 
 def spin_arm(g):

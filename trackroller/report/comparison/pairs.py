@@ -61,7 +61,7 @@ def _inputs(ds: xr.Dataset, order: tuple[str, ...]) -> dict[str, np.ndarray]:
     names = [n for n in dict.fromkeys((*INPUTS, *study.get("factors", {}), *order)) if n not in (MODEL, "case")]
     rows = int(np.prod([ds.sizes[d] for d in order]))
     for name in names:
-        held = f"{name}_value" if f"{name}_value" in ds.variables else name  # friction by a word for its level
+        held = f"{name}_value" if f"{name}_value" in ds.variables else name  # friction given as a word
         if held in ds.variables and set(ds[held].dims) <= set(order):
             values = flat(ds, held, order) if ds[held].ndim else np.full(rows, ds[held].item())
             values = np.broadcast_to(values, (rows,))

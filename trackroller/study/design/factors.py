@@ -123,7 +123,7 @@ class Factor:
             return low * (high / low) ** unit
         if self.kind == "triangular":
             return _triangular(unit, *self.numbers)
-        from scipy.stats import norm, truncnorm  # heavy
+        from scipy.stats import norm, truncnorm  # heavy, and grids of values do without
 
         mean, deviation, *ends = self.numbers
         if self.kind == "normal":
