@@ -253,7 +253,7 @@ def interactions(sens: xr.Dataset, output: str) -> Drawn:
     table = np.array(part[name].values, dtype=float)
     table = np.where(np.isfinite(table), table, table.T)
     if name != "interaction":
-        table = np.where(np.isfinite(table), np.maximum(table, 0.0), table)  # the estimate of a zero index may be negative
+        table = np.where(np.isfinite(table), np.maximum(table, 0.0), table)  # estimates may be negative
     fitted = name == "interaction_share" and "main_share" not in part
     own = "fit_alone" if fitted else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
     np.fill_diagonal(table, np.abs(part[own].values) if own == "effect" else np.maximum(part[own].values, 0.0))
