@@ -24,6 +24,11 @@ def pytest_runtest_makereport(item, call):
     return report
 
 
+def pytest_collection_modifyitems(items):
+    """Start with whole workflows: they take longest, and at the end one process would wait for the other."""
+    items.sort(key=lambda item: item.path.parent.name != "workflow")
+
+
 def pytest_terminal_summary(terminalreporter):
     """Say how many tests were skipped, so that they are not taken for passed tests."""
     if skipped := len(terminalreporter.stats.get("skipped", ())):
