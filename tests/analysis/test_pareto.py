@@ -82,7 +82,7 @@ def test_sentence_tells_the_size_and_the_ends():
 
 
 def test_a_single_best_design_is_called_so():
-    """Where one design wins in everything there is nothing to trade."""
+    """The Pareto set is one design if this design is best in every goal."""
     front = pareto(trade(lambda a, b: 100 - a, lambda a, b: a), {"roller_life_hours": "max", "friction_power": "min"})
     assert choices.pareto(front).text.startswith(
         "One of 400 allowed designs is best in everything: life of the roller 99"

@@ -88,7 +88,7 @@ def test_groups_of_ishigami_and_single_factors_have_their_known_indices():
 
 
 def test_groups_of_a_grid_are_exact():
-    """y = a b + c on centred levels: the product belongs to the group of a and b, whatever stands beside it."""
+    """y = a b + c on centred levels: the product belongs to the group of a and b, with or without other groups."""
     spec = {"a": {"values": [-1, 1]}, "c": {"values": [-2, 0, 2]}, "b": {"values": [-1, 0, 1]}}
     design = sample(spec, "grid", 0, 0)
     a, b, c = (design.columns[name] for name in "abc")
@@ -145,7 +145,7 @@ def test_levels_of_a_grid_are_exact_and_count_their_cells():
 
 
 def test_blocks_of_one_level_hold_no_row_of_another_level():
-    """An output that is NaN at one level costs the other levels nothing."""
+    """An output that is NaN at one level leaves the indices at the other levels unchanged."""
     design = sample(SPEC, "saltelli", 64, 3)
     y = by_kind(design.columns["a"], design.columns["b"], design.columns["kind"])
     whole = within_levels(y, design, "kind")

@@ -361,7 +361,7 @@ def test_partial_rank_correlation_sees_through_other_factors():
 
 
 def test_share_from_groups_is_free_of_bias_for_noise():
-    """An inert grouping of pure noise explains nothing on average (the raw ratio would claim 10 %)."""
+    """The index of an inert grouping of pure noise is 0 on average (the raw ratio is 10 %)."""
     rng = np.random.default_rng(2)
     found = [first_order(rng.normal(size=200), rng.integers(0, 20, 200))[0] for _ in range(60)]
     assert abs(np.mean(found)) < 0.02

@@ -1,4 +1,4 @@
-"""Whatever stands in a study, case, materials or table file: it is read, or refused with a clean error."""
+"""A study, case, materials or table file with any content is read, or refused with a clean error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bad input ends with exit code 2 and one line that names it; nonsense is not accepted, sense is not refused."""
+"""Bad input ends with exit code 2 and one line that names it; valid input is accepted."""
 
 from __future__ import annotations
 

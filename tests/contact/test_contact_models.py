@@ -148,7 +148,7 @@ UNLIKE = [
 @pytest.mark.parametrize("change", UNLIKE)
 @pytest.mark.long
 def test_energy_balance_of_unlike_materials_counts_the_pressures(change, normal):
-    """Shear moves unlike surfaces along the normal, where pressures work; drive and tilting forces are not all then."""
+    """Shear moves unlike surfaces along the normal. The pressures then work and enter the energy balance."""
     case = tr.Case(**change)
     ds = tr.solve(case, contact_model="kalker", normal=normal, outputs=("forces", "friction_work"))
     assert float(ds.energy_residual) < 5e-3

@@ -60,7 +60,7 @@ def test_random_patches_of_the_range_agree_with_elements_within_the_stated_error
 
 
 def test_the_rule_of_the_validation_builds_the_stored_table():
-    """A few nodes solved anew have the values of the table, but for the error of elements where much sticks."""
+    """A few nodes solved again have the values of the table, up to the error of elements where adhesion is large."""
     rng = np.random.default_rng(5)
     chi, theta, g = FORCES.mesh()
     level = np.array(FORCES.levels)[rng.integers(0, len(FORCES.levels) - 1, 12)]

@@ -185,7 +185,7 @@ def test_user_friction_single_level_new_pair_and_pair_of_materials(user):
 
 
 def test_user_file_is_found_by_argument_variable_and_folder(user, tmp_path, monkeypatch):
-    """The argument goes before the environment variable, that before config/materials.yaml."""
+    """The argument overrides the environment variable, which overrides config/materials.yaml."""
 
     def strength():
         return load_database().material("POM").tensile_strength

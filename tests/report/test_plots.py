@@ -297,7 +297,7 @@ def test_drawing_leaves_the_callers_matplotlib_alone(grid):
 
 @pytest.mark.parametrize("motor_force", [-30.0, 0.0])
 def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force):
-    """No contact left to draw is no reason to raise."""
+    """A case without a contact to draw raises no error."""
     ds = solve_sliding(tr.Case(axial_force=150.0, motor_force=motor_force), outputs=OUTPUTS)
     assert int(ds["regime"]) == 2
     assert "contact_1_stress" not in {i.name for i in plot_case(ds, tmp_path)}

@@ -1,4 +1,4 @@
-"""Folders that cannot be written and disks that fill up, for real: one clear line, exit code 1, and it goes on."""
+"""Real folders without write access and real full disks: one line, exit code 1, and the next run continues."""
 
 from __future__ import annotations
 

@@ -216,8 +216,9 @@ def best_design(view: StudyView) -> Sentence | None:
 def ranked(view: StudyView) -> np.ndarray | None:
     """Return the valid cases by falling life (else by rising peak stress), or None when nothing ranks them.
 
-    Of a study with several contact models only the most exact one ranks: a model is no design. The cases of an
-    inner/outer design do not rank, because scattering values cannot be chosen: B10 ranks its design points.
+    Of a study with several contact models only the cases of the most exact model rank, because a model is not a design
+    choice. The cases of an inner/outer design do not rank, because scattering values cannot be chosen: B10 ranks its
+    design points.
     """
     if view.study.get("design") in ("inner_outer", "nested"):
         return None

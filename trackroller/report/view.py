@@ -114,7 +114,7 @@ class StudyView:
 
         That of the base case, else the middle one.
 
-        Of contact models it is the most exact one.
+        Of contact models it is the most exact model.
         """
         levels = self.levels(name)
         if name == "contact_model":

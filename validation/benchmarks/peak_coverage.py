@@ -2,7 +2,7 @@
 
     python -m validation.benchmarks.peak_coverage [--cases N] [--seed S]
 
-A random sample over friction, angles, radii, curves, loads, materials and drive, wider than what anybody builds. A case
+A random sample over friction, angles, radii, curves, loads, materials and drive, wider than for built rollers. A case
 counts by its worst peak of up to four (two contacts, two bodies). A peak that only one of the two accuracies finds, or
 whose estimate is missing, counts as neither within tolerance nor covered. `reference` is the same method with finer
 settings, so errors that both share do not show here; the tests hold the method itself against closed forms.

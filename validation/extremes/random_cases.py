@@ -1,4 +1,4 @@
-"""Random extreme cases: log-uniform over all parameters at once, far beyond what anybody builds."""
+"""Random extreme cases: log-uniform over all parameters at once, far beyond built rollers."""
 
 from __future__ import annotations
 
