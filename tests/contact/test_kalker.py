@@ -89,8 +89,8 @@ def compare_with_contact(case, settings=None):
     np.testing.assert_allclose(lateral, exact["lateral_force"], rtol=6e-3)
     np.testing.assert_allclose(moment, exact["spin_moment"], rtol=6e-3)
     driven = case["case"]["motor_force"] != 0
-    # rolling freely, drive and shift are what is left of larger terms: CONTACT's own grids differ by 8 % there, and its
-    # extrapolation is up to 7 % from the limit of finer grids
+    # in free rolling, drive and shift are small differences of larger terms: CONTACT's own grids differ by 8 % there,
+    # and its extrapolation is up to 7 % from the limit of finer grids
     np.testing.assert_allclose(driving, exact["driving_force"], rtol=1e-2 if driven else 2.5e-2)
     limit = exact["rolling_radius_shift"] if driven else FREE["rolling_radius_shift"][case["name"]]
     assert shift == pytest.approx(limit, rel=1e-2 if driven else 2e-2)

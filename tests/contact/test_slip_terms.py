@@ -54,7 +54,7 @@ def test_whole_equilibria_agree_with_contact(name, change, terms):
     np.testing.assert_allclose(ds.lateral_force, record["lateral_force"], rtol=3e-3)
     np.testing.assert_allclose(ds.spin_moment, record["spin_moment"], rtol=3e-3)
     np.testing.assert_allclose(ds.driving_force, record["driving_force"], rtol=1e-2)
-    # rolling freely the shift is what is left of larger terms; CONTACT's own grids differ by more
+    # in free rolling the shift is a small difference of larger terms; CONTACT's own grids differ by more
     assert float(ds.rolling_radius_shift) == pytest.approx(record["rolling_radius_shift"], rel=1e-2, abs=1.5e-5)
     # the tangent's work, in which CONTACT's resultants were summed up too
     np.testing.assert_allclose(ds.friction_energy_balance, record["friction_power_per_speed"], rtol=3e-3)

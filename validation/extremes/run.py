@@ -1,4 +1,4 @@
-"""Runs the catalogue of edge scenes and gathers what it finds in one record (JSON)."""
+"""Run the catalogue of edge scenes and gather the findings in one record (JSON)."""
 
 from __future__ import annotations
 

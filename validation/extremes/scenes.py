@@ -50,9 +50,9 @@ class Scene:
     """A series of cases along `quantity` (values in `unit`) and the claims made on it.
 
     `rising` and `falling` name results that may only rise or fall along the series; `pairs` says that cases come in
-    pairs just below and just above a border; `limit` that the last case is what the one before tends to. `models` are
-    run; those in `reach` may leave cases failed that lie beyond their reach (patches too slender for their
-    coefficients or grid). `close` says that neighbours closer than 1e-4 must have close results.
+    pairs just below and just above a border; `limit` says that the last case is the limit of the cases before. The
+    contact models `models` are run. Models in `reach` may fail for patches that are too slender for their coefficients
+    or grid. `close` says that neighbours closer than 1e-4 must have close results.
 
     Where a case depends on the answer (the force at which a contact lifts, the motor force that puts the spin pole on
     the edge), `build` makes it from a number between `span`: with `pairs` the border is searched for there and

@@ -69,10 +69,7 @@ class Patch:
 
     @property
     def spin_pole(self) -> tuple[float, float] | None:
-        """Place of the spin pole of full sliding [mm].
-
-        The other contact models have no such point.
-        """
+        """Return the place of the spin pole of full sliding [mm]; other contact models have no spin pole."""
         if "spin_pole_lateral" not in self.ds or not _slides(self.ds):
             return None
         return float(self.ds["spin_pole_lateral"]), float(self.ds.get("spin_pole_rolling", 0.0))

@@ -41,7 +41,7 @@ def prepare(table: CaseTable, options: Options) -> Scene:
     turning = None
     if "curve" in options.slip_terms:
         turning = turning_of(table.guide_curve_radius, table.guide_profile_radius, np.cos(alpha))
-        # a contact beyond the axis of a concave guide has no turning: a shape of NaN leaves the row unsolved
+        # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and the row fails
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     law = law_of(table.friction_law[0] if len(table) else None)
     model = model_of(table, options, r_a, law, table.velocity * MM_PER_S)
