@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 from rich.console import Console
+from rich.filesize import decimal
 from rich.table import Table
 
 from trackroller.cli.case import case_of, is_study
 from trackroller.roller.case import to_table
 from trackroller.roller.options import Options
 from trackroller.study.config import load_study
-from trackroller.study.cost import bytes_a_case, duration, size
+from trackroller.study.cost import bytes_a_case, duration
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.explain import explain as stages_of
 from trackroller.study.plan import case_options, chunk_size
@@ -45,7 +46,7 @@ def _print_study(path: Path, results: Path) -> None:
     print(f"chunks    {chunks} of up to {chunk} cases")
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     print(f"time      {times} ({told} cases/s: {status.speed:.3g})")
-    print(f"disk      about {size(status.total * bytes_a_case(study.config.outputs))}")
+    print(f"disk      about {decimal(status.total * bytes_a_case(study.config.outputs))}")
 
 
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:

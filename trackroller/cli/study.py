@@ -33,24 +33,17 @@ def run_with_progress(
     )
     with Progress(*columns, console=console, disable=quiet, speed_estimate_period=120) as bar:
         task = bar.add_task(study.name, total=None, rate="-")
-        began: dict[str, float] = {}
-
-        def started(total: int, done: int) -> None:
-            began["done"] = done
-            bar.update(task, total=total, completed=done)
 
         def progress(count: int) -> None:
             bar.advance(task, count)
-            shown = bar.tasks[0]
-            spent = max(shown.elapsed or 0.0, 1e-3)
-            bar.update(task, rate=f"{(shown.completed - began['done']) / spent:.0f}")
+            bar.update(task, rate=f"{bar.tasks[0].speed or 0:.0f}")
 
         plan = run_study(
             study,
             results,
             rerun_failed=rerun_failed,
             scheduler=scheduler,
-            started=started,
+            started=lambda total, done: bar.update(task, total=total, completed=done),
             tell=lambda line: console.print(line, highlight=False, markup=False),
             progress=progress,
         )

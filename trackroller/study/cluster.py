@@ -15,7 +15,7 @@ from trackroller.study import store
 from trackroller.study.caselists import CaseList
 from trackroller.study.cost import rate
 from trackroller.study.files import WorkError
-from trackroller.study.solve import Executor, solve_rows
+from trackroller.study.solve import Executor, solve_cases
 
 BATCH_SECONDS = 2.0
 
@@ -60,16 +60,12 @@ def _client(scheduler: str) -> Any:
         raise InputError("--scheduler", scheduler, why, remedy) from None
 
 
-def _work(cases: CaseList, database: Any) -> store.Block:
-    return solve_rows(cases, np.arange(len(cases.cases)), database)
-
-
 def _solve(client: Any, cases: CaseList, database: Any) -> Iterator[store.Block]:
     """Yield the blocks of a list; halve a batch that kills its workers until the responsible case is alone."""
     from distributed import KilledWorker, as_completed  # optional and slow to import, as dask is
 
     def submit(index: np.ndarray) -> Any:
-        future = client.submit(_work, cases.take(index), database, pure=False)
+        future = client.submit(solve_cases, cases.take(index), database, pure=False)
         waiting[future.key] = index
         return future
 

@@ -9,7 +9,6 @@ import hashlib
 import os
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -23,26 +22,26 @@ class WorkError(RuntimeError):
     """Report that the work failed for a reason outside the input, and what to do about it."""
 
 
-@dataclass(frozen=True)
 class StudyFolder:
-    """Paths of the files of one study, `results/NAME/`."""
+    """Paths of the files of one study, `results/NAME/`.
 
-    root: Path
+    Attributes
+    ----------
+    design, gathered : pathlib.Path
+        The cases of the study, and its gathered results.
+    study_file : pathlib.Path
+        The study file with every default written out.
+    plan_file : pathlib.Path
+        The names of the chunks that the study consists of.
+    lock : pathlib.Path
+        Lock that processes share while they work from the plan; only its sole holder may change the plan.
+    """
 
-    @property
-    def design(self) -> Path:
-        """Return the cases of the study."""
-        return self.root / "design.nc"
-
-    @property
-    def gathered(self) -> Path:
-        """Return the gathered results."""
-        return self.root / "study.nc"
-
-    @property
-    def study_file(self) -> Path:
-        """Return the study file with every default written out."""
-        return self.root / "study.yaml"
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self.design, self.gathered = root / "design.nc", root / "study.nc"
+        self.study_file, self.plan_file = root / "study.yaml", root / "plan.json"
+        self.lock = root / "plan" / ".lock"
 
     def earlier(self) -> dict[str, Any]:
         """Return the study as it was planned last, {} if there is none."""
@@ -52,16 +51,6 @@ class StudyFolder:
             return read_mapping(self.study_file, "study")
         except InputError:
             return {}
-
-    @property
-    def plan_file(self) -> Path:
-        """Return the names of the chunks that the study consists of."""
-        return self.root / "plan.json"
-
-    @property
-    def lock(self) -> Path:
-        """Lock that processes share while they work from the plan; only its sole holder may change the plan."""
-        return self.root / "plan" / ".lock"
 
     def case_list(self, chunk: str) -> Path:
         """Return the cases of a chunk."""

@@ -40,15 +40,17 @@ def _prefix(options: Mapping[str, Any]) -> bytes:
     return json.dumps(told | {"code": solver_digest()}, sort_keys=True).encode()
 
 
-def fingerprints(table: CaseTable, options: list[dict[str, Any]] | dict[str, Any]) -> np.ndarray:
+def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarray | None = None) -> np.ndarray:
     """Return the fingerprint of each case.
 
     Parameters
     ----------
     table : CaseTable
         n cases.
-    options : dict or list of dict
-        Keyword arguments of `solve`: one mapping for all cases, or one for each case.
+    *options : dict
+        Keyword arguments of `solve`.
+    group : numpy.ndarray of int, shape (n,), optional
+        Index of each case's options; by default all cases have the first.
 
     Returns
     -------
@@ -60,17 +62,14 @@ def fingerprints(table: CaseTable, options: list[dict[str, Any]] | dict[str, Any
     rows = np.ascontiguousarray(np.stack([np.asarray(c, dtype="<f8") for c in columns], axis=1))
     rows += 0.0  # -0.0 becomes 0.0
     rows[np.isnan(rows)] = np.nan  # every NaN gets the same bits
-    if isinstance(options, Mapping):
-        heads = [hashlib.sha256(_prefix(options))] * len(rows)
-    else:
-        known = {number: hashlib.sha256(_prefix(o)) for number, o in {id(o): o for o in options}.items()}
-        heads = [known[id(o)] for o in options]
+    heads = [hashlib.sha256(_prefix(told)) for told in options]
+    numbers = [0] * len(rows) if group is None else group.tolist()
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
     given = any(np.any(column != "") for column in texts)
     data, width = rows.reshape(-1).view(np.uint8).data, rows.itemsize * rows.shape[1]
     found = bytearray()
-    for i, head in enumerate(heads):
-        digest = head.copy()
+    for i, number in enumerate(numbers):
+        digest = heads[number].copy()
         digest.update(data[i * width : (i + 1) * width])
         if given:
             digest.update(json.dumps([column[i] for column in texts]).encode())

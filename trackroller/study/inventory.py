@@ -53,14 +53,12 @@ class Inventory:
 
     def find(self, wanted: np.ndarray) -> np.ndarray:
         """Return the index of each wanted case in `cases`, shape (n,); -1 marks a case that is not solved."""
-        if not len(self.cases):
-            return np.full(len(wanted), -1)
-        place = np.searchsorted(self.cases, wanted).clip(max=len(self.cases) - 1)
-        return np.where(self.cases[place] == wanted, place, -1)
+        place = np.searchsorted(self.cases, wanted)
+        return np.where(np.append(self.cases, b"")[place] == wanted, place, -1)
 
     def failed(self, place: np.ndarray) -> np.ndarray:
         """Return whether the cases with the indices `place` (see `find`) are solved and failed, shape (n,)."""
-        return (place >= 0) & (self.regime[place] == store.FAILED) if len(self.cases) else np.zeros(len(place), bool)
+        return np.append(self.regime, -1)[place] == store.FAILED
 
 
 def take_inventory(folder: StudyFolder) -> Inventory:

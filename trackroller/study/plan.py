@@ -115,7 +115,7 @@ def identify(study: Study, design: xr.Dataset) -> np.ndarray:
     """
     options, group = case_options(study, design)
     table = to_table(design.drop_vars(list(design.coords)), study.materials)
-    return fingerprints(table, [options[number] for number in group.tolist()])
+    return fingerprints(table, *options, group=group)
 
 
 def chunk_size(study: Study, cases: int) -> int:

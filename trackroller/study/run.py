@@ -8,11 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trackroller.study.caselists import load_list
 from trackroller.study.cluster import workers
 from trackroller.study.files import Tell
 from trackroller.study.gather import gather
-from trackroller.study.inventory import take_inventory
 from trackroller.study.plan import Plan, working_plan
 from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
 
@@ -46,9 +44,9 @@ def run_study(
     tell : callable, optional
         Receives one line for each event that the user should read.
     started : callable, optional
-        Receives the number of different cases and how many of them are solved already.
+        Receives the number of different cases and how many of them the complete chunks hold.
     progress : callable, optional
-        Receives the number of cases of each finished block.
+        Receives the number of cases of each finished block of the other chunks.
     solver : callable, optional
         Replaces `trackroller.solve` in this process.
 
@@ -68,13 +66,12 @@ def run_study(
     before = _text(study.path)
     with contextlib.ExitStack() as stack:
         plan = stack.enter_context(working_plan(study, results, tell=tell, rerun_failed=rerun_failed))
-        open_chunks = plan.open
         if started is not None:
-            started(plan.distinct, plan.distinct - _missing(plan, open_chunks))
+            started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in plan.open))
         executor: Executor = functools.partial(solve_here, solver=solver)
-        if scheduler is not None and open_chunks:
+        if scheduler is not None and plan.open:
             executor = stack.enter_context(workers(scheduler))
-        for name in open_chunks:
+        for name in plan.open:
             tell(solve_chunk(plan.folder, name, study.materials, executor=executor, tell=tell, progress=progress))
         gather(plan, tell=tell)
     if _text(study.path) != before:
@@ -82,13 +79,6 @@ def run_study(
             f"{study.path} was edited during this run, which solved the earlier version. Start again to solve the new."
         )
     return plan
-
-
-def _missing(plan: Plan, open_chunks: list[str]) -> int:
-    if not open_chunks:
-        return 0
-    found = take_inventory(plan.folder)
-    return sum(int((found.find(load_list(plan.folder, name).cases) < 0).sum()) for name in open_chunks)
 
 
 def _text(path: Path | None) -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import logging
 import time
 from collections.abc import Callable, Iterator
@@ -25,18 +24,16 @@ Solver = Callable[..., Any]
 Executor = Callable[[CaseList, Any], Iterator[store.Block]]  # solves the cases of a list, block by block
 
 
-def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver | None = None) -> store.Block:
-    """Solve some rows of a case list.
+def solve_cases(cases: CaseList, database: Any, solver: Solver | None = None) -> store.Block:
+    """Solve all cases of a list.
 
-    If the solver raises, the rows are halved until the responsible case is alone. That case becomes a row with
+    If the solver raises, the list is halved until the responsible case is alone. That case becomes a row with
     regime failed and the exception as its reason.
 
     Parameters
     ----------
     cases : CaseList
-        The cases of a chunk.
-    index : numpy.ndarray of int, shape (n,)
-        Rows to solve.
+        The n cases.
     database : MaterialDatabase or None
         The materials; None takes the built-in ones and the user's.
     solver : callable, optional
@@ -45,7 +42,7 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
     Returns
     -------
     store.Block
-        Results of the n rows.
+        Results of the n cases.
 
     Raises
     ------
@@ -56,24 +53,24 @@ def solve_rows(cases: CaseList, index: np.ndarray, database: Any, solver: Solver
         from trackroller.roller.solver import solve  # numba compiles on import; planning needs no solver
 
         solver = solve
-    one: Solver = functools.partial(solver, database=database, **cases.options)
     started = time.perf_counter()
     blocks: list[store.Block] = []
-    pending = [index]
+    pending = [cases]
     while pending:
-        rows = pending.pop()
+        part = pending.pop()
         try:
-            blocks.append(store.from_dataset(one(cases.take(rows).design()), cases.cases[rows]))
-            if cases.options.get("normal") == "halfspace":
-                _explain_shapes(blocks[-1], cases, rows, one)
+            block = store.from_dataset(solver(part.design(), database=database, **part.options), part.cases)
+            if part.options.get("normal") == "halfspace" and len(part.cases) > 1:
+                for i in np.flatnonzero(block.failed):  # among others, the solver does not say which shapes are wrong
+                    block.reasons |= solve_cases(part.take(np.array([i])), database, solver).reasons
+            blocks.append(block)
         except Exception as exc:
             if isinstance(exc, (InputError, WorkError)) and not isinstance(exc, ShapeError):
                 raise
-            if len(rows) > 1:
-                half = len(rows) // 2
-                pending += [rows[half:], rows[:half]]
+            if len(part.cases) > 1:
+                pending += [part.take(rows) for rows in np.array_split(np.arange(len(part.cases)), 2)[::-1]]
             else:
-                blocks.append(store.failure(cases.cases[rows], _reason(exc)))
+                blocks.append(store.failure(part.cases, _reason(exc)))
     block = store.concatenate(blocks)
     block.seconds = time.perf_counter() - started
     return block
@@ -84,24 +81,13 @@ def _reason(exc: Exception) -> str:
     return text[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {text}"[:200]
 
 
-def _explain_shapes(block: store.Block, cases: CaseList, rows: np.ndarray, solve: Callable[[Any], Any]) -> None:
-    """Solve failed cases alone: in a batch, the solver does not say why two shapes cannot touch."""
-    if len(rows) < 2:
-        return
-    for i in np.flatnonzero(block.failed):
-        try:
-            solve(cases.take(rows[i : i + 1]).design())
-        except ShapeError as exc:
-            block.reasons[block.cases[i].decode()] = _reason(exc)
-
-
 def solve_here(cases: CaseList, database: Any, solver: Solver | None = None) -> Iterator[store.Block]:
     """Solve cases in this process, in blocks of about `BLOCK_SECONDS`."""
     start, size = 0, 64
     while start < len(cases.cases):
         rows = np.arange(start, min(start + size, len(cases.cases)))
         begun = time.perf_counter()
-        yield solve_rows(cases, rows, database, solver)
+        yield solve_cases(cases.take(rows), database, solver)
         start += size
         spent = max(time.perf_counter() - begun, 1e-3)
         size = min(max(int(size * min(4.0, BLOCK_SECONDS / spent)), SMALLEST_BLOCK), LARGEST_BLOCK)
@@ -133,7 +119,7 @@ def solve_chunk(
     tell : callable
         Receives one line for each event that the user should read.
     progress : callable, optional
-        Receives the number of cases of each finished block.
+        Receives the number of cases that were solved earlier, and that of each finished block.
 
     Returns
     -------
@@ -157,6 +143,8 @@ def solve_chunk(
             store.remove_corrupt(corrupt, tell)
             finished = np.concatenate([np.empty(0, dtype="S32"), *(block.cases for block in blocks)])
             missing = cases.take(np.flatnonzero(~np.isin(cases.cases, finished)))
+            if progress is not None:
+                progress(len(finished))
             started = time.perf_counter()
             for block in executor(missing, database):
                 store.write_part(folder, name, block)

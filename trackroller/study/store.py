@@ -106,12 +106,6 @@ class Block:
         return Block(cases, self.values[index], self.layout, self.coords, reasons, self.seconds, self.attrs)
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return value.item() if isinstance(value, np.generic) else value
-
-
 def from_dataset(dataset: xr.Dataset, cases: np.ndarray) -> Block:
     """Convert the dataset that `solve` returned for the cases with the fingerprints `cases` (n,) to a block."""
     layout: dict[str, Layout] = {}
@@ -121,22 +115,20 @@ def from_dataset(dataset: xr.Dataset, cases: np.ndarray) -> Block:
     for name, variable in dataset.variables.items():
         if name in skip:
             continue
-        attrs = {k: _plain(v) for k, v in variable.attrs.items()}
         if "case" not in variable.dims:
             coords[str(name)] = {
                 "dims": list(variable.dims),
-                "values": _plain(variable.values),
-                "attrs": attrs,
+                "values": variable.values,
+                "attrs": variable.attrs,
                 "coordinate": name in dataset.coords,
             }
             continue
         ordered = variable.transpose("case", ...)
         dims, values = tuple(str(d) for d in ordered.dims[1:]), ordered.values
         dtype = "f8" if values.dtype.kind == "f" else f"i{min(values.dtype.itemsize, 8)}"
-        layout[str(name)] = Layout(dims, values.shape[1:], dtype, attrs)
+        layout[str(name)] = Layout(dims, values.shape[1:], dtype, variable.attrs)
         columns.append(values.reshape(len(cases), -1).astype(float))
-    attrs = {k: _plain(v) for k, v in dataset.attrs.items()}
-    block = Block(np.asarray(cases, dtype="S32"), np.hstack(columns), layout, coords, attrs=attrs)
+    block = Block(np.asarray(cases, dtype="S32"), np.hstack(columns), layout, coords, attrs=dataset.attrs)
     why = np.atleast_1d(dataset["reason"].values) if "reason" in dataset else np.full(len(block.cases), "")
     for i, failed in enumerate(block.failed):
         if why[i] or failed:
@@ -165,22 +157,15 @@ def aligned(block: Block, layout: Mapping[str, Layout]) -> np.ndarray:
     """Return the values of a block in the columns of another layout, shape (n, columns)."""
     if list(block.layout) == list(layout):
         return block.values
-    parts = []
-    for name, entry in layout.items():
-        if name in block.layout:
-            parts.append(block.columns(name))
-        else:
-            parts.append(np.full((len(block.cases), entry.size), entry.missing))
-    return np.hstack(parts)
+    missing = {name: np.full((len(block.cases), entry.size), entry.missing) for name, entry in layout.items()}
+    return np.hstack([block.columns(name) if name in block.layout else missing[name] for name in layout])
 
 
 def concatenate(blocks: list[Block]) -> Block:
     """Join blocks of different cases."""
     layout = merged_layout(b.layout for b in blocks)
     first = max(blocks, key=lambda b: len(b.layout))
-    reasons: dict[str, str] = {}
-    for block in blocks:
-        reasons |= block.reasons
+    reasons = {case: why for block in blocks for case, why in block.reasons.items()}
     cases = np.concatenate([b.cases for b in blocks])
     values = np.concatenate([aligned(b, layout) for b in blocks])
     return Block(cases, values, layout, first.coords, reasons, sum(b.seconds for b in blocks), first.attrs)
@@ -188,7 +173,8 @@ def concatenate(blocks: list[Block]) -> Block:
 
 def _header(block: Block) -> str:
     layout = {k: [list(v.dims), list(v.shape), v.dtype, v.attrs] for k, v in block.layout.items()}
-    return json.dumps({"layout": layout, "coords": block.coords, "reasons": block.reasons, "attrs": block.attrs})
+    told = {"layout": layout, "coords": block.coords, "reasons": block.reasons, "attrs": block.attrs}
+    return json.dumps(told, default=lambda value: value.tolist())  # of NumPy arrays and numbers
 
 
 def _digest(header: str, cases: np.ndarray, values: np.ndarray) -> str:

@@ -28,7 +28,7 @@ from trackroller.study.caselists import load_list
 from trackroller.study.config import load_study
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.plan import working_plan
-from trackroller.study.solve import solve_rows
+from trackroller.study.solve import solve_cases
 from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -71,7 +71,7 @@ def hand_out() -> None:
     for name in made.chunks:
         cases = load_list(made.folder, name)
         if solved is None:
-            solved = solve_rows(cases, np.arange(min(2048, len(cases.cases))), made.study.materials)
+            solved = solve_cases(cases.take(np.arange(min(2048, len(cases.cases)))), made.study.materials)
         block = solved.take(np.arange(len(cases.cases)) % len(solved.cases))
         block.cases = cases.cases
         store.write(made.folder.chunk(name), block)

@@ -50,14 +50,14 @@ if os.environ.get("SURVIVE_LOG"):
     def told(mark, cases):
         with open(os.environ["SURVIVE_LOG"], "ab", buffering=0) as stream:
             stream.write(b"".join(mark + case + b"\\n" for case in cases.tolist()))
-    def rows(cases, index, *more, inner=solve.solve_rows, **named):
-        told(b"S", cases.cases[index])
-        return inner(cases, index, *more, **named)
+    def batch(cases, *more, inner=solve.solve_cases, **named):
+        told(b"S", cases.cases)
+        return inner(cases, *more, **named)
     def part(folder, name, block, inner=store.write_part):
         path = inner(folder, name, block)
         told(b"W", block.cases)
         return path
-    solve.solve_rows, store.write_part = rows, part
+    solve.solve_cases, store.write_part = batch, part
 """
 FLOW, RUN, DASK = "snakemake", "run", "run --scheduler local"
 ALL, HEAD, WORKER = "everything", "the main process", "one worker"
