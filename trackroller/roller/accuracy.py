@@ -98,34 +98,28 @@ def _composed(name: str, tolerance: float, forces: Rung, peak: Rung, elements: i
     )
 
 
-# Errors that a preset keeps: of the peak and of the forces in full sliding in 99 % of the measured designs, and of the
-# forces of `kalker` in 95 %, because fewer designs were measured. None: twice the elements of `standard`.
-PROMISES: dict[str, tuple[float, float, float | None]] = {
-    "preview": (2e-2, 5e-3, 2e-2),
-    "standard": (4e-3, 2e-5, 8e-3),
-    "reference": (3e-4, 1e-7, None),
-}
+# Errors of the peak and of the forces that a preset keeps in full sliding in 99 % of the measured designs.
+PROMISES = {"preview": (2e-2, 5e-3), "standard": (4e-3, 2e-5), "reference": (3e-4, 1e-7)}
+# Elements of `kalker` across a patch. They are set, because too few designs are measured to tell neighbouring numbers
+# of elements apart: chosen from the ladder, they would change with the sample.
+ELEMENTS = {"preview": 12, "standard": 28, "reference": 56}
 # Elements of FASTSIM and of solved patches, which do not interpolate between their elements.
 GRID_ELEMENTS = {"preview": 20, "standard": 40, "reference": 80}
 
 
-def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung, Rung | None]:
-    """Return the cheapest rungs for forces, peak and elements that keep a preset's errors, otherwise the finest."""
-    peak_error, force_error, element_error = PROMISES[name]
-    forces, peak, rolling = measured["forces"], measured["peak"], measured["kalker"]
+def preset_rungs(name: str, measured: Ladders) -> tuple[Rung, Rung]:
+    """Return the cheapest rungs for forces and peak that keep a preset's errors, otherwise the finest."""
+    peak_error, force_error = PROMISES[name]
+    forces, peak = measured["forces"], measured["peak"]
     return (
         _cheapest(forces, force_error, FORCE_QUANTITIES, "p99") or _finest(forces, FORCE_QUANTITIES),
         _cheapest(peak, peak_error, ("peak_stress",), "p99") or _finest(peak, ("peak_stress",)),
-        None
-        if element_error is None
-        else _cheapest(rolling, element_error, FORCE_QUANTITIES, "p95") or _finest(rolling, FORCE_QUANTITIES),
     )
 
 
 def _preset(name: str) -> Accuracy:
-    forces, peak, rolling = preset_rungs(name, ladders())
-    elements = rolling.settings["elements"] if rolling else 2 * _preset("standard").elements
-    return replace(_composed(name, PROMISES[name][0], forces, peak, elements), grid_elements=GRID_ELEMENTS[name])
+    composed = _composed(name, PROMISES[name][0], *preset_rungs(name, ladders()), ELEMENTS[name])
+    return replace(composed, grid_elements=GRID_ELEMENTS[name])
 
 
 PRESETS = {name: _preset(name) for name in ACCURACIES}

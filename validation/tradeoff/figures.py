@@ -133,7 +133,7 @@ def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quan
     """Draw rings and letters of the presets; return the ringed points."""
     ringed: list[tuple[float, float]] = []
     for name, parts in presets.items():
-        for r in (r for r in records if r["ladder"] and r["ladder"] in parts.values()):
+        for r in (r for r in records if r["ladder"] and r["ladder"] == parts.get(_part(r))):
             high = levels(r, quantity)[2]
             if (r["stage"] == "peak" and quantity not in ("peak_stress", "life")) or not 0 < high < math.inf:
                 continue
@@ -154,6 +154,11 @@ def _presets(axes: Axes, records: list[Record], presets: dict[str, Record], quan
             )
             ringed.append(place)
     return ringed
+
+
+def _part(record: Record) -> str:
+    """Return which part of a preset the setting of a record is."""
+    return {"equilibrium": "forces", "peak": "peak"}.get(record["stage"], record["model"])
 
 
 def _names(axes: Axes, points: list, letters: list[tuple[float, float]]) -> None:

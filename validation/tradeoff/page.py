@@ -11,7 +11,15 @@ from typing import Any
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.roller.accuracy import PROMISES, accuracy_settings, preset_rungs, read_ladders, rounded_up
+from trackroller.roller.accuracy import (
+    ELEMENTS,
+    GRID_ELEMENTS,
+    PROMISES,
+    accuracy_settings,
+    preset_rungs,
+    read_ladders,
+    rounded_up,
+)
 from trackroller.study.files import write_whole
 from validation.pages import Block, page_html
 from validation.tradeoff.errors import QUANTITIES
@@ -149,10 +157,10 @@ def _reached(refusal: InputError) -> str:
 def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
     measured, rows, one = read_ladders(summary["ladders"]), [], yardstick(summary["ladders"])
     for name in summary["presets"]:
-        forces, peak, rolling = preset_rungs(name, measured)
+        forces, peak = preset_rungs(name, measured)
         pairs = {"sliding": (peak, forces)}
         for model in ("fastsim", "kalker"):
-            own = [r for r in measured[model] if rolling and r.settings == rolling.settings]
+            own = [r for r in measured[model] if r.settings == summary["presets"][name][model]]
             pairs |= {model: (own[0], own[0])} if own else {}
         for model, (whole, part) in pairs.items():
             p, f, n = whole.errors["peak_stress"], part.errors["friction_force"], whole.errors["life"]
@@ -165,13 +173,9 @@ def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
                 )
             )
     promises = ". ".join(
-        f"`{name}` allows {peak:g} of the peak and {force:g} of the forces in `sliding`, "
-        + (
-            f"{rolling:g} of the forces in `fastsim` and `kalker`"
-            if rolling
-            else "with twice the elements of `standard`"
-        )
-        for name, (peak, force, rolling) in PROMISES.items()
+        f"`{name}` allows {peak:g} of the peak and {force:g} of the forces, with {ELEMENTS[name]} elements in `kalker` "
+        f"and {GRID_ELEMENTS[name]} in `fastsim`"
+        for name, (peak, force) in PROMISES.items()
     )
     heads = (
         "preset",
@@ -185,8 +189,8 @@ def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
         "life: 99 %",
     )
     words = (
-        "A preset takes the cheapest setting that keeps a tolerance in 99 % of the measured designs (95 % in `fastsim` "
-        f"and `kalker`), or the finest setting if none does. {promises}. Measured on complete cases:"
+        "In `sliding` a preset takes the cheapest setting that keeps a tolerance in 99 % of the measured designs, or "
+        f"the finest setting if none does. {promises}. Measured on complete cases, where these elements were measured:"
     )
     return [("p", words), ("table", (heads, rows))]
 

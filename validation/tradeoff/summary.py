@@ -11,7 +11,7 @@ import xarray as xr
 
 from trackroller.analysis.pareto import pareto_mask
 from trackroller.parameters import ACCURACIES
-from trackroller.roller.accuracy import FORCE_QUANTITIES, preset_rungs, read_ladders
+from trackroller.roller.accuracy import ELEMENTS, FORCE_QUANTITIES, GRID_ELEMENTS, preset_rungs, read_ladders
 from validation.tradeoff.errors import QUANTITIES, observed_order, percentiles, tolerance_bound
 from validation.tradeoff.settings import REFERENCE_ELEMENTS
 
@@ -51,16 +51,16 @@ def summary(ds: xr.Dataset) -> dict[str, Any]:
 
 
 def presets(chosen: dict[str, list[Record]]) -> dict[str, Record]:
-    """Return the settings of the rungs that each preset takes from the ladders `forces`, `peak` and `elements`."""
+    """Return the settings that each preset takes from the ladders `forces` and `peak`, and its elements by model."""
     if not all(chosen.values()):
         return {}
     measured = read_ladders(chosen)
     return {
         name: {
             part: dict(rung.settings)
-            for part, rung in zip(("forces", "peak", "elements"), preset_rungs(name, measured), strict=True)
-            if rung
+            for part, rung in zip(("forces", "peak"), preset_rungs(name, measured), strict=True)
         }
+        | {"kalker": {"elements": ELEMENTS[name]}, "fastsim": {"elements": GRID_ELEMENTS[name]}}
         for name in ACCURACIES
     }
 
