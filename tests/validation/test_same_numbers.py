@@ -10,7 +10,7 @@ import pytest
 import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS
 from validation.same_numbers.__main__ import main
-from validation.same_numbers.archive import load, save
+from validation.same_numbers.archive import load, save, text
 from validation.same_numbers.cases import record_cases
 from validation.same_numbers.compare import compare
 from validation.same_numbers.groups import Group, groups
@@ -145,3 +145,14 @@ def test_wrong_input_is_refused(files, capsys):
             main(arguments)
         assert refused.value.code == 2
     assert "nowhere.npz does not exist" in capsys.readouterr().err
+
+
+def test_version_and_date_of_a_result_are_no_difference():
+    """Two runs of one version have other dates; another attribute that changes is a problem."""
+    told = {"date_created": "today", "git_commit": "a", "solver_digest": "b", "hertz": "exact"}
+    before = {"studies/lhs/labels.json": text({"variables": {}, "global": told})}
+    later = {**told, "date_created": "tomorrow", "git_commit": "c", "solver_digest": "d"}
+    after = {"studies/lhs/labels.json": text({"variables": {}, "global": later})}
+    assert all(verdict.passed for verdict in compare(before, after))
+    other = {"studies/lhs/labels.json": text({"variables": {}, "global": {**later, "hertz": "published"}})}
+    assert not compare(before, other)[0].passed

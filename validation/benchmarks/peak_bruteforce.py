@@ -115,8 +115,8 @@ def measure(patches: int = 800, seed: int = 1, accuracy: str = "standard", slend
             {
                 "patch": int(i),
                 "body": ("roller", "guide")[k],
-                "ellipticity": rows[i, 0] / rows[i, 1],
-                "friction": rows[i, 2],
+                "ellipticity": rows[i][0] / rows[i][1],
+                "friction": rows[i][2],
                 "below": below[i, k],
                 "estimate": found.error[i, k],
                 "place": force[i, k, 1:].round(3),

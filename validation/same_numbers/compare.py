@@ -15,6 +15,8 @@ VERDICTS = {"cases": "physics", "studies": "physics", "designs": "designs", "ind
 NAMES = ("physics", "designs", "indices", "signatures")
 # Sentences may be rewritten without a change of any number.
 WORDING = ("long_name", "comment", "source", "history", "note", "treatment", "needs", "study", "reason", "refused")
+# Attributes that name the version and the date of a result.
+PROVENANCE = ("date_created", "git_commit", "physics_code", "results_version", "solver_digest", "versions")
 DECODED = ("flag_meanings", "flag_values", "flag_masks")  # the recorded words say what they say
 # Old and new names of one thing: both are read as the second name.
 RENAMED = {"kalker_table": "kalker", "nested": "inner_outer"}
@@ -187,7 +189,7 @@ def _compare_texts(key: str, old: np.ndarray, new: np.ndarray, verdict: Verdict)
     verdict.values += len(before)
     for path in sorted(before.keys() | after.keys()):
         last = path.rpartition(".")[2]
-        if last in DECODED:
+        if last in (*DECODED, *PROVENANCE):
             continue
         if path not in before:
             verdict.remarks.append(f"{key}: {path} added")
