@@ -126,7 +126,7 @@ def measure(base_samples: int = 131072, real: bool = False, keep: str = "") -> d
         found[step] = dict(zip(("seconds", "processor_seconds", "gigabytes"), numbers, strict=True))
         print(f"{step}: {numbers[0]:.1f} s", file=sys.stderr, flush=True)
     longest_plan = found["plan"]["processor_seconds"] * MAX_CASES / (8 * base_samples)
-    if longest_plan > 60 and base_samples > 10_000:
+    if longest_plan > 60 and base_samples > 100_000:
         raise SystemExit("a study of MAX_CASES takes more than a minute to plan: change MAX_CASES")
     return {"cases": 8 * base_samples, "steps": found, "seconds_to_plan_the_largest_study": longest_plan}
 
