@@ -18,7 +18,7 @@ from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Patches, lengt
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
-ROUGH = 48  # elements along each axis; the first climbs search the stresses under these coarse tractions
+ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
 
 

@@ -58,7 +58,7 @@ class Patches:
 
     def stress(self, of: np.ndarray, body: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray):
         """Return the von Mises stress (m,) in `body` of patches `of` at normalised points u (m, 3), on all threads."""
-        out, nu, signs = np.empty(len(u)), self.poisson_ratio[of, body], 1.0 - 2.0 * body
+        out, nu, signs = np.empty(len(u)), self.poisson_ratio[of, body], np.take(FRICTION_SIGNS, body)
 
         def work(first: int, last: int) -> None:
             some = slice(first, last)

@@ -146,7 +146,7 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     columns = [[factor_cell(n, v) for v in values] for n, values in zip(names, cells, strict=True)]
     rows: list[list[Any]] = [list(row) for row in zip(front["row"].values[shown].tolist(), *columns, strict=True)]
     kind = str(front.attrs.get("kind", "design"))
-    heads = [capital(kind), *(_heading(front, n) + arrows.get(n, "") for n in names)]
+    heads = [capital(kind), *(heading(front, n) + arrows.get(n, "") for n in names)]
     if kind == "design":
         heads = ["Case", *heads[1:], "Model"]
         rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
@@ -159,7 +159,8 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
 
 
-def _heading(front: xr.Dataset, name: str) -> str:
+def heading(front: xr.Dataset, name: str) -> str:
+    """Return the words and the unit of a goal or factor of a Pareto set, as the head of a column."""
     units = str(front[name].attrs.get("units", "")) or (PARAMETERS[name].unit if name in PARAMETERS else "")
     text = capital(choices.goal_words(front, name))
     return with_unit(text, units) if units and units not in ("1", "-") else text

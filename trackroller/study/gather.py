@@ -75,10 +75,13 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
     headers = [found.headers[i] for i in numbers[np.argsort(first)]]
     grid = study.drawn.factors if study.drawn.method == "grid" else {}
     sizes = dict(zip(grid, study.drawn.meta["shape"], strict=True)) if grid else {"case": len(cases)}
+    layout = store.merged_layout(header.layout for header in headers)
+    why = {case.encode(): reason for case, reason in found.reasons.items()}
+    reasons = np.array([why.get(case, "") for case in cases.tolist()], dtype=object)
 
     def save(beside: Path) -> None:
         with tempfile.TemporaryFile(dir=folder.root) as scratch:
-            results = _results(scratch, sizes, found, cases, headers)
+            results = _results(_collect(scratch, layout, found, place), layout, sizes, reasons)
             coords = _labels(study, design, sizes, grid)
             for header in headers:
                 for name, entry in header.coords.items():
@@ -106,17 +109,14 @@ def _attributes(study: Study, design: xr.Dataset, headers: list[store.Block]) ->
 
 
 def _results(
-    scratch: Any, sizes: dict[str, int], found: Inventory, cases: np.ndarray, headers: list[store.Block]
+    values: np.ndarray, layout: dict[str, store.Layout], sizes: dict[str, int], reasons: np.ndarray
 ) -> Variables:
-    """Return the results of cases, and the reasons of the failed ones."""
-    layout = store.merged_layout(header.layout for header in headers)
-    values = _collect(scratch, layout, found, found.find(cases))
+    """Return the results of the cases, shape (columns, n), as variables, and the reasons of the failed ones."""
     variables, start = {}, 0
     for name, entry in layout.items():
         part = values[start : start + entry.size].T.reshape(*sizes.values(), *entry.shape)
         variables[name] = _variable((*sizes, *entry.dims), part.astype(entry.dtype, copy=False), entry.attrs)
         start += entry.size
-    reasons = np.array([found.reasons.get(case.decode(), "") for case in cases], dtype=object)
     attrs = {"long_name": "why a case failed or misses its tolerance"}
     return variables | {"reason": _variable(tuple(sizes), reasons.reshape(*sizes.values()), attrs)}
 

@@ -66,12 +66,13 @@ def run_study(
     before = _text(study.path)
     with contextlib.ExitStack() as stack:
         plan = stack.enter_context(working_plan(study, results, tell=tell, rerun_failed=rerun_failed))
+        left = plan.open
         if started is not None:
-            started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in plan.open))
+            started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in left))
         executor: Executor = functools.partial(solve_here, solver=solver)
-        if scheduler is not None and plan.open:
+        if scheduler is not None and left:
             executor = stack.enter_context(workers(scheduler))
-        for name in plan.open:
+        for name in left:
             tell(solve_chunk(plan.folder, name, study.materials, executor=executor, tell=tell, progress=progress))
         gather(plan, tell=tell)
     if _text(study.path) != before:

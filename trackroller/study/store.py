@@ -157,8 +157,8 @@ def aligned(block: Block, layout: Mapping[str, Layout]) -> np.ndarray:
     """Return the values of a block in the columns of another layout, shape (n, columns)."""
     if list(block.layout) == list(layout):
         return block.values
-    missing = {name: np.full((len(block.cases), entry.size), entry.missing) for name, entry in layout.items()}
-    return np.hstack([block.columns(name) if name in block.layout else missing[name] for name in layout])
+    absent = {k: np.full((len(block.cases), v.size), v.missing) for k, v in layout.items() if k not in block.layout}
+    return np.hstack([absent[name] if name in absent else block.columns(name) for name in layout])
 
 
 def concatenate(blocks: list[Block]) -> Block:

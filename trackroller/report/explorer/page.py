@@ -17,14 +17,15 @@ import xarray as xr
 
 from trackroller.analysis.pareto import default_objectives, study_pareto
 from trackroller.errors import InputError
-from trackroller.parameters import EXACTNESS, PARAMETERS
+from trackroller.parameters import EXACTNESS
 from trackroller.report.columns import study_dims
+from trackroller.report.decisions import heading
 from trackroller.report.explorer.inputs import solve_inputs, strengths
 from trackroller.report.explorer.pack import pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
-from trackroller.report.numbers import capital, count, long_name, unit_text, with_unit
+from trackroller.report.numbers import count
 from trackroller.report.view import StudyView
 from trackroller.study.files import StudyFolder, write_text
 from trackroller.study.goals import statistic
@@ -122,7 +123,7 @@ def design_points(ds: xr.Dataset, sens: xr.Dataset | None) -> dict[str, Any] | N
         return {"goals": goals, "labels": {}}
     factors = [name for name in front.attrs["factors"].split(", ") if name]
     names = dict.fromkeys([*factors, *goals])
-    labels = {name: _heading(front[name], name) for name in names}
+    labels = {name: heading(front, name) for name in names}
     values = {name: [plain_level(value) for value in front[name].values.tolist()] for name in names}
     return {"goals": goals, "factors": factors, "labels": labels, "values": values}
 
@@ -163,12 +164,6 @@ def secured(page: str) -> str:
         told = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(t.encode()).digest()).decode()}'" for t in found)
         policy.append(f"{kind}-src {told or chr(39) + 'none' + chr(39)}")
     return page.replace(POLICY, "; ".join(policy), 1)
-
-
-def _heading(column: xr.DataArray, name: str) -> str:
-    words, unit = str(column.attrs.get("long_name") or long_name(name)), str(column.attrs.get("units", ""))
-    unit = unit_text(unit or PARAMETERS[name].unit if name in PARAMETERS else unit)
-    return with_unit(capital(words), unit) if unit not in ("", "1", "-", "–") else capital(words)
 
 
 def _analysis(study_nc: Path) -> xr.Dataset | None:

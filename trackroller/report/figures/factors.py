@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from trackroller.report.claims import classes, explained, leading_factor
+from trackroller.report.claims import classes, explained
 from trackroller.report.effects import effect_of
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import capped, class_words, groups_of, legend, mark_unlimited
@@ -49,17 +49,18 @@ def by_factor(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     columns = min(3, len(names))
     figure = style.new_figure(26 + 50 * -(-len(names) // columns))
     first, groups = None, groups_of(view, lead, rows)
+    series = {name: _series(view, name, rows, groups, lead) for name in names}
     for i, name in enumerate(names):
         axes = figure.add_subplot(-(-len(names) // columns), columns, i + 1, sharey=first)
         first = first or axes
-        _panel(axes, view, name, rows, values, _series(view, name, rows, groups, lead))
+        _panel(axes, view, name, rows, values, series[name])
         axes.tick_params(labelleft=i % columns == 0)
         mark_unlimited(axes, top)
     if first is not None and "life" in words:
         first.set_yscale("log")
         style.log_ticks(first.yaxis, *first.get_ylim())
     figure.supylabel(with_unit(capital(words), unit), fontsize=7.5)
-    apart = any(len(_series(view, name, rows, groups, lead)) > 1 for name in names)
+    apart = any(len(drawn) > 1 for drawn in series.values())
     if apart:
         looks = [{"color": c, "marker": m} for c, m in zip(style.palette(len(groups)), style.MARKERS, strict=False)]
         legend(figure, [(text, look) for (text, _), look in zip(groups, looks, strict=True)])
@@ -81,9 +82,9 @@ def shown_output(view: StudyView) -> tuple[str, str, str] | None:
 
 def _lead(view: StudyView, column: str, rows: np.ndarray) -> str:
     """Return the factor to colour by: the deciding factor, or a category that matters, which must not be pooled."""
-    lead = leading_factor(view, column, rows) or view.factors[0]
-    share = explained(view, column, rows, view.categories)
-    category = max(share, key=lambda name: share[name], default=lead)
+    share = explained(view, column, rows, view.factors)
+    lead = max(share, key=lambda name: share[name], default=view.factors[0])
+    category = max((name for name in view.categories if name in share), key=lambda name: share[name], default=lead)
     return category if view.ordered(lead) and share.get(category, 0.0) > MATTERS else lead
 
 
