@@ -100,7 +100,7 @@ def _design(kind: str, rng: np.random.Generator) -> tuple[dict[str, np.ndarray],
 
 
 def _results(columns: dict[str, np.ndarray], n: int, rng: np.random.Generator) -> dict:
-    """Return the variables over rows: name -> (dims after the case, values)."""
+    """Return made-up results of n cases by name: the dimensions after `case`, and the values."""
     codes = {name: np.unique(v, return_inverse=True)[1] for name, v in columns.items()}
     unit = {name: code / max(code.max(), 1) for name, code in codes.items()}
     name = list(codes)[int(rng.integers(len(codes)))]

@@ -58,7 +58,7 @@ UNITS = {
 
 
 def results(columns: dict[str, np.ndarray], unlimited: bool = False) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
-    """Return the variables over rows of cases: name -> (dims after `case`, values)."""
+    """Return made-up results of cases by name: the dimensions after `case`, and the values."""
     n = len(next(iter(columns.values())))
     get = {k: np.broadcast_to(columns.get(k, v), (n,)) for k, v in {**BASE, "material_pair": PAIRS[0]}.items()}
     alpha = np.deg2rad(get["contact_angle"].astype(float))

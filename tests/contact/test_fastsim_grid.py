@@ -137,7 +137,7 @@ def test_slivers_and_nothing_at_all():
 
 
 def worn_points():
-    """Return the profile of a groove worn hollow at the nominal contact, which carries in two patches."""
+    """Return the points of a worn groove. It is hollow at the nominal contact, so that it touches in two patches."""
     x = np.linspace(-2, 2, 201)
     return [[float(u), float(-u * u / 14 + 0.002 * math.exp(-((u / 0.12) ** 2)))] for u in x]
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from trackroller.study.design.factors import Factor
 
 
-GROUPED = ("grid", "saltelli")  # designs with indices of groups
-CONDITIONAL = ("grid", "saltelli", "lhs", "sobol", "table")  # designs with indices within the levels of a category
+GROUPED = ("grid", "saltelli")  # designs that give indices of groups of factors
+CONDITIONAL = ("grid", "saltelli", "lhs", "sobol", "table")  # designs that give indices at each level of a category
 MOST_LEVELS = 12
 
 

@@ -25,7 +25,7 @@ Executor = Callable[[CaseList, Any], Iterator[store.Block]]  # solves the cases 
 
 
 def solve_cases(cases: CaseList, database: Any, solver: Solver | None = None) -> store.Block:
-    """Solve all cases of a list.
+    """Solve the cases of a list and return their results as one block.
 
     If the solver raises, the list is halved until the responsible case is alone. That case becomes a row with
     regime failed and the exception as its reason.

@@ -64,7 +64,7 @@ def main() -> None:
     found = measure(rows)
     filtered, drawn = found["brushes"].T
     print(f"{rows:,} rows, page of {found['size']:.1f} MB")
-    print(f"open: {found['opened']:.2f} s by the page's clock, {found['wall']:.2f} s with a new tab")
+    print(f"open: {found['opened']:.2f} s measured in the page, {found['wall']:.2f} s with the opening of a tab")
     for words, values in (("counted and filtered", filtered), ("and drawn", drawn)):
         print(f"a brush {words}, wall: median {np.median(values):.0f} ms, largest {values.max():.0f} ms")
     print(f"a brush, processor time of the page: mean {found['work']:.0f} ms")

@@ -1,4 +1,4 @@
-"""Von Mises stress in the two planes through the peak and on the surface, for both bodies of a contact.
+"""Draw the von Mises stress of both bodies of a contact: in two planes through the peak, and on the surface.
 
 The roller stands above the guide as in the drawing of the README: x lateral, y in the rolling direction, z into each
 body.
