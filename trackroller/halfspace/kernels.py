@@ -70,44 +70,20 @@ def point_kernel(x, y, z):
     t46 = t0 * t45 * (t32 + t44)
     t47 = t16 * y
     t48 = t34 * t47
-    return (
-        t18 * (t10 + t14),
-        t18 * (t19 + t21),
-        t25,
-        t28 * (t13 + t27 - 4.0 * t4),
-        t31,
-        t22 * t33 * (t12 * t4 + t32),
-        t28 * (t14 + t27),
-        t28 * (t19 + t34),
-        t35,
-        -t10 * t18,
-        -t1 * t29,
-        t31,
+    load_x = t18 * (t10 + t14), t18 * (t19 + t21), t25, t28 * (t13 + t27 - 4.0 * t4), t31, t22 * t33 * (t12 * t4 + t32)
+    load_y = t28 * (t14 + t27), t28 * (t19 + t34), t35, -t10 * t18, -t1 * t29, t31
+    load_z = (
         t17 * (iS - t11 * z + t2 * t36 - t37 - t38 + t39),
         t17 * (-t39 + t40),
         -t23 * t36,
         0.5 * t42 * (t0 - 3.0 * t33 + t41),
         t35,
         t25,
-        t46,
-        -t21 * t45,
-        0.0,
-        t48,
-        0.0,
-        0.0,
-        t0 * t47 * (t44 + t5 - 3.0),
-        -t48,
-        0.0,
-        -t46,
-        0.0,
-        0.0,
-        t15 * t41 * (t32 + t43),
-        -t16 * t40,
-        0.0,
-        -iS * t42 * (iR + iS),
-        0.0,
-        0.0,
     )
+    nu_x = t46, -t21 * t45, 0.0, t48, 0.0, 0.0
+    nu_y = t0 * t47 * (t44 + t5 - 3.0), -t48, 0.0, -t46, 0.0, 0.0
+    nu_z = t15 * t41 * (t32 + t43), -t16 * t40, 0.0, -iS * t42 * (iR + iS), 0.0, 0.0
+    return load_x + load_y + load_z + nu_x + nu_y + nu_z
 
 
 @numba.njit(cache=True, error_model="numpy", inline="never")
@@ -152,44 +128,13 @@ def uniform_corner(x, y, z):
     t21 = Ay - t20
     t22 = t1 * t6
     t23 = t10 * t6
-    return (
-        t7 * (2.0 * Ly + t0 + t2 - t5),
-        -t8 * y,
-        t9,
-        t7 * (Lx + t10 - t11),
-        t13,
-        -t7 * (Ay + t16),
-        -t8 * x,
-        t7 * (2.0 * Lx + t11 + t17 - t18),
-        t19,
-        t7 * (Ly - t0 + t1),
-        -t7 * (Ax + t21),
-        t13,
-        -t16 * t7,
-        -t21 * t7,
-        -t7 * (Ax + Ay + t15 + t20),
-        -t7 * (Lz + t12),
-        t19,
-        t9,
-        t22,
-        t6 * (Ly + t2),
-        0.0,
-        -t23,
-        0.0,
-        0.0,
-        t6 * (Lx + t17),
-        t23,
-        0.0,
-        -t22,
-        0.0,
-        0.0,
-        -Ay * t6,
-        -Ax * t6,
-        0.0,
-        Lz * t6,
-        0.0,
-        0.0,
-    )
+    load_x = t7 * (2.0 * Ly + t0 + t2 - t5), -t8 * y, t9, t7 * (Lx + t10 - t11), t13, -t7 * (Ay + t16)
+    load_y = -t8 * x, t7 * (2.0 * Lx + t11 + t17 - t18), t19, t7 * (Ly - t0 + t1), -t7 * (Ax + t21), t13
+    load_z = -t16 * t7, -t21 * t7, -t7 * (Ax + Ay + t15 + t20), -t7 * (Lz + t12), t19, t9
+    nu_x = t22, t6 * (Ly + t2), 0.0, -t23, 0.0, 0.0
+    nu_y = t6 * (Lx + t17), t23, 0.0, -t22, 0.0, 0.0
+    nu_z = -Ay * t6, -Ax * t6, 0.0, Lz * t6, 0.0, 0.0
+    return load_x + load_y + load_z + nu_x + nu_y + nu_z
 
 
 @numba.njit(cache=True, error_model="numpy", inline="never")
@@ -272,37 +217,33 @@ def bilinear_corner(x, y, z):
     t62 = t17 * (t15 - t4 + 2.0 * t6)
     t63 = t17 * (-t24 + 2.0 * t29 + t47)
     t64 = -t40
-    return (
+    load_x = (
         -t17 * (-2.0 * t1 + t15 + 3.0 * t3 + t7),
         -t20 * (t19 + t5),
         t21,
         -t17 * (t23 + 0.5 * t24 - 0.5 * t26 + 1.5 * t27 + t29 + t34),
         t35,
         -t17 * (t36 + t39 + t44),
+    )
+    load_y = (
         -t20 * (t28 + t45),
         -t17 * (3.0 * t31 - 2.0 * t33 + t46 + t47),
         t48,
         -t17 * (-0.5 * t11 + t14 + 0.5 * t4 + t49 + t6 + 1.5 * t9),
         -t17 * (t38 + t44 + t50),
         t35,
+    )
+    load_z = (
         -t17 * (t39 + t41 + t51 - t53 + t55),
         -t17 * (t42 + t50 + t51 + t53 - t55),
         -t17 * (t40 + t43),
         -t17 * (0.5 * t56 + 0.5 * t57 - 1.5 * t58 - 1.5 * t59 + t60 + t61),
         t48,
         t21,
-        -t62,
-        -t16 * (t49 + t7),
-        0.0,
-        t63,
-        0.0,
-        0.0,
-        -t16 * (t34 + t46),
-        -t63,
-        0.0,
-        t62,
-        0.0,
-        0.0,
+    )
+    nu_x = -t62, -t16 * (t49 + t7), 0.0, t63, 0.0, 0.0
+    nu_y = -t16 * (t34 + t46), -t63, 0.0, t62, 0.0, 0.0
+    nu_z = (
         -t17 * (2.0 * t42 + t50 + t52 - t54 + t64),
         -t17 * (t39 + 2.0 * t41 - t52 + t54 + t64),
         0.0,
@@ -310,3 +251,4 @@ def bilinear_corner(x, y, z):
         0.0,
         0.0,
     )
+    return load_x + load_y + load_z + nu_x + nu_y + nu_z

@@ -42,6 +42,7 @@ _CORNER = """    P = x2 + z2
     Ax = atan2(t, x2 * R + y2 * z)
     Ay = atan2(t, y2 * R + x2 * z)
 """
+_ROWS = ("load_x", "load_y", "load_z", "nu_x", "nu_y", "nu_z")  # six components for each load, A and then B
 _TITLES = {
     "point_kernel": "Return the stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
     "uniform_corner": "Return the corner function of uniform tractions: d2/dxdy gives `point_kernel` [1].",
@@ -65,12 +66,13 @@ def function_source(name: str) -> str:
     shared, reduced = sp.cse(expressions, symbols=sp.numbered_symbols("t"), optimizations="basic", order="canonical")
     printer = sp.printing.pycode
     lines = "".join(f"    {symbol} = {printer(value.evalf(17))}\n" for symbol, value in shared)
-    values = ",\n        ".join(printer(sp.Float(e) if e.is_number else e.evalf(17)) for e in reduced)
-    prelude = _without_unused(_COMMON + ("" if name == "point_kernel" else _CORNER), lines + values)
+    values = [printer(sp.Float(e) if e.is_number else e.evalf(17)) for e in reduced]
+    rows = "".join(f"    {row} = {', '.join(values[6 * k : 6 * k + 6])}\n" for k, row in enumerate(_ROWS))
+    prelude = _without_unused(_COMMON + ("" if name == "point_kernel" else _CORNER), lines + rows)
     return (
         '\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\n'
-        f'def {name}(x, y, z):\n    """{_TITLES[name]}"""\n{prelude}{lines}'
-        f"    return (\n        {values},\n    )\n"
+        f'def {name}(x, y, z):\n    """{_TITLES[name]}"""\n{prelude}{lines}{rows}'
+        f"    return {' + '.join(_ROWS)}\n"
     )
 
 
