@@ -144,6 +144,11 @@ class Resultants(_Rows):
     driving_force: np.ndarray
     spin_moment: np.ndarray
 
+    @classmethod
+    def unknown(cls, n: int) -> Resultants:
+        """Return the resultants of n patches as NaN."""
+        return cls(*(np.full(n, np.nan) for _ in dataclasses.fields(cls)))
+
     def replaced(self, rows: np.ndarray, other: Resultants) -> Resultants:
         """Return a copy in which the patches `rows` have the resultants of `other`."""
         parts = [np.array(getattr(self, field.name)) for field in dataclasses.fields(self)]

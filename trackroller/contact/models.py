@@ -6,7 +6,7 @@ A model gives the contact law of the equilibrium, and the tractions of given pat
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 
 import numpy as np
 
@@ -16,10 +16,12 @@ from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.linear import LARGEST_RATIO
+from trackroller.contact.normal.models import GridFastsimModel, GridKalkerModel, GridSlidingModel
+from trackroller.contact.normal.patches import Patches
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Accuracy
+from trackroller.contact.settings import Accuracy, Rolling
 from trackroller.contact.table.model import TableModel
-from trackroller.errors import unknown_name
+from trackroller.errors import check_names
 
 # Residual of the friction law over mu p_max where elements correct the table, and where they give tractions only
 CORRECTION_TOLERANCE, TRACTION_TOLERANCE = 1e-4, 1e-3
@@ -35,20 +37,14 @@ class SlidingModel(ContactModel):
     difference_step = 1e-5
     residual = 1e-10
 
-    def __init__(self, settings: Accuracy, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray) -> None:
-        self.settings, self.spin_model = settings, spin_model
-        self.friction_law, self.travel = law, travel_speed
-        self.full_sliding = law.is_constant
+    def __init__(self, given: Rolling, settings: Accuracy) -> None:
+        self.given, self.settings = given, settings
+        self.full_sliding = given.law.is_constant
 
     def _integrals(self, ellipse, slip, friction, rows, nodes: int) -> sliding.Integrals:
+        g, travel = self.given, self.given.travel_speed[rows]
         return sliding.integrals(
-            ellipse,
-            slip,
-            friction,
-            spin_model=self.spin_model,
-            nodes=nodes,
-            law=self.friction_law,
-            travel_speed=self.travel[rows],
+            ellipse, slip, friction, spin_model=g.spin_model, nodes=nodes, law=g.law, travel_speed=travel
         )
 
     def law(self, ellipse, slip, friction, rows, fine):
@@ -56,15 +52,12 @@ class SlidingModel(ContactModel):
         return self._integrals(ellipse, slip, friction, rows, nodes).resultants
 
     def surface(self, ellipse, slip, friction, rows):
-        constant_law = self.friction_law.is_constant
+        g, travel, points = self.given, self.given.travel_speed[rows], self.settings.traction_points
+        if self.full_sliding:
+            return sliding.tractions(ellipse, slip, friction, spin_model=g.spin_model, points=points)
+        points = FINER * self.settings.on_grids
         return sliding.tractions(
-            ellipse,
-            slip,
-            friction,
-            spin_model=self.spin_model,
-            points=self.settings.traction_points if constant_law else FINER * self.settings.on_grids,
-            law=None if constant_law else self.friction_law,
-            travel_speed=self.travel[rows],
+            ellipse, slip, friction, spin_model=g.spin_model, points=points, law=g.law, travel_speed=travel
         )
 
     def power(self, ellipse, slip, friction, rows):
@@ -77,18 +70,11 @@ class KalkerModel(ContactModel):
 
     name = "kalker"
 
-    def __init__(
-        self,
-        settings: Accuracy,
-        elastic: Elastic,
-        law: FrictionLaw,
-        travel_speed: np.ndarray,
-        profile_slip: bool = False,
-        trusts_table: bool = False,
-    ) -> None:
+    def __init__(self, given: Rolling, settings: Accuracy, trusts_table: bool = False) -> None:
+        law, elastic = given.law, given.elastic
         elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
-        chosen = kalker.KalkerSettings(elements=elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
-        self._law = KalkerLaw(elastic, chosen, travel_speed)
+        chosen = kalker.KalkerSettings(elements=elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip)
+        self._law = KalkerLaw(elastic, chosen, given.travel_speed)
         if law.is_constant:  # the table behind the corrections holds constant friction only
             tolerance = TRACTION_TOLERANCE if trusts_table else CORRECTION_TOLERANCE
             rough = dataclasses.replace(chosen, tolerance=tolerance)
@@ -124,40 +110,21 @@ class FastsimModel(ContactModel):
 
     name = "fastsim"
 
-    def __init__(
-        self,
-        settings: Accuracy,
-        elastic: Elastic,
-        law: FrictionLaw,
-        travel_speed: np.ndarray,
-        profile_slip: bool = False,
-    ) -> None:
-        self.elastic, self.travel = elastic, travel_speed
-        n = settings.on_grids  # strips and steps in the proportion of the default settings
-        self.settings = fastsim.FastsimSettings(
-            strips=4 * n // 5, steps=6 * n // 5, points=n, law=law, profile_slip=profile_slip
-        )
+    def __init__(self, given: Rolling, settings: Accuracy) -> None:
+        self.given, n = given, settings.on_grids  # strips and steps in the proportion of the default settings
+        self.settings = fastsim.FastsimSettings(4 * n // 5, 6 * n // 5, n, given.law, given.profile_slip)
 
     def _solution(self, ellipse, slip, friction, rows) -> tuple[fastsim.FastsimSolution, np.ndarray]:
         """Return the solution of the patches that are not too slender, and their numbers."""
         a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
         known = np.flatnonzero(np.maximum(a, b) <= MOST_SLENDER * np.minimum(a, b))
-        part = slip.take(known)
-        solution = fastsim.solve_patch(
-            ellipse.take(known),
-            kalker.Creepage.of_slip(part, self.settings.profile_slip),
-            friction[known],
-            self.elastic.take(rows[known]),
-            self.settings,
-            self.travel[rows[known]],
-        )
-        return solution, known
+        creep = kalker.Creepage.of_slip(slip.take(known), self.settings.profile_slip)
+        elastic, travel = self.given.elastic.take(rows[known]), self.given.travel_speed[rows[known]]
+        return fastsim.solve_patch(ellipse.take(known), creep, friction[known], elastic, self.settings, travel), known
 
     def law(self, ellipse, slip, friction, rows, fine):
         solution, known = self._solution(ellipse, slip, friction, rows)
-        r = solution.resultants
-        parts = (r.lateral_force, r.driving_force, r.spin_moment)
-        return Resultants(*(_spread(part, known, len(rows)) for part in parts))
+        return Resultants.unknown(len(rows)).replaced(known, solution.resultants)
 
     def surface(self, ellipse, slip, friction, rows):
         # patches too slender for the theory occur in full slip only, which needs no more of it than grid and pressure
@@ -165,7 +132,8 @@ class FastsimModel(ContactModel):
         known = np.maximum(a, b) <= MOST_SLENDER * np.minimum(a, b)
         near = np.where(known, a, np.clip(a, b / MOST_SLENDER, b * MOST_SLENDER))
         rounder = dataclasses.replace(ellipse, semi_axis_lateral=near)
-        t = fastsim.tractions(rounder, slip, friction, self.elastic.take(rows), self.settings, self.travel[rows])
+        elastic, travel = self.given.elastic.take(rows), self.given.travel_speed[rows]
+        t = fastsim.tractions(rounder, slip, friction, elastic, self.settings, travel)
         wrong = ~known[:, None, None]
         fields = {
             name: np.where(wrong, np.nan, getattr(t, name))
@@ -176,14 +144,18 @@ class FastsimModel(ContactModel):
 
     def power(self, ellipse, slip, friction, rows):
         solution, known = self._solution(ellipse, slip, friction, rows)
-        return Works.of_friction(_spread(solution.friction_energy_per_distance, known, len(rows)))
+        work = np.full(len(rows), np.nan)
+        work[known] = solution.friction_energy_per_distance
+        return Works.of_friction(work)
 
 
-def _spread(values: np.ndarray, places: np.ndarray, n: int) -> np.ndarray:
-    """Return n numbers, `values` at `places` and NaN elsewhere."""
-    full = np.full(n, np.nan)
-    full[places] = values
-    return full
+# by name: on Hertz's ellipses, and on solved patches
+MODELS: dict[str, tuple[Callable[..., ContactModel], Callable[..., ContactModel] | None]] = {
+    "sliding": (SlidingModel, GridSlidingModel),
+    "fastsim": (FastsimModel, GridFastsimModel),
+    "kalker": (KalkerModel, GridKalkerModel),
+    "kalker_table": (lambda given, settings: TableModel(given.elastic, KalkerModel(given, settings, True)), None),
+}
 
 
 def contact_model(
@@ -194,13 +166,15 @@ def contact_model(
     law: FrictionLaw | None = None,
     travel_speed: np.ndarray | float = 1000.0,
     slip_terms: Collection[str] = (),
+    patches: Patches | None = None,
 ) -> ContactModel:
-    """Return the contact model `name` for n rollers with elliptical patches.
+    """Return the contact model `name` for n rollers.
 
     Parameters
     ----------
     name : str
-        'sliding', 'fastsim', 'kalker' or 'kalker_table'. The table serves constant friction and the guide's tangent.
+        'sliding', 'fastsim', 'kalker' or 'kalker_table'. The table serves constant friction, the guide's tangent and
+        elliptical patches only.
     settings : Accuracy
         Discretisation.
     elastic : Elastic
@@ -214,6 +188,8 @@ def contact_model(
     slip_terms : collection of str
         With 'profile' the rigid slip follows the guide's profile instead of its tangent; 'sliding' always does.
         'curve' changes the slip that a model is given, see `common.Slip`.
+    patches : Patches, optional
+        Solver of the normal problem of the rollers; Hertz's ellipses if not given.
 
     Returns
     -------
@@ -225,17 +201,11 @@ def contact_model(
     InputError
         For an unknown name.
     """
-    law, profile = law or constant(), "profile" in slip_terms
+    check_names("contact_model", [name], [known for known, made in MODELS.items() if patches is None or made[1]])
     travel = np.array(np.broadcast_to(np.asarray(travel_speed, float), np.shape(elastic.shear_modulus)))
-    if name == "sliding":
-        return SlidingModel(settings, spin_model, law, travel)
-    if name == "fastsim":
-        return FastsimModel(settings, elastic, law, travel, profile)
-    if name == "kalker":
-        return KalkerModel(settings, elastic, law, travel, profile)
-    if name == "kalker_table":
-        return TableModel(elastic, KalkerModel(settings, elastic, law, travel, trusts_table=True))
-    raise unknown_name("contact_model", name, ("sliding", "fastsim", "kalker", "kalker_table"))
+    given = Rolling(elastic, law or constant(), travel, spin_model, "profile" in slip_terms)
+    elliptical, solved = MODELS[name]
+    return elliptical(given, settings) if patches is None or solved is None else solved(given, patches)
 
 
 def traction_share(surface: SurfaceTractions, friction: np.ndarray) -> np.ndarray:

@@ -1,10 +1,39 @@
-"""Settings that one accuracy gives to each stage of a solution."""
+"""Settings that one accuracy gives to each stage of a solution, and what a contact model knows of its rollers."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from trackroller.contact.common import Elastic
+from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.halfspace.peak import PeakSettings
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """What a contact model knows of n rollers beside their patches.
+
+    Parameters
+    ----------
+    elastic : Elastic
+        Combined constants, arrays (n,).
+    law : FrictionLaw
+        Friction as a function of the slip speed.
+    travel_speed : numpy.ndarray, shape (n,)
+        Travel speed [mm/s].
+    spin_model : str
+        'concentric', 'edge' or 'skewed', for sliding only.
+    profile_slip : bool
+        True if the rigid slip follows the profile of the guide instead of its tangent; sliding always does so.
+    """
+
+    elastic: Elastic
+    law: FrictionLaw
+    travel_speed: np.ndarray
+    spin_model: str = "skewed"
+    profile_slip: bool = False
 
 
 @dataclass(frozen=True)

@@ -107,6 +107,11 @@ class Found:
         factor = np.ones((n, 1, 1) if law.is_constant else (n, ny, nx))
         return cls(traction, np.empty_like(traction), np.zeros((n, ny, nx), bool), factor, Report.empty(n))
 
+    @property
+    def own_slip(self) -> np.ndarray:
+        """Return the slip that an element's unit traction causes at itself, (n,)."""
+        return self.report.own_slip
+
 
 class _Fields(NamedTuple):
     """Fields of one patch: traction, slip, rigid slip and rigid slip with that of the pressures, (ny, nx, 2)."""

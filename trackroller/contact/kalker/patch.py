@@ -75,9 +75,8 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
 
 
 def _fields(ellipse: Ellipse | GridPatch, found: batch.Found | PatchSolution) -> subgrid.Fields:
-    own_slip = found.report.own_slip if isinstance(found, batch.Found) else found.own_slip
     height, _ = cells(ellipse, found.traction.shape[-1])
-    return subgrid.Fields(height, found.traction, found.slip, own_slip, found.factor)
+    return subgrid.Fields(height, found.traction, found.slip, found.own_slip, found.factor)
 
 
 def shares(ellipse: Ellipse | GridPatch, solution: PatchSolution) -> tuple[np.ndarray, np.ndarray]:

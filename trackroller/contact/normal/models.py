@@ -12,25 +12,24 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import kalker
-from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.fastsim import FastsimSettings
 from trackroller.contact.fastsim import grid as fastsim_grid
-from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import sliding as normal_sliding
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.contact.protocol import ContactModel, Patch
-from trackroller.errors import InputError
+from trackroller.contact.settings import Rolling
 
 ROUNDS = 3  # solutions of the normal and of the tangential problem in turn, on unlike materials
 
 
 def _known(resultants: Resultants, patch: GridPatch) -> Resultants:
     """Replace the resultants of patches that do not exist by NaN."""
-    parts = (resultants.lateral_force, resultants.driving_force, resultants.spin_moment)
-    return Resultants(*(np.where(np.isfinite(patch.normal_force), part, np.nan) for part in parts))
+    missing = np.flatnonzero(~np.isfinite(patch.normal_force))
+    return resultants.replaced(missing, Resultants.unknown(missing.size))
 
 
 class GridModel(ContactModel):
@@ -38,16 +37,16 @@ class GridModel(ContactModel):
 
     Parameters
     ----------
+    given : Rolling
+        Elastic constants, friction law and travel speed of the rollers.
     patches : Patches
         Solver of the normal problem of the rollers.
-    profile_slip : bool
-        True if the rigid slip follows the profile of the guide instead of its tangent.
     """
 
     refines = True
 
-    def __init__(self, patches: Patches, profile_slip: bool = False) -> None:
-        self.patches, self._profile_slip = patches, profile_slip
+    def __init__(self, given: Rolling, patches: Patches) -> None:
+        self.given, self.patches = given, patches
         self._found: dict[tuple[int, int], tuple[float, bool]] = {}
 
     def patch(self, patch: Patch, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
@@ -75,7 +74,7 @@ class GridModel(ContactModel):
 
     def _drawn(self, slip: Slip, rows: np.ndarray) -> Slip:
         """Return the slip on the drawn contour of the guide if the profile counts in the slip."""
-        if not self._profile_slip:
+        if not self.given.profile_slip:
             return slip
         contour = np.full(len(rows), None)
         contour[:] = [self.patches.contour(row, sine) for row, sine in zip(rows.tolist(), slip.sine, strict=True)]
@@ -98,19 +97,14 @@ class GridSlidingModel(GridModel):
     name = "sliding"
     residual = 1e-9  # the normal problem gives the same patch for the same load, so that smaller residuals are reached
 
-    def __init__(self, patches: Patches, spin_model: str, law: FrictionLaw, travel_speed: np.ndarray) -> None:
-        super().__init__(patches)
-        self.spin_model, self.friction_law, self.travel = spin_model, law, travel_speed
-
     def _solved(self, patch, slip, friction, rows) -> normal_sliding.SlidingPatches:
-        return normal_sliding.solve_sliding(
-            patch, slip, friction, self.spin_model, self.friction_law, self.travel[rows]
-        )
+        g = self.given
+        return normal_sliding.solve_sliding(patch, slip, friction, g.spin_model, g.law, g.travel_speed[rows])
 
     def surface(self, patch, slip, friction, rows) -> SurfaceTractions:
         """Return the tractions on the grid of elements."""
-        grid = self.patch(patch, slip, rows)
-        return normal_sliding.tractions(grid, slip, friction, self.spin_model, self.friction_law, self.travel[rows])
+        grid, g = self.patch(patch, slip, rows), self.given
+        return normal_sliding.tractions(grid, slip, friction, g.spin_model, g.law, g.travel_speed[rows])
 
 
 class GridFastsimModel(GridModel):
@@ -118,16 +112,14 @@ class GridFastsimModel(GridModel):
 
     name = "fastsim"
 
-    def __init__(
-        self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray, profile_slip: bool = False
-    ) -> None:
-        super().__init__(patches, profile_slip)
-        self.elastic, self.travel = elastic, travel_speed
-        self.settings = FastsimSettings(steps=6 * patches.elements // 5, law=law, profile_slip=profile_slip)
+    def __init__(self, given: Rolling, patches: Patches) -> None:
+        super().__init__(given, patches)
+        steps = 6 * patches.elements // 5
+        self.settings = FastsimSettings(steps=steps, law=given.law, profile_slip=given.profile_slip)
 
     def _given(self, patch, slip, friction, rows) -> tuple:
-        travel = self.travel[rows]
-        return patch, self._drawn(slip, rows), friction, self.elastic.take(rows), self.settings, travel
+        elastic, travel = self.given.elastic.take(rows), self.given.travel_speed[rows]
+        return patch, self._drawn(slip, rows), friction, elastic, self.settings, travel
 
     def _solved(self, patch, slip, friction, rows):
         return fastsim_grid.solve_grid(*self._given(patch, slip, friction, rows))
@@ -143,13 +135,11 @@ class GridKalkerModel(GridModel):
     name = "kalker"
     refines = False
 
-    def __init__(
-        self, patches: Patches, elastic: Elastic, law: FrictionLaw, travel_speed: np.ndarray, profile_slip: bool = False
-    ) -> None:
-        super().__init__(patches, profile_slip)
-        settings = kalker.KalkerSettings(elements=patches.elements, tolerance=1e-8, law=law, profile_slip=profile_slip)
-        self._law = KalkerLaw(elastic, settings, travel_speed)
-        self._per_stress = elastic.coupling / elastic.shear_modulus
+    def __init__(self, given: Rolling, patches: Patches) -> None:
+        super().__init__(given, patches)
+        settings = kalker.KalkerSettings(patches.elements, 1e-8, law=given.law, profile_slip=given.profile_slip)
+        self._law = KalkerLaw(given.elastic, settings, given.travel_speed)
+        self._per_stress = given.elastic.coupling / given.elastic.shear_modulus
 
     def law(self, patch, slip, friction, rows, fine) -> Resultants:
         """Return the resultants on the roller, arrays (m,)."""
@@ -192,50 +182,3 @@ class GridKalkerModel(GridModel):
         """Return the larger residual of both problems, and whether both are met, each (n,)."""
         normal, tangential = super().state(n), self._law.state(n)
         return np.maximum(normal[0], tangential[0]), normal[1] & tangential[1]
-
-
-def grid_model(
-    name: str,
-    patches: Patches,
-    elastic: Elastic,
-    spin_model: str,
-    law: FrictionLaw,
-    travel_speed: np.ndarray,
-    profile_slip: bool = False,
-) -> GridModel:
-    """Make the contact model `name` on solved patches.
-
-    Parameters
-    ----------
-    name : str
-        'sliding', 'fastsim' or 'kalker'.
-    patches : Patches
-        Solver of the normal problem of n rollers.
-    elastic : Elastic
-        Combined elastic constants of the rollers, arrays (n,).
-    spin_model : str
-        'concentric', 'edge' or 'skewed', for sliding only.
-    law : FrictionLaw
-        Friction as a function of the slip speed.
-    travel_speed : numpy.ndarray, shape (n,)
-        Travel speed of the rollers [mm/s].
-    profile_slip : bool
-        True if the rigid slip follows the profile of the guide; sliding always does so.
-
-    Returns
-    -------
-    GridModel
-        The model.
-
-    Raises
-    ------
-    InputError
-        For an unknown name.
-    """
-    if name == "sliding":
-        return GridSlidingModel(patches, spin_model, law, travel_speed)
-    if name == "fastsim":
-        return GridFastsimModel(patches, elastic, law, travel_speed, profile_slip)
-    if name == "kalker":
-        return GridKalkerModel(patches, elastic, law, travel_speed, profile_slip)
-    raise InputError("contact_model", name, "sliding, fastsim or kalker", "Choose one of these three models.")

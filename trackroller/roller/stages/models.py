@@ -9,7 +9,6 @@ from trackroller.contact.drawn_profiles import gap, treats_sides_alike
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.models import contact_model
-from trackroller.contact.normal.models import grid_model
 from trackroller.contact.normal.patches import Patches
 from trackroller.contact.protocol import ContactModel
 from trackroller.roller.case import CaseTable
@@ -36,13 +35,9 @@ def model_of(
     travel_speed : of the rollers, (n,) [mm/s]
     """
     elastic = Elastic.of_pair(*bodies(table))
-    if options.normal == "hertz":
-        return contact_model(
-            options.contact_model, options.settings, elastic, options.spin_model, law, travel_speed, options.slip_terms
-        )
-    profile_slip = "profile" in options.slip_terms
-    patches = _patches(table, options, rolling_radius)
-    return grid_model(options.contact_model, patches, elastic, options.spin_model, law, travel_speed, profile_slip)
+    patches = None if options.normal == "hertz" else _patches(table, options, rolling_radius)
+    name, settings, terms = options.contact_model, options.settings, options.slip_terms
+    return contact_model(name, settings, elastic, options.spin_model, law, travel_speed, terms, patches)
 
 
 def _patches(table: CaseTable, options: Options, rolling_radius: np.ndarray) -> Patches:
