@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.contact.common import Elastic
-from trackroller.contact.friction_laws import FrictionLaw
-from trackroller.halfspace.peak import PeakSettings
+from trackroller.halfspace.peak_settings import PeakSettings
+
+if TYPE_CHECKING:  # these modules load numba, and a plan does without
+    from trackroller.contact.common import Elastic
+    from trackroller.contact.friction_laws import FrictionLaw
 
 
 @dataclass(frozen=True)

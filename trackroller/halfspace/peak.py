@@ -16,36 +16,11 @@ import numpy as np
 from trackroller.halfspace.ellipse import FIELD, fields_of, refinement, unit_rule
 from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Patches, lengths
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
+from trackroller.halfspace.peak_settings import PeakSettings
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
-
-
-@dataclass(frozen=True)
-class PeakSettings:
-    """Effort of the search.
-
-    Attributes
-    ----------
-    scan, climb, polish, summit : int
-        Quadrature points of the four steps.
-    seeds, finalists : int
-        Number of seeds that climb, and of climbs that are polished.
-    step : float
-        Smallest step of the polish, in normalised coordinates.
-    floor : float
-        Scale of the part of the relative error that the changes between the steps do not show.
-    """
-
-    scan: int
-    climb: int
-    polish: int
-    summit: int
-    seeds: int
-    finalists: int
-    step: float
-    floor: float
 
 
 class Rules(NamedTuple):

@@ -17,9 +17,8 @@ from importlib import resources
 from typing import Any
 
 from trackroller.contact.settings import Accuracy
-from trackroller.contact.table import stored
 from trackroller.errors import InputError, unknown_name
-from trackroller.halfspace.peak import PeakSettings
+from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
 
@@ -271,6 +270,8 @@ def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]
 
 def table_errors() -> Levels:
     """Return the measured errors of the creep forces in the table, over mu F_N and mu F_N sqrt(a b)."""
+    from trackroller.contact.table import stored  # heavy: numba, and a plan at a preset does without
+
     errors = stored().errors
     median, p99 = (max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99"))
     return Levels(median, p99, p99, p99)

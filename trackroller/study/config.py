@@ -216,12 +216,17 @@ class Study:
         table : str, optional
             Write this path of the table instead.
         """
-        data = self.config.model_dump(mode="json", exclude_none=True)
-        if table is not None:
-            data["table"] = table
-        elif whole_paths and self.config.table is not None:
-            data["table"] = str(Path(build.table_path(self)).resolve())
-        return write_yaml(data)
+        if table is None and whole_paths and self.config.table is not None:
+            table = str(Path(build.table_path(self)).resolve())
+        return self._text if table is None else write_yaml(self._data | {"table": table})
+
+    @property
+    def _data(self) -> dict[str, Any]:
+        return self.config.model_dump(mode="json", exclude_none=True)
+
+    @cached_property
+    def _text(self) -> str:
+        return write_yaml(self._data)  # kept: planning, solving and gathering ask for it several times
 
     @cached_property
     def drawn(self) -> SampledDesign:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from trackroller.halfspace.peak import PeakSettings
+from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.roller.accuracy import Accuracy
 
 FORCES = ("forces", "contact", "friction_work")

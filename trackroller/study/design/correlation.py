@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtr, ndtri
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.study.design.factors import Factor
@@ -163,7 +163,7 @@ def correlate(unit: np.ndarray, root: np.ndarray | None, strata: bool) -> np.nda
         return unit
     own = root != np.eye(len(root))
     if not strata:
-        return np.where(own.any(axis=1), norm.cdf(_normal(unit) @ root.T), unit)
+        return np.where(own.any(axis=1), ndtr(_normal(unit) @ root.T), unit)
     moved = np.flatnonzero(own.any(axis=0) | own.any(axis=1))
     scores = _normal(unit[:, moved])
     if len(unit) > 2 * len(moved):
@@ -175,4 +175,4 @@ def correlate(unit: np.ndarray, root: np.ndarray | None, strata: bool) -> np.nda
 
 
 def _normal(unit: np.ndarray) -> np.ndarray:
-    return np.asarray(norm.ppf(np.clip(unit, 1e-15, 1 - 1e-15)))
+    return np.asarray(ndtri(np.clip(unit, 1e-15, 1 - 1e-15)))

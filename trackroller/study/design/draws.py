@@ -14,15 +14,13 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from SALib.sample import morris
-from scipy.stats import qmc
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.yaml_file import read_text
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
 from trackroller.study.csv_file import csv_lines
-from trackroller.study.design import arrays, correlation, saltelli
+from trackroller.study.design import correlation, saltelli
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 from trackroller.study.design.saltelli import all_groups
@@ -63,6 +61,8 @@ def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -
     if method == "lhs":
         unit = grown_lhs(len(free), [*check_sizes(settings.get("grown_from", ()), n), n], seed, root)
     else:
+        from scipy.stats import qmc  # heavy, and a plan of a grid does without
+
         engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
@@ -90,6 +90,8 @@ def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     Bins over SALib's four levels would never show the fifth value of a list. Its whole steps would be divided by 2/3,
     so that its mu* would be 1.5 times too large beside continuous factors.
     """
+    from SALib.sample import morris  # heavy, and other designs do without
+
     levels = settings["levels"]
     if not isinstance(levels, int) or levels < 4 or levels % 2:
         raise InputError("design option levels", levels, "an even whole number >= 4")
@@ -122,6 +124,8 @@ def _coded(method: str, free: Factors, n: int, seed: int, settings: Settings) ->
                 allowed = "plackett_burman takes two values a factor"
                 raise InputError(f"factors.{name}", free[name].levels, allowed, "Give two values, or choose morris.")
         numeric, listed = list(free), []
+    from trackroller.study.design import arrays  # heavy: pydoe
+
     coded = getattr(arrays, method)(len(numeric))
     combinations = list(itertools.product(*[range(len(free[k].levels)) for k in listed]))
     crossing = np.array(combinations, dtype=float).reshape(len(combinations), len(listed))

@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 from trackroller.errors import InputError
 from trackroller.study.design.correlation import correlate
@@ -32,6 +31,8 @@ def grown_lhs(count: int, sizes: Sequence[int], seed: int, root: np.ndarray | No
     -------
     Quantiles in the unit cube, shape (sizes[-1], count). The first sizes[i] rows are the sample of that size.
     """
+    from scipy.stats import qmc  # heavy, and a plan of a grid does without
+
     unit: np.ndarray = qmc.LatinHypercube(d=count, rng=np.random.default_rng(seed)).random(sizes[0])
     unit = correlate(unit, root, strata=True)
     for size in sizes[1:]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
-from scipy.stats import qmc
 
 
 def draw(blocks: int, groups: Sequence[int], second_order: bool, seed: int) -> np.ndarray:
@@ -28,6 +27,8 @@ def draw(blocks: int, groups: Sequence[int], second_order: bool, seed: int) -> n
     -------
     (blocks x rows of a block, number of columns) quantiles
     """
+    from scipy.stats import qmc  # heavy, and a plan of a grid does without
+
     k, exchanged = len(groups), max(groups) + 1
     base = qmc.Sobol(d=2 * k, seed=seed).random(blocks)  # `seed`, as SALib has it: `rng` scrambles in another way
     a, b = base[:, :k], base[:, k:]
