@@ -293,7 +293,7 @@ def test_profile_slip_is_that_of_the_circle_in_full_sliding():
     for profile, kinematics in ((False, flat), (True, slip)):
         settings = KalkerSettings(elements=40, profile_slip=profile)
         f = kalker.resultants(patch(), slip, mu, STEEL, settings)
-        g = sliding.resultants(patch(), kinematics, mu, spin_model="concentric", nodes=32)
+        g = sliding.integrals(patch(), kinematics, mu, spin_model="concentric", nodes=32).resultants
         found.append([f.driving_force[0] / limit, f.spin_moment[0] / limit / 0.3])
         exact.append([g.driving_force[0] / limit, g.spin_moment[0] / limit / 0.3])
     np.testing.assert_allclose(found, exact, atol=2e-3)

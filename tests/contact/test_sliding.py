@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from trackroller.contact.common import Ellipse, Slip
-from trackroller.contact.sliding import integrals, resultants, slip_field, tractions
+from trackroller.contact.sliding import integrals, slip_field, tractions
 
 
 def patch(a, b, alpha, shift, radius=6.0, p=1.0):
@@ -56,7 +56,7 @@ def test_resultants_and_power_match_adaptive_quadrature(a, b, alpha, shift, spin
     """Column integration agrees with a nested adaptive quadrature of the same slip field to 1e-5."""
     ellipse, slip = patch(a, b, alpha, shift)
     exact = brute_force(ellipse, slip, spin_model)
-    r = resultants(ellipse, slip, np.ones(1), spin_model=spin_model, nodes=16)
+    r = integrals(ellipse, slip, np.ones(1), spin_model=spin_model, nodes=16).resultants
     found = [
         r.lateral_force[0],
         r.driving_force[0],
@@ -70,18 +70,18 @@ def test_resultants_and_power_match_adaptive_quadrature(a, b, alpha, shift, spin
 def test_quadrature_converges_geometrically():
     """Doubling the points gains orders, not a factor: 6 -> 12 -> 24 points."""
     ellipse, slip = patch(0.35, 0.2, 0.52, 0.05)
-    fine = resultants(ellipse, slip, np.ones(1), nodes=64)
+    fine = integrals(ellipse, slip, np.ones(1), nodes=64).resultants
     error = []
     for n in (6, 12, 24):
-        r = resultants(ellipse, slip, np.ones(1), nodes=n)
+        r = integrals(ellipse, slip, np.ones(1), nodes=n).resultants
         error.append(abs(r.driving_force[0] - fine.driving_force[0]) + abs(r.spin_moment[0] - fine.spin_moment[0]))
     assert error[0] > 30 * error[1] > 30 * 30 * error[2]
 
 
 def test_mirrored_contacts_mirror_their_forces():
     """Contact 2 (-alpha) is contact 1 mirrored at x = 0: F_T and M_R change sign, F_A does not."""
-    one = resultants(*patch(0.3, 0.2, 0.5, -0.07), np.ones(1))
-    two = resultants(*patch(0.3, 0.2, -0.5, -0.07), np.ones(1))
+    one = integrals(*patch(0.3, 0.2, 0.5, -0.07), np.ones(1)).resultants
+    two = integrals(*patch(0.3, 0.2, -0.5, -0.07), np.ones(1)).resultants
     assert one.lateral_force == pytest.approx(-two.lateral_force, rel=1e-10)
     assert one.driving_force == pytest.approx(two.driving_force, rel=1e-10)
     assert one.spin_moment == pytest.approx(-two.spin_moment, rel=1e-10)
@@ -90,7 +90,7 @@ def test_mirrored_contacts_mirror_their_forces():
 def test_far_pole_gives_full_slip():
     """With the pole far outside all traction points along the track: F_A = -mu F_N, F_T = 0."""
     ellipse, slip = patch(0.3, 0.2, 0.5, 1e5)
-    r = resultants(ellipse, slip, 0.4 * np.ones(1))
+    r = integrals(ellipse, slip, 0.4 * np.ones(1)).resultants
     assert r.driving_force == pytest.approx(-0.4 * ellipse.normal_force, rel=1e-9)
     assert abs(r.lateral_force[0]) < 1e-6 * ellipse.normal_force[0]
 
@@ -102,6 +102,6 @@ def test_tractions_obey_coulomb_and_sum_to_the_resultants():
     size = np.hypot(t.shear_lateral, t.shear_rolling)
     np.testing.assert_allclose(size, 0.3 * t.pressure, atol=1e-12)
     area = (t.x[0, 1] - t.x[0, 0]) * (t.y[0, 1] - t.y[0, 0])
-    r = resultants(ellipse, slip, 0.3 * np.ones(1))
+    r = integrals(ellipse, slip, 0.3 * np.ones(1)).resultants
     assert t.shear_rolling.sum() * area == pytest.approx(r.driving_force[0], rel=2e-3)
     assert t.shear_lateral.sum() * area == pytest.approx(r.lateral_force[0], rel=2e-3)

@@ -226,6 +226,12 @@ class SurfaceTractions:
     slip_rolling: np.ndarray
     stick: np.ndarray
 
+    @classmethod
+    def of_sliding(cls, x, y, pressure, shear, slip) -> SurfaceTractions:
+        """Return the tractions of patches that stick nowhere; `shear` and `slip` are pairs of fields."""
+        moved = [np.where(pressure > 0, part, 0.0) for part in slip]
+        return cls(x, y, pressure, shear[0], shear[1], moved[0], moved[1], np.zeros(pressure.shape, bool))
+
     @property
     def stick_share(self) -> np.ndarray:
         """Return the share of the loaded grid points that stick, shape (n,) [1]."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from trackroller.contact.common import Ellipse, Resultants, Slip, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
+from trackroller.contact.protocol import Patch
 from trackroller.contact.sliding_kernels import Patches, Rule, Sums, integrate
 from trackroller.contact.slip import (
     lateral_slip,
@@ -88,49 +89,56 @@ def integrals(
     return Integrals(Resultants(f_t, f_a, m_r), power)
 
 
-def _geometry(ellipse: Ellipse, slip: Slip) -> tuple[np.ndarray, ...]:
+def _geometry(patch: Patch, slip: Slip) -> tuple[np.ndarray, ...]:
     """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0, the fields of `Patches` but the speed."""
-    axes = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+    axes = patch.semi_axis_lateral, patch.semi_axis_rolling
     return *axes, slip.sine, slip.cosine, slip.guide_profile_radius, slip.shift
 
 
-def resultants(
-    ellipse: Ellipse,
-    slip: Slip,
-    friction: np.ndarray,
-    *,
-    spin_model: str = "skewed",
-    nodes: int = 16,
-) -> Resultants:
-    """Return friction forces [N] and spin moment [N mm] on the roller under constant friction; see `integrals`."""
-    return integrals(ellipse, slip, friction, spin_model=spin_model, nodes=nodes).resultants
+def slip_lines(patch: Patch, slip: Slip, x: np.ndarray, spin_model: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return v_y/omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22) and (25).
+
+    Parameters
+    ----------
+    patch, slip : Patch, Slip
+        Patches and their kinematics, arrays (n,). Half the sides of its box stand for the semi-axes of a patch that is
+        not elliptical.
+    x : ndarray, shape (n, ...)
+        Lateral positions [mm].
+    spin_model : str
+        See `integrals`.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n, ...)
+        Both values [mm].
+    """
+    column = (-1, *(1,) * (x.ndim - 1))
+    given = *_geometry(patch, slip), patch.centre
+    a, b, sine, cosine, radius, shift, middle = (np.reshape(v, column) for v in given)
+    x_spin = pole_lateral(shift, sine) - middle
+    line = pole_line(a, x_spin, pole_rolling(x_spin, a, b), spin_model_index(spin_model))
+    return rolling_slip(x, sine, cosine, radius, shift), pole_offset(x - middle, a, *line)
 
 
-def slip_field(ellipse: Ellipse, slip: Slip, x: np.ndarray, y: np.ndarray, spin_model: str = "skewed"):
+def slip_field(patch: Patch, slip: Slip, x: np.ndarray, y: np.ndarray, spin_model: str = "skewed"):
     """Return the slip of the roller against the guide per travel speed omega r_A, eq. (24).
 
     Parameters
     ----------
-    ellipse, slip : Ellipse, Slip
-        Patches and their kinematics, arrays (n,).
+    patch, slip, spin_model
+        See `slip_lines`.
     x, y : ndarray, shape (n, ...)
         Points [mm]; the shapes broadcast.
-    spin_model : str
-        See `integrals`.
 
     Returns
     -------
     tuple of ndarray
         Lateral and rolling part [1].
     """
-    column = (-1, *(1,) * (x.ndim - 1))
-    a, b, sine, cosine, radius, shift, r_a = (
-        np.reshape(v, column) for v in (*_geometry(ellipse, slip), slip.rolling_radius)
-    )
-    x_spin = pole_lateral(shift, sine)
-    line = pole_line(a, x_spin, pole_rolling(x_spin, a, b), spin_model_index(spin_model))
-    slip_x = lateral_slip(y, pole_offset(x, a, *line), sine)
-    return slip_x / r_a, rolling_slip(x, sine, cosine, radius, shift) / r_a
+    along, offset = slip_lines(patch, slip, x, spin_model)
+    sine, r_a = (np.reshape(v, (-1, *(1,) * (x.ndim - 1))) for v in (slip.sine, slip.rolling_radius))
+    return lateral_slip(y, offset, sine) / r_a, along / r_a
 
 
 def tractions(
@@ -169,22 +177,11 @@ def tractions(
     root = np.sqrt(np.maximum(1.0 - unit[None, :] ** 2 - unit[:, None] ** 2, 0.0))
     pressure = ellipse.max_pressure[:, None, None] * root
     slip_x, slip_y = slip_field(ellipse, slip, x[:, None, :], y[:, :, None], spin_model)
-    slip_y = np.broadcast_to(slip_y, pressure.shape)
     speed = np.hypot(slip_x, slip_y)
     bound = friction[:, None, None] * pressure / np.where(speed > 0, speed, np.inf)
     if law is not None:
         bound = bound * law(speed * np.broadcast_to(travel_speed, len(x))[:, None, None])
-    inside = root > 0
-    return SurfaceTractions(
-        x,
-        y,
-        pressure,
-        -bound * slip_x,
-        -bound * slip_y,
-        np.where(inside, slip_x, 0.0),
-        np.where(inside, slip_y, 0.0),
-        np.zeros(pressure.shape, bool),
-    )
+    return SurfaceTractions.of_sliding(x, y, pressure, (-bound * slip_x, -bound * slip_y), (slip_x, slip_y))
 
 
 def tractions_full_slip(ellipse: Ellipse, friction: np.ndarray, direction: np.ndarray) -> Resultants:

@@ -14,7 +14,7 @@ from scipy.special import ellipe, ellipkm1
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.contact.hertz import axis_ratio
 from trackroller.contact.influence import displacements, pressure_displacements
-from trackroller.contact.sliding import resultants
+from trackroller.contact.sliding import integrals
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import von_mises
 
@@ -153,7 +153,7 @@ def pole_positions() -> KernelError:
     ellipse = Ellipse(n, 0.5 * n, n)
     # a nearly flat guide: the pole of the spin is then that of the slip
     slip = Slip(sine * n, 0.75**0.5 * n, 1e9 * n, 16.0 * n, np.array(values) * sine)
-    coarse, fine = (resultants(ellipse, slip, 0.3 * n, nodes=k) for k in (12, 600))
+    coarse, fine = (integrals(ellipse, slip, 0.3 * n, nodes=k).resultants for k in (12, 600))
     scale = 0.3 * ellipse.normal_force
     gaps = [
         np.abs(getattr(coarse, f) - getattr(fine, f)) / scale for f in ("lateral_force", "driving_force", "spin_moment")
@@ -168,7 +168,7 @@ def far_pole() -> KernelError:
     n = np.ones(len(values))
     ellipse = Ellipse(n, 0.5 * n, n)
     slip = Slip(0.5 * n, 0.75**0.5 * n, 1e15 * n, 16.0 * n, np.array(values) * 0.5)
-    r = resultants(ellipse, slip, 0.3 * n, nodes=16)
+    r = integrals(ellipse, slip, 0.3 * n, nodes=16).resultants
     bound = 0.3 * ellipse.normal_force
     # int tau_y = -mu F_N (1 - <y^2>/(2 x_p^2)) with <y^2> = b^2/5 of the Hertzian pressure
     exact = -bound * (1 - 0.25 / 5 / (2 * np.array(values) ** 2))

@@ -14,14 +14,7 @@ import numpy as np
 from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.grid_patch import GridPatch
-from trackroller.contact.slip import (
-    pole_lateral,
-    pole_line,
-    pole_offset,
-    pole_rolling,
-    rolling_slip,
-    spin_model_index,
-)
+from trackroller.contact.sliding import slip_field, slip_lines
 
 POINTS = 4  # Gauss points across each element
 PIECES = 3  # parts of each element along the rolling direction in which a falling friction law is constant
@@ -46,16 +39,6 @@ class SlidingPatches:
     works: Works
     shear_lateral: np.ndarray
     shear_rolling: np.ndarray
-
-
-def _slip_of(x: np.ndarray, patch: GridPatch, slip: Slip, i: int, model: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return v_y / omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22), (25) [mm]."""
-    sine, shift = slip.sine[i], slip.shift[i]
-    along = rolling_slip(x, sine, slip.cosine[i], slip.guide_profile_radius[i], shift)
-    a, b, middle = patch.semi_axis_lateral[i], patch.semi_axis_rolling[i], patch.centre[i]
-    x_spin = pole_lateral(shift, sine) - middle
-    line = pole_line(a, x_spin, pole_rolling(x_spin, a, b), model)
-    return along, pole_offset(x - middle, a, *line)
 
 
 def solve_sliding(
@@ -92,20 +75,19 @@ def solve_sliding(
     (tests/contact/test_normal_models.py).
     """
     n, rows, columns = patch.pressure.shape
-    law, model = law or constant(), spin_model_index(spin_model)
-    travel = np.broadcast_to(np.asarray(travel_speed, float), (n,))
+    law, per_omega = law or constant(), travel_speed / slip.rolling_radius
     nodes, weights = np.polynomial.legendre.leggauss(POINTS)
     total, shear = np.empty((n, 4)), np.empty((n, 2, rows, columns))
+    hx, hy = 2 * patch.semi_axis_lateral / columns, 2 * patch.semi_axis_rolling / rows
+    x = (patch.x[:, :, None] + 0.5 * hx[:, None, None] * nodes).reshape(n, columns * POINTS)
+    along, offset = slip_lines(patch, slip, x, spin_model)
     for i in range(n):
-        hx, hy = 2 * patch.semi_axis_lateral[i] / columns, 2 * patch.semi_axis_rolling[i] / rows
-        x = (patch.x[i][:, None] + 0.5 * hx * nodes).reshape(-1)
-        along, offset = _slip_of(x, patch, slip, i, model)
-        per_omega = travel[i] / slip.rolling_radius[i]
-        means = _column_means(x, along, offset, slip.sine[i], patch.semi_axis_rolling[i], rows, law, per_omega)
+        line = x[i], along[i], offset[i], slip.sine[i], patch.semi_axis_rolling[i]
+        means = _column_means(*line, rows, law, per_omega[i])
         across = (means.reshape(4, columns, POINTS, rows) * (0.5 * weights)[:, None]).sum(axis=2).transpose(0, 2, 1)
         bound = friction[i] * patch.pressure[i]
         shear[i] = across[:2] * bound
-        total[i] = (across * bound).sum(axis=(1, 2)) * hx * hy
+        total[i] = (across * bound).sum(axis=(1, 2)) * hx[i] * hy[i]
     works = Works.of_friction(total[:, 3] / slip.rolling_radius)
     return SlidingPatches(Resultants(total[:, 0], total[:, 1], total[:, 2]), works, shear[:, 0], shear[:, 1])
 
@@ -138,19 +120,6 @@ def tractions(
 ) -> SurfaceTractions:
     """Return pressure and mean shear of each element, and the slip at its centre; parameters as in `solve_sliding`."""
     found = solve_sliding(patch, slip, friction, spin_model, law, travel_speed)
-    model, loaded = spin_model_index(spin_model), patch.pressure > 0
-    slip_x, slip_y = np.empty(patch.pressure.shape), np.empty(patch.pressure.shape)
-    for i in range(len(patch.normal_force)):
-        along, offset = _slip_of(patch.x[i], patch, slip, i, model)
-        slip_x[i] = slip.sine[i] * (patch.y[i][:, None] - offset) / slip.rolling_radius[i]
-        slip_y[i] = along / slip.rolling_radius[i]
-    return SurfaceTractions(
-        patch.x,
-        patch.y,
-        patch.pressure,
-        found.shear_lateral,
-        found.shear_rolling,
-        np.where(loaded, slip_x, 0.0),
-        np.where(loaded, slip_y, 0.0),
-        np.zeros(loaded.shape, bool),
-    )
+    moved = slip_field(patch, slip, patch.x[:, None, :], patch.y[:, :, None], spin_model)
+    shear = found.shear_lateral, found.shear_rolling
+    return SurfaceTractions.of_sliding(patch.x, patch.y, patch.pressure, shear, moved)
