@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 import yaml
@@ -16,12 +17,13 @@ from synthetic_results import grid_study
 import trackroller as tr
 from trackroller.analysis.pareto import study_pareto
 from trackroller.report import comparison as ladder
-from trackroller.report.comparison.groups import drives, groups
 from trackroller.report.comparison.words import levels_kept
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
 from trackroller.report.figures.study import draw_all
+from trackroller.report.groups import drives, groups
 from trackroller.report.page import contents, write_report
+from trackroller.report.view import StudyView
 from trackroller.study.config import load_study
 from trackroller.study.run import run_study
 from validation.contact_models.product import PATCHES, compare, patch_fields, write_words
@@ -64,6 +66,11 @@ def compared(gathered, place):
         infos = [drawn[1] for f in drawers(ds) if (drawn := f())]
     page = write_report(gathered, place / "figures", place / "report.html")
     return {i.name: i for i in infos}, page.read_text(encoding="utf-8")
+
+
+def view_of(name, values):
+    """Return designs that differ in one factor."""
+    return StudyView(pd.DataFrame({name: values}), (name,), {}, True, {})
 
 
 @pytest.fixture(scope="module")
@@ -121,8 +128,11 @@ def test_three_drives_get_room_and_many_are_told_by_their_sign(tmp_path):
     boxes = [axes.xaxis.label.get_window_extent() for axes in bottom]
     assert len(boxes) == 3 and boxes[-1].x1 <= figure.bbox.x1
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
-    more = xr.Dataset({"motor_force": ("design", [-20.0, -5.0, 0.0, 5.0, 9.0])}, attrs={"factors": "[]"})
-    assert drives(more).texts == ("driven, 5 to 20 N", "free rolling", "braked, 5 to 9 N")
+    assert drives(view_of("motor_force", [-20.0, -5.0, 0.0, 5.0, 9.0])).texts == (
+        "driven, 5 to 20 N",
+        "free rolling",
+        "braked, 5 to 9 N",
+    )
 
 
 def test_motor_force_in_the_base_and_another_factor(tmp_path):
@@ -196,7 +206,7 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
 
 def test_the_levels_that_keep_the_tolerance_are_named():
     mu = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5]
-    along = groups(xr.Dataset({"friction_coefficient": ("design", mu)}), "friction_coefficient")
+    along = groups(view_of("friction_coefficient", mu), "friction_coefficient")
     told = {
         (0, 0, 1, 1, 1, 1): "up to a friction of 0.05",
         (1, 1, 0, 0, 1, 0): "at a friction of 0.1 to 0.2 and from a friction of 0.5 on",

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.report.groups import classes
 from trackroller.report.view import MOST_LEVELS, StudyView
 
 if TYPE_CHECKING:
@@ -271,20 +272,3 @@ def explained(view: StudyView, column: str, rows: np.ndarray, among: tuple[str, 
         means = np.array([logs[index == k].mean() if (index == k).any() else 0.0 for k in range(index.max() + 1)])
         share[name] = float(np.var(means[index]) / np.var(logs))
     return share
-
-
-def classes(view: StudyView, name: str, rows: np.ndarray, most: int) -> tuple[np.ndarray, list[Any]]:
-    """Sort rows into the factor's own levels, or into `most` classes of equally many rows.
-
-    Returns
-    -------
-    Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or its ends (low, high).
-    """
-    values, levels = view.table[name].to_numpy()[rows], view.levels(name)
-    if not view.numeric(name) or len(levels) <= MOST_LEVELS:
-        place = {v: i for i, v in enumerate(levels)}
-        return np.array([place.get(v, 0) for v in values], dtype=int), list(levels)
-    edges = np.unique(np.quantile(values, np.linspace(0, 1, most + 1), method="nearest"))
-    index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, max(len(edges) - 2, 0))
-    kinds, index = np.unique(index, return_inverse=True)
-    return index, [(float(values[index == k].min()), float(values[index == k].max())) for k in range(len(kinds))]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import PARAMETERS
+from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import flat, read_study
 
 INNER = ("contact", "body", "y", "x", "n", "section_x", "section_y", "section_z", "component")
@@ -46,18 +47,28 @@ def study_dims(ds: xr.Dataset) -> list[str]:
     return [d for d in map(str, ds.dims) if d not in INNER and (d == "case" or d in ds.coords or d in PARAMETERS)]
 
 
+def _columns(ds: xr.Dataset, dims: list[str], names: Iterable[str]) -> dict[str, np.ndarray]:
+    """Flatten those quantities that have one value a case, numbers as floats."""
+    varying = [n for n in dict.fromkeys(names) if n in ds.variables and ds[n].ndim]
+    found = {n: flat(ds, n, tuple(dims)) for n in varying if set(ds[n].dims) <= set(dims)}
+    return {n: v.astype(str if v.dtype.kind in "OSU" else float) for n, v in found.items()}
+
+
+def input_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
+    """Flatten factors and other inputs that vary over `dims` in one common order."""
+    own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
+    words = [f"{n}_value" for n in PARAMETERS]  # the numbers of friction given as a word
+    return _columns(ds, dims, [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *CATEGORIES])
+
+
 def case_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
-    """Flatten every wanted quantity over `dims` in one common order."""
+    """Flatten inputs and wanted results over `dims` in one common order."""
     ds = ds.transpose(..., "contact", "body", missing_dims="ignore")
 
     def column(name: str) -> np.ndarray:
-        values = flat(ds, name, tuple(dims))
-        return values.astype(str) if values.dtype.kind in "OSU" else values.astype(float)
+        return flat(ds, name, tuple(dims)).astype(float)
 
-    own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
-    wanted = [*(d for d in dims if d != "case"), *own, *PARAMETERS, *CATEGORIES, *PLAIN_RESULTS]
-    names = [n for n in dict.fromkeys(map(str, wanted)) if n in ds.variables and ds[n].ndim]
-    columns = {n: column(n) for n in names if set(ds[n].dims) <= set(dims)}
+    columns = input_columns(ds, dims) | _columns(ds, dims, PLAIN_RESULTS)
     for name in (n for n in CONTACT_RESULTS if n in ds and "contact" in ds[n].dims):
         columns |= {f"{name}_{i}": values for i, values in enumerate(column(name).T, 1)}
     needed = {n: {"contact", "body"} for n in BODY_RESULTS} | {"validity_body": {"body"}}
@@ -103,9 +114,11 @@ def factor_names(ds: xr.Dataset, dims: list[str], table: pd.DataFrame) -> list[s
         if v.dims == ("case",) and n in table and n not in PLAIN_RESULTS and n != "case"
     ]
     varying = [n for n in listed if table[n].nunique(dropna=False) > 1]
-    given = read_study(ds).get("factors")
+    study = read_study(ds)
+    given = study.get("factors")
     if isinstance(given, Mapping):  # a quantity that an expression gives is no factor of its own
         free = [str(n) for n, spec in given.items() if not (isinstance(spec, Mapping) and "expression" in spec)]
+        free += [n for n in OPTION_FACTORS if isinstance(study.get(n), list)]
         varying = [n for n in free if n in varying] or varying
     if "material_pair" in varying:
         varying = [n for n in varying if n not in ("roller_material", "guide_material")]

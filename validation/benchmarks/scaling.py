@@ -124,7 +124,6 @@ def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folde
             f"contact model sliding, processor time; left and middle at accuracy standard, right with "
             f"{by_accuracy[0]['cases']} cases",
         )
-        style.finish(figure)
         return style.save(figure, folder, "scaling")
 
 

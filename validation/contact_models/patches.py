@@ -54,7 +54,6 @@ def patches(fields: xr.Dataset, contact: int = 1) -> Figure:
         f"Contact {contact}. Arrows: friction on the roller; hatched: stick; shade: dissipation per area and "
         r"distance over $\mu p_\mathrm{max}$.",
     )
-    style.finish(figure)
     return figure
 
 

@@ -14,7 +14,6 @@ from trackroller.report.figures.style import (
     REGIME_COLOURS,
     REGIME_HATCHES,
     FigureInfo,
-    finish,
     head,
     look,
     new_figure,
@@ -87,7 +86,6 @@ def draw_map(record: Record, out_dir: Path, model: str) -> FigureInfo:
             "over the estimated error); darker: closer to what is tolerated on a logarithmic scale; crossed: not "
             "met; blank: no claim; beyond: fails where the model ends, as stated",
         )
-        finish(figure)
         axes.spines[["left", "bottom"]].set_visible(False)
         save(figure, out_dir, f"extremes_{model}")
     total = sum(len(r["findings"]) for r in rows)
@@ -158,7 +156,6 @@ def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
             "paper's roller, 200 N, alpha = 30°; dotted: lift-off without friction; above the dashed line friction "
             "alone carries the lateral load (bit jamming)",
         )
-        finish(figure)
         save(figure, out_dir, "extremes_regimes")
     return FigureInfo(
         "extremes_regimes",
@@ -196,7 +193,6 @@ def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
             "each stroke is a point of the sweep in double precision (1e-17: no difference); the 12-point rule stands "
             "against 600 points and shows its own quadrature error, not cancellation",
         )
-        finish(figure)
         save(figure, out_dir, "extremes_kernels")
     return FigureInfo(
         "extremes_kernels",

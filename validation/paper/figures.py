@@ -108,7 +108,6 @@ def bars() -> Drawn:
     lower.set_ylabel("Stress [MPa]")
     figure.legend(*upper.get_legend_handles_labels(), loc="outside lower left", ncols=2)
     style.head(figure, "Forces and stresses of the paper's case", "Driven with 30 N, μ = 0.3")
-    style.finish(figure)
     apart = _values("ours, sliding", "lateral_force", 1) / _values("CONTACT", "lateral_force", 1) - 1.0
     return figure, style.FigureInfo(
         "paper_8_bars",
@@ -161,7 +160,6 @@ def tractions() -> Drawn:
     for axes in grid[:, 0]:
         axes.set_ylabel("$y_\\mathrm{C}$ [mm]")
     style.head(figure, "Pressure and shear of contact 1", "On the roller, driven with 30 N, μ = 0.3")
-    style.finish(figure)
     return figure, style.FigureInfo(
         "paper_9_tractions",
         "Paper's figure 9: pressure and shear on the roller in contact 1, driven, μ = 0.3: sliding with the "

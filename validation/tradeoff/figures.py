@@ -63,7 +63,6 @@ def draw_all(summary: dict[str, Any], ds: xr.Dataset | None, out_dir: Path) -> l
         for item in drawn:
             if item is not None:
                 figure, info = item
-                style.finish(figure)
                 style.save(figure, out_dir, info.name)
                 infos.append(info)
     style.write_index(infos, out_dir)

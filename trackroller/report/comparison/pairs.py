@@ -7,23 +7,20 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
-from trackroller.numerics.numbers import all_equal
-from trackroller.parameters import EXACTNESS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.report.columns import CONTACT_RESULTS
+from trackroller.parameters import EXACTNESS, PARAMETERS
+from trackroller.report.columns import CONTACT_RESULTS, input_columns, study_dims
+from trackroller.report.view import LIVES, StudyView
 from trackroller.roller.geometry import contact_geometry
-from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.outputs import flat, read_study
+from trackroller.study.outputs import flat
 
 MODEL = "contact_model"
-INPUTS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, "material_pair", *(o for o in OPTION_FACTORS if o != MODEL))
-LIVES = (
-    ("roller_life_hours", "life of the roller", "h"),
-    ("guide_life_hours", "life of the guide", "h"),
-    ("life_cycles", "life", "overrollings"),
+RESULTS = (
+    *("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress"),
+    *("roller_life_hours", "guide_life_hours", "life_cycles"),
 )
-RESULTS = ("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress", *(life for life, *_ in LIVES))
 
 
 def pairs(ds: xr.Dataset) -> xr.Dataset | None:
@@ -38,104 +35,70 @@ def pairs(ds: xr.Dataset) -> xr.Dataset | None:
     Dataset over `contact_model` (the cheapest first, the reference last) and `design`: those results that a comparison
     looks at, NaN where a design lacks a model (regime -1), and as coordinates all inputs, `spin` and `lean`, which is
     mu tan(alpha). A design is here if the reference and one model more solved it; two cases are one design if they
-    agree in every input but the model. Attributes: `reference`, `factors` (JSON list of what else varies), `left`
-    (cases without a partner), `life` (words), `grid` (1: every combination is there), `base` (JSON).
+    agree in every input but the model. Attributes: `reference`, `left` (cases without a partner), `life` (words), and
+    as JSON `factors` (what else varies), `grid` (whether every combination is there) and `base`.
     """
     if MODEL not in ds.variables or "regime" not in ds:
         return None
-    present = set(np.unique(ds[MODEL].values.astype(str)).tolist())
-    models = [m for m in EXACTNESS[::-1] if m in present]
+    dims, view = study_dims(ds), StudyView.of(ds)
+    table = pd.DataFrame(input_columns(ds, dims))
+    models = [m for m in EXACTNESS[::-1] if m in set(table.get(MODEL, ()))]
     if len(models) < 2:
         return None
-    order = tuple(map(str, ds["regime"].dims))
-    if MODEL in order:
-        order = (MODEL, *(d for d in order if d != MODEL))
-    columns = _inputs(ds, order)
-    rows = _matched_rows(flat(ds, MODEL, order).astype(str), columns, models)
-    return _sorted_out(ds, order, models, rows, columns)
+    rows = _matched(table, models)
+    data: dict[str, Any] = {}
+    for name in (n for n in RESULTS if n in ds):
+        values = flat(ds, name, tuple(dims)).astype(float)[rows]
+        values[rows < 0] = -1.0 if name == "regime" else np.nan
+        data[name] = ((MODEL, "design", *(d for d in ds[name].dims if d not in dims)), values)
+    coords = {name: ("design", values) for name, values in _inputs(table.iloc[rows[-1]], view).items()}
+    out = xr.Dataset(
+        data, coords={MODEL: models, **coords, **{n: ds[n].values for n in ("contact", "body") if n in ds}}
+    )
+    told = {"factors": [f for f in view.factors if f != MODEL], "grid": view.grid, "base": dict(view.base)}
+    out.attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum()), "life": ""}
+    out.attrs |= {key: json.dumps(value, default=str) for key, value in told.items()}
+    return _with_life(out)
 
 
-def _inputs(ds: xr.Dataset, order: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """Return every input that the data set knows, one value a case, (rows,)."""
-    study, found = read_study(ds), {}
-    names = [n for n in dict.fromkeys((*INPUTS, *study.get("factors", {}), *order)) if n not in (MODEL, "case")]
-    rows = int(np.prod([ds.sizes[d] for d in order]))
-    for name in names:
-        held = f"{name}_value" if f"{name}_value" in ds.variables else name  # friction given as a word
-        if held in ds.variables and set(ds[held].dims) <= set(order):
-            values = flat(ds, held, order) if ds[held].ndim else np.full(rows, ds[held].item())
-            values = np.broadcast_to(values, (rows,))
-        elif name in PARAMETERS:
-            given = study.get("base", {}).get(name, PARAMETERS[name].default)
-            values = np.full(rows, given if isinstance(given, (int, float)) else np.nan)
-        else:
-            continue
-        found[name] = values.astype(float) if values.dtype.kind in "fiu" else values.astype(str)
-    return found
+def designs(paired: xr.Dataset) -> StudyView:
+    """Return the designs of a comparison as a table with their inputs, `spin` and `lean`, without the contact model."""
+    table = pd.DataFrame({str(n): v.values for n, v in paired.coords.items() if v.dims == ("design",)})
+    for name in ("spin", "lean"):
+        table[name] = [float(f"{value:.3g}") for value in table[name]]
+    told = {key: json.loads(paired.attrs[key]) for key in ("factors", "base", "grid")}
+    return StudyView(table, tuple(told["factors"]), told["base"], told["grid"], paired.attrs)
 
 
-def _matched_rows(own: np.ndarray, columns: Mapping[str, np.ndarray], models: list[str]) -> np.ndarray:
+def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
     """Return the row of each model and design, shape (models, designs), -1 where the design lacks it.
 
     The designs stand in the order of their rows.
-
-    `own` is the model of each row (n,), `columns` are its inputs.
     """
-    code = np.zeros(own.size, dtype=np.int64)
-    for values in columns.values():
-        if all_equal(values):
-            continue
-        _, number = np.unique(values, return_inverse=True)
-        _, code = np.unique(code * (int(number.max()) + 1) + number, return_inverse=True)
-    rows = np.full((len(models), int(code.max(initial=-1)) + 1), -1)
-    for i, model in enumerate(models):
-        at = np.flatnonzero(own == model)[::-1]  # of equal cases the first
-        rows[i, code[at]] = at
+    varied = [n for n in table if n != MODEL and table[n].nunique(dropna=False) > 1]
+    design = table.groupby(varied, dropna=False, sort=False).ngroup() if varied else pd.Series(0, table.index)
+    first = pd.Series(np.arange(len(table)), table.index).groupby([table[MODEL], design]).first()  # of equal cases
+    rows = first.unstack(fill_value=-1).reindex(models).to_numpy()
     rows = rows[:, (rows[-1] >= 0) & (rows[:-1] >= 0).any(axis=0)]
     return rows[:, np.argsort(rows[-1], kind="stable")]
 
 
-def _sorted_out(
-    ds: xr.Dataset, order: tuple[str, ...], models: list[str], rows: np.ndarray, columns: Mapping[str, np.ndarray]
-) -> xr.Dataset:
-    data: dict[str, Any] = {}
-    lacking = rows < 0
-    for name in (n for n in RESULTS if n in ds):
-        values = flat(ds, name, order).astype(float)[rows]
-        values[lacking] = -1.0 if name == "regime" else np.nan
-        rest = [d for d in ds[name].dims if d not in order]
-        data[name] = ((MODEL, "design", *rest), values)
-    inputs = {name: values[rows[-1]] for name, values in columns.items()}
-    coords: dict[str, Any] = {name: ("design", values) for name, values in inputs.items()}
-    coords |= {n: ds[n].values for n in ("contact", "body") if n in ds.coords}
-    coords["spin"] = ("design", spin(inputs), {"long_name": "spin phi rho", "units": "1"})
-    lean = inputs["friction_coefficient"] * np.tan(np.deg2rad(inputs["contact_angle"]))
-    coords["lean"] = ("design", lean, {"long_name": "mu tan(alpha)", "units": "1"})
-    out = xr.Dataset(data, coords={MODEL: models, **coords})
-    study = read_study(ds)
-    out.attrs = {
-        "reference": models[-1],
-        "factors": json.dumps(_factors(study, inputs, order)),
-        "grid": int(MODEL in order),
-        "left": int(ds["regime"].size - (~lacking).sum()),
-        "life": "",
-        "base": json.dumps(study.get("base", {}), default=str),
-    }
-    return _with_life(out)
-
-
-def _factors(study: Mapping[str, Any], inputs: Mapping[str, np.ndarray], order: tuple[str, ...]) -> list[str]:
-    """Return the factors that vary besides the contact model, in the study's order, without derived ones."""
-    given = study.get("factors", {})
-    free = [str(n) for n, spec in given.items() if not (isinstance(spec, Mapping) and "expression" in spec)]
-    free += [n for n in OPTION_FACTORS if isinstance(study.get(n), list)] + [d for d in order if d != "case"]
-    vary = [n for n, values in inputs.items() if not all_equal(values) and n != MODEL]
-    return [n for n in dict.fromkeys(free) if n in vary] or [n for n in vary if n not in MATERIAL_FIELDS]
+def _inputs(table: pd.DataFrame, view: StudyView) -> dict[str, np.ndarray]:
+    """Return every input of the designs, those that are the same in all cases included, with spin and lean."""
+    found = {str(n): table[n].to_numpy() for n in table if n != MODEL}
+    for name in PARAMETERS:
+        value = view.base.get(name)
+        if name not in found:
+            found[name] = np.full(len(table), value if isinstance(value, (int, float)) else np.nan, dtype=float)
+    given = found.get("friction_coefficient_value", found["friction_coefficient"])
+    friction = pd.to_numeric(given, errors="coerce")  # friction given as a word has its numbers beside it
+    lean = friction * np.tan(np.deg2rad(found["contact_angle"]))
+    return found | {"friction_coefficient": friction, "spin": spin(found), "lean": lean}
 
 
 def _with_life(ds: xr.Dataset) -> xr.Dataset:
-    """Add the variable `life`: the first of `LIVES` that has numbers."""
-    for name, words, unit in LIVES:
+    """Add the variable `life`: the first life that has numbers."""
+    for name, words, unit in (*LIVES[:2], ("life_cycles", "life", "overrollings")):
         if name in ds and bool((ds[name] > 0).any()):
             life = ds[name].min([d for d in ("contact", "body") if d in ds[name].dims])
             ds["life"] = life.assign_attrs(long_name=words, units=unit)

@@ -9,20 +9,13 @@ import numpy as np
 import xarray as xr
 
 from trackroller.report.comparison.errors import GOOD, errors, measured
-from trackroller.report.comparison.groups import (
-    DRIVE,
-    FRICTION,
-    Groups,
-    drives,
-    factors,
-    groups,
-    name_of,
-    span,
-)
-from trackroller.report.comparison.pairs import pairs
-from trackroller.report.numbers import capital, percent
+from trackroller.report.comparison.pairs import designs, pairs
+from trackroller.report.groups import DRIVE, Groups, drives, groups, span
+from trackroller.report.numbers import capital, long_name, percent
 from trackroller.report.tables import Table
 
+FRICTION = "friction_coefficient"
+DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # quantities that `pairs` computes from the inputs
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM"}
 MOST = 0.9  # a level is good enough if this share of its designs is
 FLAT = 0.1  # a factor whose levels differ less in the share of good designs is not worth a sentence
@@ -83,12 +76,18 @@ def short(paired: xr.Dataset) -> list[str]:
 
 
 def details(paired: xr.Dataset) -> list[str]:
-    """Return the sentences by friction and drive: up to which friction each quantity is good enough."""
-    if not paired.sizes["design"]:
+    """Say for each model and drive up to which friction each quantity is good enough."""
+    view = designs(paired)
+    if not paired.sizes["design"] or FRICTION not in view.factors:
         return []
-    found = errors(paired)
-    models = [(str(m), found.sel(contact_model=m)) for m in found["contact_model"].values]
-    return [text for model, one in models if _compared(one) >= FEWEST for text in _by_drive(one, model)]
+    found, drive, along = errors(paired), drives(view), groups(view, FRICTION)
+    said = []
+    for model in map(str, found["contact_model"].values):
+        one = found.sel(contact_model=model)
+        for k, text in enumerate(drive.texts if _compared(one) >= FEWEST else ()):
+            head = f"{NAMES[model]}{f', {text}' if DRIVE in view.factors else ''}"
+            said.append(_sentence(one.where(xr.DataArray(drive.index == k, dims="design")), along, head))
+    return said
 
 
 def report_section(ds: xr.Dataset) -> dict[str, Any]:
@@ -137,18 +136,8 @@ def _spread(e: np.ndarray) -> tuple[float, float, float]:
     return tuple(float(np.percentile(e, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]
 
 
-def _by_drive(one: xr.Dataset, model: str) -> list[str]:
-    """Return a sentence for each drive: up to which friction each quantity is good enough."""
-    if FRICTION not in factors(one):
-        return []
-    drive, varies = drives(one), DRIVE in factors(one)
-    heads = [f"{NAMES[model]}{f', {text}' if varies else ''}" for text in drive.texts]
-    return [_sentence(one.isel(design=np.flatnonzero(drive.index == k)), head) for k, head in enumerate(heads)]
-
-
-def _sentence(one: xr.Dataset, who: str) -> str:
+def _sentence(one: xr.Dataset, along: Groups, who: str) -> str:
     clauses: dict[str, list[str]] = {"good enough for": [], "not good enough for": []}
-    along = groups(one, FRICTION)
     for q in measured(one):
         where = levels_kept(along, one[q.name].values)
         told = f"{q.words} {where} ({_range(_rolling(one[q.name]))})".replace("  ", " ")
@@ -176,7 +165,7 @@ def levels_kept(along: Groups, e: np.ndarray) -> str:
     keeps = shares[at] >= MOST
     if not keeps.any():
         return ""
-    name = name_of(along.name)
+    name = DERIVED.get(along.name) or ("friction" if along.name == FRICTION else long_name(along.name))
     if keeps.all():
         return f"at every {name}"
     if not along.ordered:
@@ -202,12 +191,13 @@ def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
 
 def telling_factors(one: xr.Dataset) -> list[str]:
     """Name the factors over whose levels the share of good designs changes, most of all first."""
-    varied, found, drawn = factors(one), [], ("normal_force", "friction_force", "peak_stress")
-    names = [n for n in varied if n not in (FRICTION, DRIVE) and n in one.coords]
-    names += ["lean"] if {FRICTION, "contact_angle"} <= set(varied) else []
+    view, found = designs(one), []
+    names = [n for n in view.factors if n not in (FRICTION, DRIVE)]
+    names += ["lean"] if {FRICTION, "contact_angle"} <= set(view.factors) else []
     for name in names:
-        along = groups(one, name)
-        shares = [_shares_along(one[q.name].values, along) for q in measured(one) if q.name in drawn]
+        along = groups(view, name)
+        drawn = [q.name for q in measured(one) if q.name in ("normal_force", "friction_force", "peak_stress")]
+        shares = [_shares_along(one[name].values, along) for name in drawn]
         changes = [float(np.nanmax(s) - np.nanmin(s)) for s in shares if np.isfinite(s).any()]
         if changes and max(changes) > FLAT:
             found.append((max(changes), name))

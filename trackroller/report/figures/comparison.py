@@ -8,24 +8,21 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from trackroller.report.comparison.errors import GOOD, errors, measured
-from trackroller.report.comparison.groups import spin_is_its_own
-from trackroller.report.comparison.pairs import pairs
+from trackroller.report.comparison.pairs import designs, pairs
 from trackroller.report.comparison.words import gap, short, telling_factors
 from trackroller.report.figures import style
-from trackroller.report.figures.comparison_panels import Frame, close, frame, label_mm, line, panels, rolling, set_axis
-from trackroller.report.figures.panels import capped, mark_unlimited
+from trackroller.report.figures.comparison_panels import LETTERS, Frame, frame, label_axis, line, panels, rolling
+from trackroller.report.figures.panels import capped, legend, mark_unlimited
 from trackroller.report.numbers import capital, percent, with_unit
 
-Drawn = tuple["Figure", style.FigureInfo] | None
 Values = Callable[["xr.Dataset"], "xr.DataArray"]
 LEAST = 6e-4  # error at the lower end of the axes [1]
 COLUMNS = 3  # at most this many factors get a panel
 
 
-def drawers(ds: xr.Dataset) -> list[partial[Drawn]]:
+def drawers(ds: xr.Dataset) -> list[partial[style.Drawn]]:
     """Return the functions that draw the figures of the comparison.
 
     There are none for a study with one contact model or without pairs of cases.
@@ -52,7 +49,7 @@ def _lines(shown: Frame, axes: Any, values: Values) -> dict[str, Any]:
         for column, panel in enumerate(axes):
             band = shown.bands(own, column)
             shade = shown.many and model == shown.ds.attrs["reference"]
-            handles[model] = line(panel, shown.x, band, model, shade=shade)
+            handles[model] = line(panel, shown.x, band, model, shade)
     return handles
 
 
@@ -61,7 +58,12 @@ def _told(shown: Frame, words: str) -> str:
     return f"{words}{many} {shown.held}".strip()
 
 
-def error(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+def _close(figure: Any, handles: dict[str, Any], title: str, words: str) -> None:
+    legend(figure, handles)
+    style.head(figure, title, words)
+
+
+def error(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
     """Draw the error of the cheaper models against the reference over friction and drive."""
     shown = frame(paired)
     wanted = [q for q in measured(found) if q.name not in ("friction_energy_balance", "stick")]
@@ -74,7 +76,7 @@ def error(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     dotted = f"Dotted: {percent(GOOD)}; at the foot: {percent(LEAST)} or less."
     many = " Lines: medians of the designs; bands: 5 to 95 %." if shown.many else ""
     words = f"{dotted} The worse contact; rolling only.{many}"
-    close(figure, handles, "What the cheaper contact models miss", words, 2)
+    _close(figure, handles, "What the cheaper contact models miss", words)
     caption = f"Error of the cheaper contact models against {paired.attrs['reference']}."
     return figure, style.FigureInfo("models-error", caption, short(paired)[0])
 
@@ -86,7 +88,7 @@ def _error_row(shown: Frame, row: Any, found: xr.Dataset, name: str) -> dict[str
         e = np.clip(found[name].sel(contact_model=model).values, LEAST, 1e3)
         for column, panel in enumerate(row):
             band = 100 * shown.bands(e, column)
-            handles[f"{model} against {found.attrs['reference']}"] = line(panel, shown.x, band, model, shade=shown.many)
+            handles[f"{model} against {found.attrs['reference']}"] = line(panel, shown.x, band, model, shown.many)
             top = float(np.nanmax([top, np.nanmax(band, initial=0.0)]))
     for panel in row:
         panel.axhline(100 * GOOD, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
@@ -95,26 +97,26 @@ def _error_row(shown: Frame, row: Any, found: xr.Dataset, name: str) -> dict[str
     return handles
 
 
-def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
     """Draw the error of normal force, friction and peak stress over the factors that matter most."""
-    names = ["spin"] if spin_is_its_own(paired) and np.isfinite(paired["spin"]).all() else []
+    spin = designs(paired).column("spin")
+    names = ["spin"] if np.isfinite(spin).all() and spin.max() > 1.1 * spin.min() else []
     cheapest = found.isel(contact_model=0)
     names = [*names, *telling_factors(cheapest)][:COLUMNS]
     wanted = [q for q in measured(found) if q.name in ("normal_force", "friction_force", "peak_stress")]
     if not names or not wanted:
         return None
     frames = [shown for name in names if (shown := frame(paired, name, split=False)) is not None]
-    height = 30.0 + 30.0 * len(wanted) + max(label_mm(shown.x) for shown in frames)
-    figure = style.new_figure(height)
+    figure = style.new_figure(30.0 + 30.0 * len(wanted))
     axes = figure.subplots(len(wanted), len(names), sharex="col", sharey="row", squeeze=False)
     handles: dict[str, Any] = {}
     for column, shown in enumerate(frames):
         for row, q in enumerate(wanted):
             axes[row, 0].set_ylabel(f"{q.label}\nerror [%]")
             handles |= _error_row(shown, axes[row, column : column + 1], found, q.name)
-        set_axis(axes[-1, column], shown.x)
+        label_axis(axes[-1, column], shown.x, LETTERS // len(frames))
     words = f"Lines: medians of all designs that roll; bands: 5 to 95 %; dotted: {percent(GOOD)}."
-    close(figure, handles, "Where the cheaper contact models miss most", words, 2)
+    _close(figure, handles, "Where the cheaper contact models miss most", words)
     caption = (
         "Error of the cheaper contact models over spin (spin creepage by radius of curvature) and over the "
         "factors that matter most, all else as it varies."
@@ -122,7 +124,7 @@ def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     return figure, style.FigureInfo("models-error-factors", caption, "")
 
 
-def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+def energy(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
     """Draw the friction energy of both contacts per distance.
 
     It is the sum over the patches, and for comparison the work of the resultants.
@@ -139,14 +141,16 @@ def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
         own = np.where(rolling(shown.ds), implied.values, np.nan)
         for column, panel in enumerate(axes[0]):
             band = shown.bands(own, column)
-            handles["sliding, from the resultants"] = line(panel, shown.x, band, "sliding", True, linestyle="-.")
+            handles["sliding, from the resultants"] = line(
+                panel, shown.x, band, "sliding", False, linestyle="-.", markerfacecolor="white"
+            )
     lines = [np.asarray(drawn.get_ydata(), float) for panel in axes[0] for drawn in panel.lines]
     values = np.concatenate(lines) if lines else np.empty(0)
     if (values > 0).any():
         axes[0, 0].set_yscale("log")
         top = float(np.nanmax(values))
         style.log_ticks(axes[0, 0].yaxis, max(float(values[values > 0].min()), top / 39), top)
-    close(figure, handles, "Friction energy by contact model", _told(shown, "Rolling only."), 2)
+    _close(figure, handles, "Friction energy by contact model", _told(shown, "Rolling only."))
     caption = (
         "Friction energy of both contacts per distance. The local product is the published one; from the "
         "resultants is the work that drive and tilting forces put in."
@@ -154,7 +158,7 @@ def energy(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
     return figure, style.FigureInfo("models-energy", caption, gap(found, "friction_energy"))
 
 
-def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
+def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
     """Draw peak von Mises stress of the roller (else of the body that was asked for) and life."""
     rows: list[tuple[str, Values]] = []
     shown = frame(paired, hold=True)
@@ -183,7 +187,7 @@ def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> Drawn:
             mark_unlimited(panel, height)
         style.log_ticks(axes[-1, 0].yaxis, float(lived.min()), float(lived.max()))
     words = _told(shown, "The more loaded of the two contacts.")
-    close(figure, handles, "Peak stress and life by contact model", words)
+    _close(figure, handles, "Peak stress and life by contact model", words)
     return figure, style.FigureInfo(
         "models-peak-life", "Peak von Mises stress and life by contact model.", gap(found, "peak_stress")
     )

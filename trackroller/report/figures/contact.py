@@ -5,10 +5,8 @@ They show what Wenzel et al. 2022 show in their figures 6, 7 and 11, for any cas
 
 from __future__ import annotations
 
-import logging
-import warnings
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -16,8 +14,6 @@ from trackroller.errors import InputError
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
 from trackroller.report.figures.contact_sections import sections
-
-log = logging.getLogger(__name__)
 
 
 def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
@@ -46,19 +42,5 @@ def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
         if ds.sizes["case"] != 1:
             raise InputError("ds", f"{ds.sizes['case']} cases", "one case is drawn at a time", "Use ds.isel(case=i).")
         ds = ds.isel(case=0)
-    jobs: list[tuple[Any, tuple]] = [(shear_arrows, ()), (friction_energy, ())]
-    jobs += [(sections, (contact,)) for contact in ds["contact"].values.tolist()]
-    infos = []
-    with style.look(), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        for draw, arguments in jobs:
-            try:
-                drawn = draw(ds, *arguments)
-                if drawn is None:
-                    continue
-                style.save(drawn[0], Path(out_dir), drawn[1].name)
-            except Exception as problem:
-                log.warning("figure %s was not drawn: %s", draw.__name__, problem, exc_info=True)
-                continue
-            infos.append(drawn[1])
-    return infos
+    jobs = [partial(shear_arrows, ds), partial(friction_energy, ds)]
+    return style.draw_all([*jobs, *(partial(sections, ds, int(contact)) for contact in ds["contact"])], Path(out_dir))

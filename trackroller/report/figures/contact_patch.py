@@ -96,7 +96,7 @@ def _bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
     bar.set_label(label)
 
 
-def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
+def shear_arrows(ds: xr.Dataset) -> style.Drawn:
     """Draw direction and size of the shear traction on the roller, with the spin pole."""
     patches = patches_of(ds, "shear_lateral", "shear_rolling")
     sizes = [np.hypot(p.field("shear_lateral"), p.field("shear_rolling")) for p in patches]
@@ -113,7 +113,6 @@ def shear_arrows(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
     pole = any(p.spin_pole is not None for p in patches)
     dot = " Black dot: spin pole." if pole else ""
     style.head(figure, f"Shear traction on the roller: {case_name(ds)}", f"{case_text(ds)}{dot}{note}")
-    style.finish(figure)
     best = int(np.argmax([s.max() for s in sizes]))
     caption = (
         f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; shade: size, MPa). "
@@ -178,7 +177,7 @@ def _pole(axes: Axes, patch: Patch) -> None:
         )
 
 
-def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
+def friction_energy(ds: xr.Dataset) -> style.Drawn:
     """Draw the friction energy per area over both patches, and its profile across the running track."""
     name = "friction_energy_density"
     patches = patches_of(ds, name)
@@ -208,7 +207,6 @@ def friction_energy(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
         f"Friction energy of both contacts: {case_name(ds)}",
         case_text(ds) + ("" if to_scale else " Axes not to one scale."),
     )
-    style.finish(figure)
     caption = (
         f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
         f"direction: what each strip of the running track takes. {case_text(ds)}"

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.ticker import MaxNLocator
 
@@ -33,7 +32,7 @@ SLENDER = 2.5  # patches longer than this are not drawn to one scale
 ROW_MM, SHARE_MM = 36.0, 125.0  # height of a row; width that the panels of a row share
 
 
-def sections(ds: xr.Dataset, contact: int) -> tuple[Figure, style.FigureInfo] | None:
+def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
     """Draw lateral section, rolling section and surface of roller and guide under one contact, the peak marked.
 
     It answers: where does each body break first, at the surface or below it, and how far does the stress reach?
@@ -67,7 +66,6 @@ def sections(ds: xr.Dataset, contact: int) -> tuple[Figure, style.FigureInfo] | 
     scale = "" if to_scale else " Axes not to one scale."
     head = f"Von Mises stress under contact {contact}: {case_name(ds)}"
     style.head(figure, head, f"{case_text(ds)} Cross: peak; ring: peak below the surface.{scale}")
-    style.finish(figure)
     caption = (
         f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section plane through the peak "
         f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A cross marks the peak; on "

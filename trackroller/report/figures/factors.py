@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-import re
-import textwrap
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
-from trackroller.report.claims import classes, explained
+from trackroller.report.claims import explained
 from trackroller.report.effects import effect_of
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import capped, class_words, groups_of, legend, mark_unlimited
-from trackroller.report.numbers import capital, factor_label, level_text, long_name, short_levels, with_unit
+from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
+from trackroller.report.groups import Groups, classes, coloured, groups
+from trackroller.report.numbers import capital, factor_label, long_name, with_unit
 from trackroller.report.view import StudyView
 
 MAX_PANELS = 9
 BINS = 6
-Groups = list[tuple[str, np.ndarray]]
+Series = list[tuple[str, np.ndarray]]
 PANEL_LETTERS = 33  # letters of 7 pt under the axis of a panel
 MATTERS = 0.1  # of the variance: a category that explains more is never pooled
 FEWEST = 3  # a median is drawn from at least this number of rows
 
 
-def by_factor(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+def by_factor(view: StudyView) -> style.Drawn:
     """Draw the median and quartiles of an output along each factor, a colour a level of the deciding factor.
 
     It answers: which way and how far does each factor move the life, and is that so for every material?
@@ -48,12 +46,12 @@ def by_factor(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
         return None
     columns = min(3, len(names))
     figure = style.new_figure(26 + 50 * -(-len(names) // columns))
-    first, groups = None, groups_of(view, lead, rows)
-    series = {name: _series(view, name, rows, groups, lead) for name in names}
+    first, colours = None, coloured(view, lead, rows)
+    series = {name: _series(view, name, rows, colours, lead) for name in names}
     for i, name in enumerate(names):
         axes = figure.add_subplot(-(-len(names) // columns), columns, i + 1, sharey=first)
         first = first or axes
-        _panel(axes, view, name, rows, values, series[name])
+        _panel(axes, groups(view, name, rows, BINS), values, series[name])
         axes.tick_params(labelleft=i % columns == 0)
         mark_unlimited(axes, top)
     if first is not None and "life" in words:
@@ -62,12 +60,11 @@ def by_factor(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     figure.supylabel(with_unit(capital(words), unit), fontsize=7.5)
     apart = any(len(drawn) > 1 for drawn in series.values())
     if apart:
-        looks = [{"color": c, "marker": m} for c, m in zip(style.palette(len(groups)), style.MARKERS, strict=False)]
-        legend(figure, [(text, look) for (text, _), look in zip(groups, looks, strict=True)])
+        looks = [{"color": c, "marker": m} for c, m in zip(style.palette(len(colours)), style.MARKERS, strict=False)]
+        legend(figure, [(text, look) for (text, _), look in zip(colours, looks, strict=True)])
     each = f" for each level of {long_name(lead)}" if apart else ""
     told = f"Lines: medians{each}; bands: the middle half of the valid designs."
     style.head(figure, f"{capital(words)} against each factor", told)
-    style.finish(figure)
     caption = f"{capital(words)} of the {rows.sum():,} valid designs along each factor, all others as they vary. {told}"
     return figure, style.FigureInfo(f"bands-{column}", caption, _sentence(view, column, words, rows))
 
@@ -88,12 +85,12 @@ def _lead(view: StudyView, column: str, rows: np.ndarray) -> str:
     return category if view.ordered(lead) and share.get(category, 0.0) > MATTERS else lead
 
 
-def _series(view: StudyView, name: str, rows: np.ndarray, groups: Groups, lead: str) -> Groups:
+def _series(view: StudyView, name: str, rows: np.ndarray, colours: Series, lead: str) -> Series:
     """Return the groups to tell apart in a panel: a deciding number is one line, as is a factor with too few rows."""
     whole = [("", np.ones(rows.sum(), bool))]
     if name == lead:
-        return whole if view.ordered(name) or len(groups) < len(view.levels(name)) else groups
-    return groups if any(_drawable(view, name, rows, chosen) for _, chosen in groups) else whole
+        return whole if view.ordered(name) or len(colours) < len(view.levels(name)) else colours
+    return colours if any(_drawable(view, name, rows, chosen) for _, chosen in colours) else whole
 
 
 def _drawable(view: StudyView, name: str, rows: np.ndarray, chosen: np.ndarray) -> bool:
@@ -102,51 +99,16 @@ def _drawable(view: StudyView, name: str, rows: np.ndarray, chosen: np.ndarray) 
     return bool((counts >= FEWEST).sum() > 1)
 
 
-def _panel(axes: Axes, view: StudyView, name: str, rows: np.ndarray, values: np.ndarray, groups: Groups) -> None:
+def _panel(axes: Axes, along: Groups, values: np.ndarray, series: Series) -> None:
     """Draw one factor: a line a group where the factor has an order, else marks with bars."""
-    index, ends = classes(view, name, rows, BINS)
-    ordered, own = view.ordered(name), view.table[name].to_numpy()[rows]
-    at = (
-        np.array([np.median(own[index == k]) if (index == k).any() else np.nan for k in range(len(ends))])
-        if ordered
-        else np.arange(len(ends), dtype=float)
-    )
-    colours = style.palette(len(groups)) if len(groups) > 1 else ["0.2"]
-    apart = len(groups) > 1 and all(np.ptp(index[chosen]) == 0 for _, chosen in groups)  # its colours name the levels
-    for g, ((_, chosen), colour) in enumerate(zip(groups, colours, strict=True)):
-        low, middle, high = _quartiles(values, index, chosen, len(ends))
-        shift = 0.0 if ordered or apart else 0.12 * (g - (len(groups) - 1) / 2)
-        look = {"color": colour, "marker": style.MARKERS[g % 10], "markersize": 3}
-        if ordered:
-            axes.fill_between(at, low, high, color=colour, alpha=0.18, linewidth=0)
-        else:
-            axes.vlines(at + shift, low, high, color=colour, alpha=0.35, linewidth=4)
-        axes.plot(at + shift, middle, linestyle="-" if ordered else "none", **look)
-    axes.set_xlabel(factor_label(name) if ordered else capital(long_name(name)))
-    if ordered:
-        axes.xaxis.set_major_locator(MaxNLocator(5))
-        return
-    names = [class_words(name, e) if isinstance(e, tuple) else level_text(name, e) for e in ends]
-    letters = max(6, PANEL_LETTERS // len(names))
-    texts = ["" for _ in names] if apart else [_wrapped(t, letters) for t in short_levels(names)]
-    axes.set_xticks(at, texts, linespacing=0.95)
-    axes.set_xlim(-0.6, len(at) - 0.4)
-
-
-def _wrapped(text: str, letters: int) -> str:
-    """Break a text into lines, but not between a number and its unit."""
-    return textwrap.fill(re.sub(r"(\d) ", "\\1\u00a0", text), letters).replace("\u00a0", " ")
-
-
-def _quartiles(values: np.ndarray, index: np.ndarray, chosen: np.ndarray, count: int) -> np.ndarray:
-    """Lower quartile, median and upper quartile in each class, (3, count); NaN for fewer than three rows."""
-    found = np.full((3, count), np.nan)
-    for k in range(count):
-        own = values[chosen & (index == k)]
-        own = own[~np.isnan(own)]
-        if own.size >= FEWEST:
-            found[:, k] = np.percentile(own, (25, 50, 75), method="nearest")
-    return found
+    colours = style.palette(len(series)) if len(series) > 1 else ["0.2"]
+    apart = len(series) > 1 and all(np.ptp(along.index[chosen]) == 0 for _, chosen in series)  # colours name the levels
+    for g, ((_, chosen), colour) in enumerate(zip(series, colours, strict=True)):
+        shift = 0.0 if along.ordered or apart else 0.12 * (g - (len(series) - 1) / 2)
+        drawn = quantiles(values[chosen], along.index[chosen], len(along), (25, 50, 75), FEWEST)
+        band(axes, along.at + shift, drawn, {"color": colour, "marker": style.MARKERS[g % 10]}, along.ordered)
+    axes.set_xlabel(factor_label(along.name) if along.ordered else capital(long_name(along.name)))
+    set_axis(axes, replace(along, texts=("",) * len(along)) if apart else along, PANEL_LETTERS)
 
 
 def _sentence(view: StudyView, column: str, words: str, rows: np.ndarray) -> str:

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from trackroller.report.claims import leading_factor
 from trackroller.report.effects import effect_of
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import Entries, drive_entries, drive_of, groups_of, legend, marks, running
+from trackroller.report.figures.panels import Entries, drive_entries, drive_of, legend, marks, running
 from trackroller.report.findings import lift_off, surface
+from trackroller.report.groups import coloured
 from trackroller.report.numbers import factor_label, listing, number, quantity, symbol, with_unit
 from trackroller.report.view import BODIES, StudyView
 
@@ -25,7 +25,7 @@ FORCES = (
 )
 
 
-def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+def stress_against_fit(view: StudyView) -> style.Drawn:
     """Draw peak stress over the fit, coloured by what decides it beside the fit; of a sample the medians with bands.
 
     It answers: how much stress does a closer groove save, and does it move the peak from below to the surface? In a
@@ -42,7 +42,7 @@ def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | Non
         return None
     columns = [f"peak_stress_{body}" for body in bodies]
     inside = np.isin(np.arange(len(view.table)), rows.index)
-    chosen = groups_of(view, hue, inside) if hue else [("", np.ones(len(rows), bool))]
+    chosen = coloured(view, hue, inside) if hue else [("", np.ones(len(rows), bool))]
     rows, label = add_fit(view, rows)
     groups = [(text, rows.index.to_numpy()[mask]) for text, mask in chosen]
     groups = _merged(groups, rows, columns) if view.grid else groups
@@ -66,7 +66,6 @@ def stress_against_fit(view: StudyView) -> tuple[Figure, style.FigureInfo] | Non
     legend(figure, entries, 2)
     told = held if view.grid else MEDIANS
     style.head(figure, "Peak stress against fit", told)
-    style.finish(figure)
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
         f"guide; rolling designs. {told}"
@@ -132,7 +131,7 @@ def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any
     return marks(axes, part, "_fit", y, {**look, "s": 15}, at_surface)
 
 
-def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+def forces_against_axial(view: StudyView) -> style.Drawn:
     """Draw normal, lateral and driving force of both contacts over the axial force, by drive.
 
     It answers: how do the contacts share the load, and at which axial force does one lift off?
@@ -172,7 +171,6 @@ def forces_against_axial(view: StudyView) -> tuple[Figure, style.FigureInfo] | N
     ]
     legend(figure, entries + (drive_entries(drives) if drives != [None] else []), 5)
     style.head(figure, "Forces of both contacts against axial force", told)
-    style.finish(figure)
     each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
     caption = f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}."
     return figure, style.FigureInfo("forces_against_axial_force", f"{caption} {told}".strip(), _force_sentence(view))

@@ -12,23 +12,21 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.claims import classes
 from trackroller.report.figures import style
 from trackroller.report.findings import extremes
+from trackroller.report.groups import BINS, classes
 from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
 from trackroller.report.view import StudyView
 
 MAX_TICKS = 9
 MOST_WRITTEN = 72  # cells of a map with its values written in
-BINS = 8  # classes of a factor with many levels in a sample
 Pair = tuple[str, str]
 
 
-def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+def life_map(view: StudyView) -> style.Drawn:
     """Draw life over the two numeric factors with most effect; in a grid parts that do not roll are marked.
 
     It answers: how long does the roller live, and where on the map is it no longer rolling? A small map has its lives
@@ -56,7 +54,6 @@ def life_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     axes.grid(False)
     over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
     style.head(figure, capital(over), held)
-    style.finish(figure)
     how = "Outlined parts do not roll" if view.grid else "Each cell is the median of its cases"
     inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
     said = extremes(view, column, words, unit, pair, inside)

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
-from trackroller.report.claims import classes
 from trackroller.report.figures import style
-from trackroller.report.numbers import level_text, long_name, number, setting
-from trackroller.report.view import StudyView
+from trackroller.report.groups import Groups
+from trackroller.report.numbers import level_text
 
-COLOURS = 5  # most levels of the deciding factor that get a colour each
 CLASSES, FEWEST = 8, 5  # most classes of a sample along an axis, and fewest rows of a class
 Entries = list[tuple[str, dict[str, Any]]]
 
@@ -73,17 +76,10 @@ def marks(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any], 
         axes.scatter(part[x], part[y], linewidth=0.8, zorder=3, **shown)
 
 
-def legend(figure: Figure, entries: Entries, columns: int = 3) -> None:
-    """Draw the legend under the axes, so that it never covers data."""
-    figure.legend(
-        handles=[Line2D([], [], label=text, **look) for text, look in entries],
-        loc="outside lower left",
-        ncols=columns,
-        alignment="left",
-        handlelength=2.4,
-        borderaxespad=0.2,
-        columnspacing=1.2,
-    )
+def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
+    """Draw the legend under the axes, so that it never covers data: of looks, or of what is drawn by its label."""
+    own = entries if isinstance(entries, Mapping) else {text: Line2D([], [], **look) for text, look in entries}
+    figure.legend(own.values(), own, loc="outside lower left", ncols=columns, alignment="left")
 
 
 def drive_entries(drives: list[Any]) -> Entries:
@@ -97,6 +93,30 @@ def drive_of(levels: list[Any] | None) -> list[Any]:
     return levels if levels is not None and len(levels) <= 5 else [None]
 
 
+def quantiles(
+    values: np.ndarray, index: np.ndarray, count: int, shares: tuple[int, int, int] = (5, 50, 95), fewest: int = 1
+) -> np.ndarray:
+    """Return three percentiles of the values (n,) of each group, shape (3, count); NaN for a group of few values."""
+    found = np.full((3, count), np.nan)
+    for k in range(count):
+        own = values[(index == k) & ~np.isnan(values)]
+        if own.size >= fewest:
+            found[:, k] = np.percentile(own, shares, method="nearest")
+    return found
+
+
+def band(
+    axes: Axes, at: np.ndarray, values: np.ndarray, look: dict[str, Any], ordered: bool, shade: bool = True
+) -> Any:
+    """Draw the middle of three percentiles, shape (3, groups), and a band, or bars where the groups have no order."""
+    low, middle, high = values
+    if shade and ordered:
+        axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
+    elif shade:
+        axes.vlines(at, low, high, color=look["color"], alpha=0.35, linewidth=4)
+    return axes.plot(at, middle, **{"markersize": 3, **look, **({} if ordered else {"linestyle": "none"})})[0]
+
+
 def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> None:
     """Draw the median of a sample along x, in classes of equally many rows, with a band from 5 to 95 %.
 
@@ -108,33 +128,24 @@ def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> N
     good = np.isfinite(x) & np.isfinite(y)
     x, y = x[good], y[good]
     levels, index = np.unique(x, return_inverse=True)
-    most = min(CLASSES, x.size // FEWEST)
-    if levels.size > max(most, 1):
-        index = np.argsort(np.argsort(x, kind="stable"), kind="stable") * max(most, 1) // max(x.size, 1)
-    members = [index == k for k in np.unique(index)]
-    at = [np.median(x[m]) for m in members]
-    low, middle, high = np.array([np.percentile(y[m], (5, 50, 95), method="nearest") for m in members]).reshape(-1, 3).T
-    axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
-    axes.plot(at, middle, markersize=3, **look)
+    most = max(min(CLASSES, x.size // FEWEST), 1)
+    if levels.size > most:
+        index = np.argsort(np.argsort(x, kind="stable"), kind="stable") * most // x.size
+    count = int(index.max(initial=-1)) + 1
+    at = np.array([np.median(x[index == k]) for k in range(count)])
+    band(axes, at, quantiles(y, index, count), look, ordered=True)
 
 
-def groups_of(view: StudyView, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:
-    """Return each level (or third) of the deciding factor in words, and which of the chosen rows have it.
+def set_axis(axes: Axes, along: Groups, letters: int) -> None:
+    """Write the names of groups without an order under an axis that is `letters` letters wide, or the ticks of numbers.
 
-    Parameters
-    ----------
-    rows : the chosen cases, shape (n,) bool
+    A line breaks between words, but not between a number and its unit.
     """
-    index, ends = classes(view, lead, rows, 3)
-    present = [k for k in range(len(ends)) if (index == k).any()]
-    if len(present) > COLOURS:  # a number of many levels: lowest, highest and between
-        chosen = np.unique(np.linspace(0, len(present) - 1, COLOURS).round().astype(int))
-        present = [present[k] for k in chosen]
-    return [(class_words(lead, ends[k]), index == k) for k in present]
-
-
-def class_words(name: str, end: Any) -> str:
-    """Write a level of a factor, or the ends (low, high) of a class, with the name of a factor that needs it."""
-    if isinstance(end, tuple):
-        return f"{long_name(name)} {number(float(f'{end[0]:.3g}'))} to {level_text(name, float(f'{end[1]:.3g}'))}"
-    return level_text(name, end) if isinstance(end, str) else setting(name, end)
+    if along.ordered:
+        axes.xaxis.set_major_locator(MaxNLocator(5))
+        return
+    width = max(6, letters // len(along))
+    kept = [re.sub(r"(\d) ", "\\1\u00a0", text) for text in along.texts]
+    texts = [textwrap.fill(text, width).replace("\u00a0", " ") for text in kept]
+    axes.set_xticks(along.at, texts, linespacing=0.95)
+    axes.set_xlim(-0.6, len(along) - 0.4)

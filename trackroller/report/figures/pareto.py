@@ -6,19 +6,17 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report import choices
 from trackroller.report.claims import leading_factor
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import groups_of
 from trackroller.report.findings import CONDITIONS
+from trackroller.report.groups import coloured
 from trackroller.report.numbers import capital, factor_label, listing, long_name, plain, with_unit
 from trackroller.report.view import StudyView
 from trackroller.study.design.entries import OPTION_FACTORS
 
-Drawn = tuple[Figure, style.FigureInfo] | None
 _WAYS = {"max": "up", "min": "down"}
 MAX_POINTS = 24
 
@@ -37,7 +35,7 @@ def _label(front: xr.Dataset, name: str) -> str:
     return with_unit(capital(text), units) if units else factor_label(name)
 
 
-def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
+def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Drawn:
     """Draw all allowed designs, coloured by the factor that decides the first goal, and the Pareto set.
 
     It answers: what does more of one goal cost in another, and which choice leads to which end of the set? The panels
@@ -60,7 +58,6 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> Drawn:
     figure.legend(handles, texts, loc="outside lower left", ncols=3, markerscale=1.5, alignment="left")
     kind = str(front.attrs.get("kind", "design"))
     style.head(figure, f"Pareto-optimal {kind}s", "Arrows on the axes: the wanted direction.")
-    style.finish(figure)
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
     limits = f" where {front.attrs['constraints']}" if front.attrs.get("constraints") else ""
     caption = (
@@ -79,7 +76,7 @@ def _groups(front: xr.Dataset, view: StudyView | None, goal: str) -> list[tuple[
     allowed[rows] = True
     lead = leading_factor(view, column, allowed)
     place = np.searchsorted(np.flatnonzero(allowed), rows)
-    return [(text, mask[place]) for text, mask in groups_of(view, lead, allowed)] if lead else []
+    return [(text, mask[place]) for text, mask in coloured(view, lead, allowed)] if lead else []
 
 
 def _trade(
@@ -116,7 +113,7 @@ def _trade(
     axes.set_ylabel(_label(front, y) + (" →" if up_y == "max" else " ←"))
 
 
-def robust_points(table: xr.Dataset, output: str) -> Drawn:
+def robust_points(table: xr.Dataset, output: str) -> style.Drawn:
     """Draw the spread of life and B10 of each design point, and how often it slips or lifts off.
 
     It answers: which design point keeps its life when conditions scatter, and which may slip?
@@ -148,7 +145,6 @@ def robust_points(table: xr.Dataset, output: str) -> Drawn:
         axes.tick_params(axis="y", length=0)
     figure.legend(loc="outside lower center", ncols=6, columnspacing=1.0, handletextpad=0.4)
     style.head(figure, f"{capital(name)} where conditions scatter")
-    style.finish(figure)
     inner = listing([long_name(n) for n in table.attrs["inner_factors"].split(", ")])
     caption = (
         f"Design points by falling B10, each with the same {table.attrs['inner_samples']} samples of {inner}. "

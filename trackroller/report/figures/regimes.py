@@ -6,21 +6,20 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.claims import classes
 from trackroller.report.figures import style
-from trackroller.report.figures.maps import BINS, Pair, cell_name, set_ticks
+from trackroller.report.figures.maps import Pair, cell_name, set_ticks
 from trackroller.report.findings import occurrence
+from trackroller.report.groups import BINS, classes
 from trackroller.report.numbers import capital, factor_label, long_name
 from trackroller.report.view import StudyView
 
 FEWEST = 5  # cases of a sample outside the most frequent regime
 
 
-def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+def regime_map(view: StudyView) -> style.Drawn:
     """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most.
 
     It answers: where may the roller not be used? None where nothing or too little of a sample does not roll.
@@ -42,7 +41,6 @@ def regime_map(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     axes.set_ylabel(factor_label(pair[1]))
     axes.grid(False)
     style.head(figure, "Regimes: rolling, full slip, lift-off", note)
-    style.finish(figure)
     said = [occurrence(view, view.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
     caption = f"Regime of the cases over {long_name(pair[0])} and {long_name(pair[1])}. {note}"
     return figure, style.FigureInfo("regime_map", caption.strip(), " ".join(s.text for s in said if s))

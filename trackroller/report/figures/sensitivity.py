@@ -17,7 +17,6 @@ from trackroller.report import sentences as words
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, unit_text
 
-Drawn = tuple[Figure, style.FigureInfo] | None
 MAX_BARS = 12
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 FIRST = (
@@ -59,7 +58,7 @@ def title(sens: xr.Dataset, output: str) -> str:
     return capital(words.of_output(sens, output))
 
 
-def tornado(sens: xr.Dataset, output: str) -> Drawn:
+def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
     """Draw bars of the headline index with 95 % intervals, the largest on top; of Sobol indices both.
 
     It answers: which factor decides, and how sure is that?
@@ -85,7 +84,6 @@ def tornado(sens: xr.Dataset, output: str) -> Drawn:
     axes.axvline(0, color="0.2", linewidth=0.7)
     axes.set_xlabel(_axis(sens, output, index))
     style.head(figure, f"{title(sens, output)}: what decides it")
-    style.finish(figure)
     caption = (
         f"{capital(words.INDEX_WORDS[index])} of each factor on {words.of_output(sens, output)}; whiskers: 95 % "
         f"intervals. {sens.attrs.get('treatment', '')}."
@@ -112,7 +110,7 @@ def _bars(axes: Axes, ranks: list[words.Rank], place: dict[str, float], look: di
         axes.errorbar(value[good], at[good], xerr=error[:, good], **whisker)
 
 
-def overview(sens: xr.Dataset) -> Drawn:
+def overview(sens: xr.Dataset) -> style.Drawn:
     """Draw all outputs at once: the headline index of each factor, relative to the largest where it has units.
 
     It answers: which other result moves when a factor is changed for the sake of the life?
@@ -155,7 +153,7 @@ def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, he
     return figure
 
 
-def convergence(sens: xr.Dataset, output: str) -> Drawn:
+def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
     """Draw the headline index of the leading factors over the number of samples, with 95 % bands.
 
     It answers: are the samples enough, or does the ranking still change?
@@ -183,12 +181,11 @@ def convergence(sens: xr.Dataset, output: str) -> Drawn:
     axes.set_ylim(min(0.0, -0.1 * top), 1.35 * top)
     figure.legend(loc="outside lower center", ncols=3)
     style.head(figure, f"{title(sens, output)}: course of the indices")
-    style.finish(figure)
     caption = f"{capital(words.INDEX_WORDS[index])} from the first samples up to all of them; bands: 95 % intervals."
     return figure, style.FigureInfo(f"convergence-{output}", caption, words.convergence(sens, output).text)
 
 
-def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
+def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     """Draw sigma over mu*: right matters, above the line acts differently from place to place.
 
     It answers: which factors can be left out of a further study, and which act only together with others?
@@ -229,7 +226,6 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
     axes.set_ylim(0, float(np.nanmax(y)) * 1.15 or 1.0)
     figure.legend(loc="outside right upper")
     style.head(figure, f"{title(sens, output)}: elementary effects")
-    style.finish(figure)
     caption = (
         "Elementary effects over each factor's whole range: to the right a factor matters; above the lines "
         "its effect depends on where one is. Whiskers: 95 % intervals."
@@ -237,7 +233,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> Drawn:
     return figure, style.FigureInfo(f"morris-{output}", caption, words.morris(sens, output).text)
 
 
-def interactions(sens: xr.Dataset, output: str) -> Drawn:
+def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     """Draw a heat map of two-factor interactions, main effects on the diagonal.
 
     It answers: which two factors have to be chosen together? None where no interaction is worth that.

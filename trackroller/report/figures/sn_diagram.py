@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from trackroller.damage import fatigue
 from trackroller.damage.fatigue import curve_of
@@ -45,7 +44,7 @@ def scatters(material: Material) -> bool:
     return material.scatter_in_cycles is not None or material.scatter_in_stress is not None
 
 
-def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
+def sn_diagram(view: StudyView) -> style.Drawn:
     """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
 
     It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
@@ -77,7 +76,6 @@ def sn_diagram(view: StudyView) -> tuple[Figure, style.FigureInfo] | None:
     panels[0].set_ylabel(with_unit(r"Peak von Mises stress $\sigma_\mathrm{DEH}$", "MPa"))
     legend(figure, _entries(names, colours, known), columns=4)
     style.head(figure, "S-N diagram with the cases of the study", "Peak stress and life of the worse contact.")
-    style.finish(figure)
     return figure, _info(view, shown, known, rule, ends[1])
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from trackroller.report.choices import chance
 from trackroller.report.figures import style
@@ -15,7 +14,7 @@ from trackroller.study.spectrum.solve import BODIES
 MOST = 16  # blocks drawn one by one; the others stand together
 
 
-def damage_by_block(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
+def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     """Draw the share of each block in the damage of the track that fails first, one panel a body.
 
     Parameters
@@ -52,6 +51,5 @@ def damage_by_block(ds: xr.Dataset) -> tuple[Figure, style.FigureInfo] | None:
         told.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
     panels[0].invert_yaxis()
     style.head(figure, f"Damage by block: {ds.attrs['title']}")
-    style.finish(figure)
     caption = "Share of each block in the damage of a shift, in the track of each body that fails first."
     return figure, style.FigureInfo("damage_by_block", caption, f"{listing(told)}.")

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import logging
-import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
@@ -32,10 +30,9 @@ from trackroller.report.figures.sensitivity import (
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.known_errors import FRICTION_OUTPUTS, friction_error
 from trackroller.report.view import StudyView
-from trackroller.study.files import WorkError
 
 log = logging.getLogger(__name__)
-Draw = Callable[[], "tuple[Any, style.FigureInfo] | None"]
+Draw = Callable[[], style.Drawn]
 OF_CASES = (by_factor, life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)
 FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
@@ -59,41 +56,23 @@ def draw_all(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) 
         The figures drawn, in the order of the report. A figure that cannot be drawn is left out with a logged warning,
         so that a figure never stops a run.
     """
-    with xr.open_dataset(study_nc) as opened:
-        ds = opened.load()
-    sens = None
-    if sensitivity_nc is not None:
-        with xr.open_dataset(sensitivity_nc) as opened:
-            sens = opened.load()
-    jobs = list(_jobs(ds, StudyView.of(ds), sens))
+    ds = xr.load_dataset(study_nc)
+    sens = None if sensitivity_nc is None else xr.load_dataset(sensitivity_nc)
+    view = StudyView.of(ds)
+    jobs = list(_jobs(ds, view, sens))
     if sens is not None:
         before, after = _of_analysis(sens)
         jobs = [*before, *jobs, *after]
-    error, infos = friction_error(StudyView.of(ds)), []
-    with style.look(), warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
-        for draw in jobs:
-            info = _saved(draw, Path(out_dir))
-            if info is not None:
-                told = f"{info.name} {info.caption} {info.sentence}"
-                about = any(name in told for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
-                infos.append(replace(info, sentence=f"{info.sentence} {error.text}") if error and about else info)
+    infos = style.draw_all(jobs, Path(out_dir))
+    if error := friction_error(view):
+        infos = [replace(i, sentence=f"{i.sentence} {error.text}") if _is_about_friction(i) else i for i in infos]
     style.write_index(infos, Path(out_dir))
     return infos
 
 
-def _saved(draw: Draw, out_dir: Path) -> style.FigureInfo | None:
-    try:
-        drawn = draw()
-        if drawn is None:
-            return None
-        style.save(drawn[0], out_dir, drawn[1].name)
-    except WorkError:  # a full disk is not the figure's fault
-        raise
-    except Exception as problem:
-        log.warning("a figure was not drawn: %s", problem, exc_info=True)
-        return None
-    return drawn[1]
+def _is_about_friction(info: style.FigureInfo) -> bool:
+    told = f"{info.name} {info.caption} {info.sentence}"
+    return any(name in told for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
 
 
 def _jobs(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None) -> Iterator[Draw]:

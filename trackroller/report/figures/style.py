@@ -8,8 +8,10 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import logging
 import math
-from collections.abc import Iterator, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -23,7 +25,9 @@ from matplotlib.textpath import TextToPath
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
 from trackroller.report.numbers import number
-from trackroller.study.files import write_text, write_whole
+from trackroller.study.files import WorkError, write_text, write_whole
+
+log = logging.getLogger(__name__)
 
 COLUMN_MM = 85.0  # a column of a two-column page
 WIDE_MM = 170.0  # the one wide column of the report
@@ -41,6 +45,8 @@ _RC: dict[Any, Any] = {
     "legend.title_fontsize": 7.0,
     "figure.titlesize": 8.5,
     "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
     "lines.linewidth": 1.2,
     "lines.markersize": 4.0,
     "grid.linewidth": 0.4,
@@ -55,6 +61,9 @@ _RC: dict[Any, Any] = {
     "font.family": ["DejaVu Sans"],
     "mathtext.fontset": "dejavusans",
     "legend.frameon": False,
+    "legend.handlelength": 2.4,
+    "legend.borderaxespad": 0.2,
+    "legend.columnspacing": 1.2,
     "svg.fonttype": "path",
     "svg.hashsalt": "trackroller",
     "savefig.dpi": 300,
@@ -68,6 +77,9 @@ class FigureInfo:
     name: str
     caption: str
     sentence: str
+
+
+Drawn = tuple[Figure, FigureInfo] | None  # what a figure's function returns; None without anything to show
 
 
 @contextlib.contextmanager
@@ -150,14 +162,6 @@ def log_ticks(axis: Any, low: float, high: float) -> None:
     axis.set_minor_locator(NullLocator())
 
 
-def finish(figure: Figure) -> None:
-    """Hide the right and upper spines of all axes but colour bars."""
-    for axes in figure.axes:
-        for side in ("top", "right"):
-            if side in axes.spines:
-                axes.spines[side].set_visible(axes.get_label() == "<colorbar>")
-
-
 def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     """Write `name`.svg and `name`.png, both whole or not at all, and return the two paths."""
     _lay_out(figure)
@@ -168,6 +172,29 @@ def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
         figure.savefig(drawn, format=path.suffix[1:], metadata=metadata)
         write_whole(path, partial(Path.write_bytes, data=drawn.getvalue()))
     return paths
+
+
+def draw_all(jobs: Iterable[Callable[[], Drawn]], out_dir: Path) -> list[FigureInfo]:
+    """Draw and save figures, and return what each shows; one that cannot be drawn is logged and left out.
+
+    Raises
+    ------
+    WorkError
+        If the folder cannot be written.
+    """
+    infos = []
+    with look(), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
+        for draw in jobs:
+            try:
+                if (drawn := draw()) is not None:
+                    save(drawn[0], out_dir, drawn[1].name)
+                    infos.append(drawn[1])
+            except WorkError:  # a full disk is not the figure's fault
+                raise
+            except Exception as problem:  # a figure never fails a run
+                log.warning("a figure was not drawn: %s", problem, exc_info=True)
+    return infos
 
 
 def write_index(infos: Sequence[FigureInfo], out_dir: Path, name: str = "index.json") -> Path:
