@@ -9,24 +9,16 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from trackroller.contact.slip import pole_lateral, profile_slip
-
-
-class _Rows:
-    """Row selection for dataclasses whose fields are arrays along one axis."""
-
-    def take(self, index) -> Any:
-        """Return the entries `index` (integer or boolean array) of every field; a field that is None stays None."""
-        values = (getattr(self, field.name) for field in dataclasses.fields(self))  # type: ignore[arg-type]
-        return type(self)(*(None if value is None else value[index] for value in values))
+from trackroller.numerics.rows import Rows
 
 
 @dataclass(frozen=True)
-class Ellipse(_Rows):
+class Ellipse(Rows):
     """Contact ellipses of Hertz's theory: a along x_C (lateral), b along y_C (rolling) [mm], p_max [MPa]; (n,)."""
 
     semi_axis_lateral: np.ndarray
@@ -67,7 +59,7 @@ class Ellipse(_Rows):
 
 
 @dataclass(frozen=True)
-class Slip(_Rows):
+class Slip(Rows):
     """Kinematics of n patches, from which the rigid slip follows.
 
     Parameters
@@ -137,7 +129,7 @@ class Slip(_Rows):
 
 
 @dataclass(frozen=True)
-class Resultants(_Rows):
+class Resultants(Rows):
     """Lateral and driving friction force on the roller [N] and spin moment about z_C [N mm], arrays (n,)."""
 
     lateral_force: np.ndarray
@@ -158,7 +150,7 @@ class Resultants(_Rows):
 
 
 @dataclass(frozen=True)
-class Works(_Rows):
+class Works(Rows):
     """Work per distance travelled [N], arrays (n,).
 
     Attributes
@@ -180,7 +172,7 @@ class Works(_Rows):
 
 
 @dataclass(frozen=True)
-class Elastic(_Rows):
+class Elastic(Rows):
     """Combined elastic constants of pairs of bodies (Kalker 1990, eq. 1.44), arrays (n,).
 
     1/G = (1/G1 + 1/G2)/2, nu/G = (nu1/G1 + nu2/G2)/2, K/G = ((1-2 nu1)/G1 - (1-2 nu2)/G2)/4,

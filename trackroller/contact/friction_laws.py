@@ -93,11 +93,6 @@ class FrictionLaw:
             return {"kind": "constant"}
         return dict(self.form) or {"kind": "table", "speed": self.speed.tolist(), "friction": self.factor.tolist()}
 
-    @property
-    def json(self) -> str:
-        """Return the canonical JSON text of `as_dict`; equal laws of one kind give equal text."""
-        return json.dumps(self.as_dict(), sort_keys=True, separators=(",", ":"))
-
 
 def constant() -> FrictionLaw:
     """Return Coulomb's law, with the factor 1 at every speed."""

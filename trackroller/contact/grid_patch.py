@@ -8,14 +8,14 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from trackroller.contact.common import _Rows
 from trackroller.contact.normal.measure import Box, patch_box
+from trackroller.numerics.rows import Rows
 
 SLIGHT = 5e-3  # share of the largest pressure below which an element does not count as loaded
 
 
 @dataclass(frozen=True)
-class GridPatch(_Rows):
+class GridPatch(Rows):
     """n patches with the interface `protocol.Patch`, on grids of N x M elements over their boxes; M is a multiple of N.
 
     Attributes

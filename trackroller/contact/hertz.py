@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import elliprd
 
-from trackroller.contact.common import Ellipse, _Rows
+from trackroller.contact.common import Ellipse
 from trackroller.errors import InputError
+from trackroller.numerics.rows import Rows
 
 # Table of the published program: xi and eta over cos tau = |k_x - k_y|/(k_x + k_y).
 PUBLISHED_COS_TAU = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 0.995, 0.9995])
@@ -20,7 +21,7 @@ PUBLISHED_ETA = np.array([0.938, 0.879, 0.824, 0.771, 0.718, 0.664, 0.607, 0.544
 
 
 @dataclass(frozen=True)
-class HertzShape(_Rows):
+class HertzShape(Rows):
     """Semi-axes a, b and largest pressure p_max for a unit normal force; all three scale with F_N^(1/3).
 
     They follow from geometry and material. Arrays of shape (n,): `lateral` and `rolling` [mm N^(-1/3)], `pressure`

@@ -26,6 +26,7 @@ from trackroller.halfspace.rigid_slip import (
     rolling_slip,
     slip_zeros,
 )
+from trackroller.numerics.rows import Rows
 from trackroller.parameters import SPIN_MODELS
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def spin_model_index(name: str) -> int:
 
 
 @dataclass(frozen=True)
-class Creepage:
+class Creepage(Rows):
     """Rigid slip of the roller against the guide per travel speed in n patches.
 
     w_x = eta - phi y and w_y = xi + phi x, plus the profile's part if `profile` is given.
@@ -105,11 +106,6 @@ class Creepage:
         """
         longitudinal, spin = np.asarray(slip.longitudinal, float), np.asarray(slip.spin, float)
         return cls(longitudinal, np.zeros_like(longitudinal), spin, slip if profile else None)
-
-    def take(self, rows) -> Creepage:
-        """Return the creepages of the patches `rows` (integer or boolean array)."""
-        profile = None if self.profile is None else self.profile.take(rows)
-        return Creepage(self.longitudinal[rows], self.lateral[rows], self.spin[rows], profile)
 
     def along(self, x: np.ndarray) -> np.ndarray:
         """Return w_y at lateral positions x (n, m) [mm], shape (n, m)."""

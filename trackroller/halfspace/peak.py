@@ -17,6 +17,7 @@ from trackroller.halfspace.ellipse import FIELD, fields_of, refinement, unit_rul
 from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Patches, lengths
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
 from trackroller.halfspace.peak_settings import PeakSettings
+from trackroller.numerics.rows import Rows
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
@@ -34,7 +35,7 @@ class Rules(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Peak:
+class Peak(Rows):
     """Peak von Mises stress and its place; arrays (n, 2), second axis roller and guide.
 
     `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated relative error.
@@ -55,10 +56,6 @@ class Peak:
         """Overwrite the rows by other peaks."""
         for field in dataclasses.fields(self):
             getattr(self, field.name)[rows] = getattr(found, field.name)
-
-    def take(self, rows: np.ndarray) -> Peak:
-        """Return the peaks `rows`."""
-        return Peak(*(getattr(self, field.name)[rows] for field in dataclasses.fields(self)))
 
 
 def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: float) -> Peak:

@@ -1,1 +1,1 @@
-"""Numerical helpers without physics: quadrature, threads, interpolation knots and expressions."""
+"""Numerical helpers without physics: quadrature, threads, interpolation knots, rows and expressions."""

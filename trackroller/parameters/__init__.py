@@ -17,9 +17,7 @@ from trackroller.parameters.options import OPTIONS, Option, options_text, words_
 __all__ = ["OPTIONS", "PARAMETERS", "Option", "Parameter", "options_text", "words_of"]
 
 OUTPUT_GROUPS, CONTACT_MODELS = words_of("outputs"), words_of("contact_model")
-NORMAL, SPIN_MODELS, ACCURACIES = words_of("normal"), words_of("spin_model"), words_of("accuracy")
-HERTZ, STRESS_BODIES, LIFE_RULES = words_of("hertz"), words_of("stress_bodies"), words_of("life_rule")
-SLIP_TERMS = OPTIONS["slip_terms"].values
+SPIN_MODELS, ACCURACIES, LIFE_RULES = words_of("spin_model"), words_of("accuracy"), words_of("life_rule")
 DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
 EXACTNESS = ("kalker", "kalker_table", "fastsim", "sliding")  # contact models, the most exact first
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 from collections.abc import Iterable, Mapping
@@ -12,6 +13,7 @@ import numpy as np
 
 from trackroller.errors import InputError, check_names
 from trackroller.materials import Material, MaterialDatabase, load_database
+from trackroller.numerics.rows import once_each
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.fields import FIELDS, Default, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
@@ -195,13 +197,6 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
     return numbers
 
 
-def _materials(column: np.ndarray, database: MaterialDatabase) -> list[Material]:
-    """Return the materials of a column; each distinct material is looked up once."""
-    keys = [value if isinstance(value, str) else repr(value) for value in column]
-    known = {key: database.material(value) for key, value in dict(zip(keys, column, strict=True)).items()}
-    return [known[key] for key in keys]
-
-
 def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     """Return the checked arrays of cases, with materials and friction taken from the database.
 
@@ -228,7 +223,7 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     problem = geometry_problem(numbers) if n else None
     if problem is not None:
         raise problem
-    roller, guide = (_materials(columns[name], database) for name in MATERIAL_FIELDS)
+    roller, guide = (once_each(database.material, columns[name]) for name in MATERIAL_FIELDS)
     friction = numbers["friction_coefficient"].copy()
     for i in np.flatnonzero(np.isnan(friction)):
         level = columns["friction_coefficient"][i]
@@ -243,11 +238,6 @@ def _texts(name: str, column: np.ndarray) -> np.ndarray:
     """Return the canonical texts of a column of mappings; each distinct mapping is checked once."""
     if np.all(column == ""):  # most studies have no mapping, and a loop over a million cases takes seconds
         return column
-    known: dict[str, str] = {}
     out = np.empty(column.size, dtype=object)
-    for i, value in enumerate(column):
-        key = value if isinstance(value, str) else "" if value is None else repr(value)
-        if key not in known:
-            known[key] = mapping_text(name, value)
-        out[i] = known[key]
+    out[:] = once_each(functools.partial(mapping_text, name), column)
     return out

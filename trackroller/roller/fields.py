@@ -12,6 +12,7 @@ import numpy as np
 from trackroller.contact import friction_laws, profiles
 from trackroller.errors import InputError
 from trackroller.numerics.numbers import read_number
+from trackroller.numerics.rows import once_each
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.point_files import read_points
 
@@ -91,5 +92,4 @@ def own_friction(law: Any) -> float:
 
 def own_frictions(laws: np.ndarray) -> np.ndarray:
     """Return `own_friction` of the friction laws of n cases, shape (n,) [1]."""
-    known = {repr(law): own_friction(law) for law in np.ravel(laws)}
-    return np.array([known[repr(law)] for law in np.ravel(laws)]).reshape(np.shape(laws))
+    return np.array(once_each(own_friction, np.ravel(laws))).reshape(np.shape(laws))

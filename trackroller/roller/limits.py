@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.friction_laws import law_of
-from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
 from trackroller.roller.dataset import validity_bit
+from trackroller.roller.equilibrium import FULL_SLIP, ROLLING
 from trackroller.roller.solver import solve
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
 
 POINTS, ROUNDS = 17, 7  # cases a round on each search, and rounds: the range shrinks by 16 each time
-_ROLLING, _FULL_SLIP, _LIFT_OFF, _FAILED = (REGIMES.index(name) for name in REGIMES)
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
 
@@ -97,8 +97,8 @@ def _conditions(found: xr.Dataset) -> dict[str, np.ndarray]:
     """Return for each searched field which cases lie on the near side of its limit."""
     regime = found.regime.values
     return {
-        "axial_force": np.isin(regime, (_ROLLING, _FULL_SLIP)),
-        "motor_force": regime == _ROLLING,
+        "axial_force": np.isin(regime, (ROLLING, FULL_SLIP)),
+        "motor_force": regime == ROLLING,
         "friction_coefficient": (found.validity.values & _LOCKED) == 0,
     }
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from trackroller.materials import Material
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.numerics.rows import Rows
 
 
 @dataclass(frozen=True)
-class MaterialArrays:
+class MaterialArrays(Rows):
     """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D [MPa], N_Rm, N_k [1]."""
 
     name: np.ndarray
@@ -42,13 +42,9 @@ class MaterialArrays:
             cycles_at_fatigue_limit=values("cycles_at_fatigue_limit"),
         )
 
-    def take(self, index: np.ndarray) -> MaterialArrays:
-        """Return the rows `index`."""
-        return MaterialArrays(*(getattr(self, f.name)[index] for f in fields(self)))
-
 
 @dataclass(frozen=True)
-class CaseTable:
+class CaseTable(Rows):
     """Checked cases as arrays of shape (n,), with the units of `PARAMETERS` and the friction coefficient resolved.
 
     The mappings of a case (friction law, drawn profiles) stand as canonical JSON in arrays of str objects, "" for none.
@@ -73,8 +69,3 @@ class CaseTable:
 
     def __len__(self) -> int:
         return len(self.axis_distance)
-
-    def take(self, index: np.ndarray) -> CaseTable:
-        """Return the rows `index`."""
-        numbers = {name: getattr(self, name)[index] for name in (*PARAMETERS, *MAPPING_FIELDS)}
-        return CaseTable(**numbers, roller=self.roller.take(index), guide=self.guide.take(index))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -16,16 +16,7 @@ from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import ShapeError
 
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
-SCALARS = (
-    "semi_axis_lateral",
-    "semi_axis_rolling",
-    "max_pressure",
-    "centre",
-    "approach",
-    "area",
-    "reaches_edge",
-    "residual",
-)
+SCALARS = tuple(field.name for field in fields(GridPatch) if field.name not in ("normal_force", "pressure"))
 
 
 @dataclass(frozen=True)

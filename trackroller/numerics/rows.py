@@ -1,0 +1,30 @@
+"""Select rows of data classes whose fields are arrays, and treat equal values of a column once."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterable
+from typing import Any
+
+
+class Rows:
+    """Row selection for data classes whose fields are arrays along one axis."""
+
+    def take(self, index) -> Any:
+        """Return the entries `index` (integer or boolean array) of every field; a field that is None stays None."""
+        values = (getattr(self, field.name) for field in dataclasses.fields(self))  # type: ignore[arg-type]
+        return type(self)(*(_part(value, index) for value in values))
+
+
+def _part(value: Any, index: Any) -> Any:
+    if value is None:
+        return None
+    return value.take(index) if isinstance(value, Rows) else value[index]
+
+
+def once_each(make: Callable[[Any], Any], values: Iterable[Any]) -> list[Any]:
+    """Return `make(value)` for each value; it is called once for values that are written alike."""
+    values = list(values)
+    keys = [value if isinstance(value, str) else repr(value) for value in values]
+    made = {key: make(value) for key, value in dict(zip(keys, values, strict=True)).items()}
+    return [made[key] for key in keys]
