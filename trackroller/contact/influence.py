@@ -16,11 +16,9 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 from rocket_fft import c2c
-from scipy.fft import next_fast_len
 
 FAST = {"contract", "reassoc", "arcp", "nsz"}
 
-HALO = 3  # rows of displacements beside those of the elements: one behind, two ahead
 ROUND = 1e-5  # least |a^2 - b^2|/(a b) at which the closed form for ellipses keeps its digits; the form errs by less
 DIGITS = 13  # digits of element sizes and Poisson's ratio; patches that differ by rounding share influence functions
 
@@ -98,12 +96,12 @@ def pressure_displacements(hx, hy, ny, nx, below, above):
 
 
 @njit(cache=True, nogil=True)
-def _multipliers(kernel, ny, nx, ly, lx):
-    """Return the spectrum (ly, lx) of a complex influence function (2 ny - 1 + HALO, 2 nx - 1) of the distances."""
-    field = np.zeros((ly, lx), np.complex128)
-    for j in range(2 * ny - 1 + HALO):
+def _multipliers(kernel, ny, nx):
+    """Return the spectrum (2 ny, 2 nx) of a complex influence function (2 ny - 1, 2 nx - 1) of the distances."""
+    field = np.zeros((2 * ny, 2 * nx), np.complex128)
+    for j in range(2 * ny - 1):
         for i in range(2 * nx - 1):
-            field[(j - ny + 1) % ly, (i - nx + 1) % lx] = kernel[j, i]
+            field[(j - ny + 1) % (2 * ny), (i - nx + 1) % (2 * nx)] = kernel[j, i]
     c2c(field, field, np.array([0, 1]), True, 1.0, 1)
     return field
 
@@ -120,79 +118,72 @@ def _combined(p, q, z, out):
 
 
 @njit(cache=True, nogil=True)
-def convolve(field, p, q, work):
-    """Write the displacements of tractions `field` (ny, nx) into the first ny + HALO rows and nx columns of work[1].
+def convolve(field, p, q, work, out):
+    """Write the product of influence functions and tractions `field` into `out`, both (ny, nx).
 
-    `p` and `q` are the spectra of `Influence`; `work` (2, ly, lx) also serves the transforms.
+    `p` and `q` are the spectra of `Influence`; `work` (2, 2 ny, 2 nx) serves the transforms.
     """
-    ny = field.shape[0]
-    ly, lx = p.shape
+    ny, nx = field.shape
     c2c(field, work[0, :ny], np.array([1]), True, 1.0, 1)
     c2c(work[0, :ny], work[1], np.array([0]), True, 1.0, 1)
     _combined(p, q, work[1], work[0])
-    c2c(work[0], work[1], np.array([0]), False, 1.0 / ly, 1)
-    c2c(work[1, : ny + HALO], work[1, : ny + HALO], np.array([1]), False, 1.0 / lx, 1)
+    c2c(work[0], work[1], np.array([0]), False, 0.5 / ny, 1)
+    c2c(work[1, :ny], work[0, :ny], np.array([1]), False, 0.5 / nx, 1)
+    out[:] = work[0, :ny, :nx]
 
 
 @dataclass(frozen=True)
 class Influence:
     """Influence functions of ny x nx elements for products by fast Fourier transforms; a field is x + iy.
 
+    They give the slips in rolling, or the displacements.
+
     Attributes
     ----------
-    hy : float
-        Element size in the rolling direction.
-    p, q : numpy.ndarray, shape (ly, lx)
-        Spectra in W = P Z + Q conj(Z(-k)) of displacements W and tractions Z.
+    p, q : numpy.ndarray, shape (2 ny, 2 nx)
+        Spectra in W = P Z + Q conj(Z(-k)) of slips W and tractions Z.
     own : float
-        Mean slip that an element's unit traction causes at itself by upwind differences; the scale of slips.
-    column : numpy.ndarray, shape (2, 2 ny - 1 + HALO)
-        Displacements xx and yy that an element's unit traction causes in its own column.
+        Mean slip that an element's unit traction causes at itself, by upwind differences; the scale of slips.
+    column : numpy.ndarray, shape (2, 2 ny - 1)
+        Slips xx and yy that an element's unit traction causes in its own column, from ny - 1 rows behind it on.
     """
 
-    hy: float
     p: np.ndarray
     q: np.ndarray
     own: float
     column: np.ndarray
 
-    @property
-    def own_displacement(self) -> float:
-        """Return the mean displacement that an element's unit traction causes at itself."""
-        return float(self.column[:, (self.column.shape[1] - HALO + 1) // 2].mean())
-
-    def displacements(self, field: np.ndarray) -> np.ndarray:
-        """Return the displacements (ny + HALO, nx), one row behind to two rows ahead, of tractions `field` (ny, nx)."""
-        ny, nx = field.shape
-        work = np.empty((2, *self.p.shape), complex)
-        convolve(field, self.p, self.q, work)
-        return work[1, : ny + HALO, :nx]
+    def product(self, field: np.ndarray) -> np.ndarray:
+        """Return the slips, or the displacements, of tractions `field` (ny, nx)."""
+        out = np.empty(field.shape, complex)
+        convolve(field.astype(complex), self.p, self.q, np.empty((2, *self.p.shape), complex), out)
+        return out
 
 
 @lru_cache(maxsize=64)
-def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influence:
-    ly, lx = next_fast_len(2 * ny - 1 + HALO), next_fast_len(2 * nx - 1)
+def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool) -> Influence:
     u = displacements(hx, hy, poisson, ny, nx, 1, 2)
-    p = 0.5 * (u[0] + u[1]) + 0j
-    own = (1.5 * p[ny, nx - 1] - 2.0 * p[ny + 1, nx - 1] + 0.5 * p[ny + 2, nx - 1]).real / hy
-    q = 0.5 * (u[0] - u[1]) + 1j * u[2]
-    spectrum_p, spectrum_q = (_multipliers(kernel, ny, nx, ly, lx) for kernel in (p, q))
-    return Influence(hy, spectrum_p, spectrum_q, float(own), np.ascontiguousarray(u[:2, :, nx - 1]))
+    behind, here, ahead, far = (u[:, k : k + 2 * ny - 1] for k in range(4))
+    kernel = difference(behind, here, ahead, far, hy) if rolling else here
+    own = 0.5 * u[:2, ny : ny + 3, nx - 1].sum(axis=0)
+    scale = (1.5 * own[0] - 2.0 * own[1] + 0.5 * own[2]) / hy if rolling else own[0]
+    p, q = 0.5 * (kernel[0] + kernel[1]) + 0j, 0.5 * (kernel[0] - kernel[1]) + 1j * kernel[2]
+    spectra = (_multipliers(part, ny, nx) for part in (p, q))
+    return Influence(*spectra, float(scale), np.ascontiguousarray(kernel[:2, :, nx - 1]))
 
 
-def influence(hx: float, hy: float, poisson: float, ny: int, nx: int) -> Influence:
+def influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool = True) -> Influence:
     """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept."""
-    return _influence(*(float(f"{v:.{DIGITS}g}") for v in (hx, hy, poisson)), ny, nx)
+    return _influence(*(float(f"{v:.{DIGITS}g}") for v in (hx, hy, poisson)), ny, nx, rolling)
 
 
 def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
     """Return the slip -du/dy (ny, nx), x + iy, of a pressure field (ny, nx) for K = G = 1, by central differences."""
     ny, nx = pressure.shape
-    ly, lx = next_fast_len(2 * ny - 1 + HALO), next_fast_len(2 * nx - 1)
-    u = pressure_displacements(hx, hy, ny, nx, 1, 2)
-    p = _multipliers(u[0] + 1j * u[1], ny, nx, ly, lx)
-    halo = Influence(hy, p, np.zeros_like(p), 1.0, np.zeros((2, 1))).displacements(pressure.astype(complex))
-    return 0.5 * (halo[:ny] - halo[2 : ny + 2]) / hy
+    u = pressure_displacements(hx, hy, ny, nx, 1, 1)
+    slip = 0.5 * (u[:, :-2] - u[:, 2:]) / hy
+    p = _multipliers(slip[0] + 1j * slip[1], ny, nx)
+    return Influence(p, np.zeros_like(p), 1.0, np.zeros((2, 1))).product(pressure)
 
 
 def hertz_coupling_slip(a: float, b: float, ny: int, nx: int) -> np.ndarray:
@@ -228,7 +219,6 @@ def hertz_coupling_slip(a: float, b: float, ny: int, nx: int) -> np.ndarray:
     return outside.conjugate() + (2j * a / (a + b)) * height
 
 
-@njit(inline="always")
 def difference(behind, here, ahead, far, hy):
     """Return -du/dy of four displacements, one row behind to two rows ahead, with an error of third order.
 
@@ -237,12 +227,3 @@ def difference(behind, here, ahead, far, hy):
     error of second order. About the spin pole, where the slip turns, this error would act on F_T with first order.
     """
     return (behind / 3.0 + 0.5 * here - ahead + far / 6.0) / hy
-
-
-@njit(cache=True, fastmath=FAST, nogil=True)
-def differences(halo, hy, result):
-    """Write the slip -du/dy into `result` (ny, nx) from displacements `halo` (ny + HALO, nx); see `difference`."""
-    ny, nx = result.shape
-    for i in range(ny):
-        for j in range(nx):
-            result[i, j] = difference(halo[i, j], halo[i + 1, j], halo[i + 2, j], halo[i + 3, j], hy)

@@ -95,13 +95,13 @@ def shift_patch(
     unit = (2.0 * np.arange(elements) + 1.0) / elements - 1.0
     x, y = a * unit[None, :], b * unit[:, None]
     c = math.sqrt(a * b)
-    functions = influence(2.0 * a / (elements * c), 2.0 * b / (elements * c), nu, elements, elements)
+    functions = influence(2.0 * a / (elements * c), 2.0 * b / (elements * c), nu, elements, elements, rolling=False)
     rigid = ((lateral - turn * y) + 1j * (rolling + turn * x)) * g / (friction * p * c)
-    problem = Problem(functions, rigid, height, 0.0, np.zeros(1), np.ones(1), rolling=False)
+    problem = Problem(functions, rigid, height, 0.0, np.zeros(1), np.ones(1))
     traction, slip, bound, residual, _, _ = newton(problem, np.zeros_like(rigid), tolerance, 60, 80)
     scale = friction * p * 4.0 * a * b / elements**2
     sums = np.array([traction.real.sum(), traction.imag.sum(), (x * traction.imag - y * traction.real).sum()]) * scale
-    stick = (height > 0) & (np.abs(traction - slip / functions.own_displacement) <= bound)
+    stick = (height > 0) & (np.abs(traction - slip / functions.own) <= bound)
     fraction = float(share[stick].sum() / share.sum())
     field = np.stack([traction.real, traction.imag])
     return ShiftSolution(Resultants(*sums[:, None]), field, stick, fraction, residual)

@@ -10,32 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from trackroller.contact.influence import FAST, difference
-
-
-@njit(cache=True)
-def column_slips(own_column, hy):
-    """Return the slip that the unit traction of one element causes in its own column.
-
-    Parameters
-    ----------
-    own_column : ndarray, shape (2, 2 ny + 2)
-        Displacements xx and yy at the distances -ny .. ny + 1 in rows.
-    hy : float
-        Length of an element in the rolling direction.
-
-    Returns
-    -------
-    ndarray, shape (2, 2 ny - 1)
-        Slip by component and distance -(ny - 1) .. ny - 1.
-    """
-    count = own_column.shape[1] - 3
-    out = np.empty((2, count))
-    for c in range(2):
-        u = own_column[c]
-        for j in range(count):
-            out[c, j] = difference(u[j], u[j + 1], u[j + 2], u[j + 3], hy)
-    return out
+from trackroller.contact.influence import FAST
 
 
 @njit(cache=True)

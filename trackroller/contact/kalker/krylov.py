@@ -12,25 +12,20 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from trackroller.contact.influence import FAST, HALO, convolve, differences
+from trackroller.contact.influence import FAST, convolve
 from trackroller.contact.kalker.columns import apply_inverse, factorise
 from trackroller.contact.kalker.loops import reals, row_means
 
 
 class Operator(NamedTuple):
-    """Arrays of the product B, which maps tractions to slips, or to displacements if not `rolling`.
-
-    p, q : spectra of `Influence`; hy : element length.
-    """
+    """Spectra p, q of the product B, which maps tractions to slips; see `Influence`."""
 
     p: np.ndarray
     q: np.ndarray
-    hy: float
-    rolling: bool
 
 
 class Columns(NamedTuple):
-    """Loaded columns: own influence `slips` (see `column_slips`), first loaded row and number of loaded rows."""
+    """Loaded columns: own influence `slips` (see `Influence.column`), first loaded row and number of loaded rows."""
 
     slips: np.ndarray
     first: np.ndarray
@@ -142,20 +137,6 @@ def combination(basis, triangle, done, out):
 
 
 @njit(cache=True, nogil=True)
-def multiply(field, operator, transforms, product):
-    """Write B `field` into `product`, both (ny, nx): slips in rolling, else displacements; see `convolve`."""
-    ny, nx = field.shape
-    convolve(field, operator.p, operator.q, transforms)
-    halo = transforms[1, : ny + HALO, :nx]
-    if operator.rolling:
-        differences(halo, operator.hy, product)
-    else:
-        for i in range(ny):
-            for j in range(nx):
-                product[i, j] = halo[i + 1, j]
-
-
-@njit(cache=True, nogil=True)
 def solve(value, derivative, columns, operator, tolerance, space, step):
     """Solve Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES; return the products.
 
@@ -178,7 +159,7 @@ def solve(value, derivative, columns, operator, tolerance, space, step):
     done = 0
     for k in range(limit):
         apply_inverse(space.factors, first, count, space.basis[k].reshape(ny, nx, 2), step_reals)
-        multiply(step, operator, space.transforms, product)
+        convolve(step, operator.p, operator.q, space.transforms, product)
         if derivative.falls:
             row_means(product_reals, first, count, mean)
         rest = arnoldi(step_reals, product_reals, mean, derivative, space.basis, k, triangle)

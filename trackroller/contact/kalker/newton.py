@@ -17,9 +17,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from trackroller.contact.influence import Influence
-from trackroller.contact.kalker.columns import column_ranges, column_slips
-from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, multiply, solve
+from trackroller.contact.influence import Influence, convolve
+from trackroller.contact.kalker.columns import column_ranges
+from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
 
 # If many elements between sticking ones are wrongly taken as sliding, Newton's method corrects only one of them in each
@@ -45,8 +45,6 @@ class Problem:
         Slip speed per scaled slip [mm/s].
     knots, factors : ndarray, shape (m,)
         Slip speeds [mm/s] and friction over its value at rest [1].
-    rolling : bool
-        True: B is -d/dy of the displacements (steady rolling). False: B gives the displacements (shift from rest).
     """
 
     influence: Influence
@@ -55,7 +53,6 @@ class Problem:
     scale: float
     knots: np.ndarray
     factors: np.ndarray
-    rolling: bool = True
 
 
 class Law(NamedTuple):
@@ -100,7 +97,7 @@ def _step(law, work, traction, slip, tolerance, leap, step, change):
     if leap:
         hold(work.held, moved, law.rho, reals(work.value), d.projection, d.turn)
     products = solve(work.value, d, work.columns, work.operator, tolerance, work.space, step)
-    multiply(step, work.operator, work.space.transforms, change)
+    convolve(step, work.operator.p, work.operator.q, work.space.transforms, change)
     return products + 1
 
 
@@ -169,12 +166,8 @@ def _iterate(law, work, at, tolerance, limit):
 
 def _workspace(problem: Problem, krylov: int) -> tuple[Law, Work]:
     ny, nx = problem.height.shape
-    functions, rolling = problem.influence, problem.rolling
-    rho = 1.0 / (functions.own if rolling else functions.own_displacement)
-    if rolling:
-        slips = column_slips(functions.column, functions.hy)
-    else:
-        slips = np.ascontiguousarray(functions.column[:, 1:-2])
+    functions = problem.influence
+    rho = 1.0 / functions.own
     falls = problem.knots.size > 1
     work = Work(
         np.empty((ny, nx)),
@@ -183,8 +176,8 @@ def _workspace(problem: Problem, krylov: int) -> tuple[Law, Work]:
         np.zeros((ny, nx, 2)),
         np.empty((ny, nx), complex),
         Derivative(np.empty((3, ny, nx)), np.empty((4, ny, nx)), falls, rho),
-        Columns(slips, *column_ranges(problem.height)),
-        Operator(functions.p, functions.q, functions.hy, rolling),
+        Columns(functions.column, *column_ranges(problem.height)),
+        Operator(functions.p, functions.q),
         Space(
             np.empty((nx, 2, ny, ny)),
             np.empty((krylov + 1, 2 * ny * nx)),
@@ -217,7 +210,7 @@ def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int,
     law, work = _workspace(problem, krylov)
     at = np.empty((2, *traction.shape), complex)
     at[0] = traction
-    multiply(at[0], work.operator, work.space.transforms, at[1])
+    convolve(at[0], work.operator.p, work.operator.q, work.space.transforms, at[1])
     at[1] += problem.rigid
     found = _iterate(law, work, at, tolerance, limit)
     return at[0], at[1], work.bound, *found
