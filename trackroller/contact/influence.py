@@ -168,8 +168,8 @@ def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: 
     own = 0.5 * u[:2, ny : ny + 3, nx - 1].sum(axis=0)
     scale = (1.5 * own[0] - 2.0 * own[1] + 0.5 * own[2]) / hy if rolling else own[0]
     p, q = 0.5 * (kernel[0] + kernel[1]) + 0j, 0.5 * (kernel[0] - kernel[1]) + 1j * kernel[2]
-    spectra = (_multipliers(part, ny, nx) for part in (p, q))
-    return Influence(*spectra, float(scale), np.ascontiguousarray(kernel[:2, :, nx - 1]))
+    own_column = np.ascontiguousarray(kernel[:2, :, nx - 1])
+    return Influence(_multipliers(p, ny, nx), _multipliers(q, ny, nx), float(scale), own_column)
 
 
 def influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool = True) -> Influence:

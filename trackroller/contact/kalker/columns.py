@@ -11,6 +11,9 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.influence import FAST
+from trackroller.numerics.lanes import LANES, multiply, subtract_multiple
+
+PAIR = LANES // 2  # columns whose systems are solved side by side
 
 
 @njit(cache=True)
@@ -27,73 +30,86 @@ def column_ranges(bound):
     return first, count
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
-def _factorise(columns, n):
-    """Factorise a matrix into L U in place; `columns` holds the matrix by its columns.
-
-    Rows are not exchanged: the differences lean towards the leading edge, which keeps the pivots away from 0. The loop
-    treats two columns at a time, which halves the memory traffic. Zero pivots are left out.
-    """
-    for k in range(0, n, 2):
-        first = columns[k]
-        first[k] = 1.0 / first[k] if first[k] != 0.0 else 0.0
-        for i in range(k + 1, n):
-            first[i] *= first[k]
-        if k + 1 == n:
-            break
-        second = columns[k + 1]
-        share = second[k]
-        for i in range(k + 1, n):
-            second[i] -= share * first[i]
-        second[k + 1] = 1.0 / second[k + 1] if second[k + 1] != 0.0 else 0.0
-        for i in range(k + 2, n):
-            second[i] *= second[k + 1]
-        for m in range(k + 2, n):
-            other = columns[m]
-            share = other[k]
-            other[k + 1] -= share * first[k + 1]
-            rest = other[k + 1]
-            for i in range(k + 2, n):
-                other[i] -= share * first[i] + rest * second[i]
+@njit(cache=True, nogil=True)
+def factors_of(ny, nx):
+    """Return room for the factors of all systems, (groups, ny, ny, LANES); lanes are x and y of PAIR columns."""
+    return np.empty((-(-nx // PAIR), ny, ny, LANES))
 
 
 @njit(cache=True, nogil=True)
+def _most_rows(count, group):
+    """Return the largest number of loaded rows in the columns of a group."""
+    return count[group * PAIR : (group + 1) * PAIR].max()
+
+
+@njit(cache=True, fastmath=FAST, nogil=True)
+def _factorise(columns, n):
+    """Factorise matrices (., ., LANES) into L U in place; `columns` holds the matrices by their columns.
+
+    Rows are not exchanged: the differences lean towards the leading edge, which keeps the pivots away from 0. Zero
+    pivots are left out.
+    """
+    flat, stride = columns.reshape(-1), columns.shape[1] * LANES
+    for k in range(n):
+        diagonal, below = k * stride + k * LANES, k * stride + (k + 1) * LANES
+        for lane in range(LANES):
+            pivot = flat[diagonal + lane]
+            flat[diagonal + lane] = 1.0 / pivot if pivot != 0.0 else 0.0
+        multiply(flat, below, flat, diagonal, n - k - 1)
+        for m in range(k + 1, n):
+            row = m * stride + k * LANES
+            subtract_multiple(flat, row + LANES, flat, below, flat, row, n - k - 1)
+
+
+@njit(cache=True, fastmath=FAST, nogil=True)
 def factorise(slips, derivative, rho, first, count, factors):
-    """Factorise 1 - P' + rho P' B for each column and component into `factors` (nx, 2, ny, ny); P' without xy."""
+    """Factorise 1 - P' + rho P' B for each column and component into `factors`; P' without xy.
+
+    Rows beyond those of a column are rows of the identity.
+    """
     ny = derivative.shape[1]
-    for j in range(count.size):
-        n = count[j]
-        for c in range(2):
-            columns = factors[j, c]
-            for i in range(n):
-                p = derivative[2 * c, first[j] + i, j]
-                for m in range(n):
-                    columns[m, i] = rho * p * slips[c, i - m + ny - 1]
-                columns[i, i] += 1.0 - p
-            _factorise(columns, n)
+    projected, own = np.empty(ny * LANES), np.empty((2 * ny - 1) * LANES)
+    for lane in range(LANES):
+        own[lane::LANES] = slips[lane % 2]
+    for group in range(factors.shape[0]):
+        n, columns = _most_rows(count, group), factors[group]
+        projected[:] = 0.0
+        for lane in range(LANES):
+            j = group * PAIR + lane // 2
+            if j < count.size:
+                for i in range(count[j]):
+                    projected[i * LANES + lane] = derivative[2 * (lane % 2), first[j] + i, j]
+        for m in range(n):
+            column, start = columns[m].reshape(-1), (ny - 1 - m) * LANES
+            for t in range(n * LANES):
+                column[t] = rho * projected[t] * own[start + t]
+            for lane in range(LANES):
+                columns[m, m, lane] += 1.0 - projected[m * LANES + lane]
+        _factorise(columns, n)
 
 
 @njit(cache=True, fastmath=FAST, nogil=True)
 def apply_inverse(factors, first, count, field, out):
     """Apply the preconditioner to `field` and write `out`, both (ny, nx, 2); elements with bound 0 stay unchanged."""
-    line = np.empty(field.shape[0])
-    for j in range(count.size):
-        n, start = count[j], first[j]
-        for c in range(2):
-            for i in range(field.shape[0]):
-                out[i, j, c] = field[i, j, c]
-            columns = factors[j, c]
-            for i in range(n):
-                line[i] = field[start + i, j, c]
-            for m in range(n):
-                column, value = columns[m], line[m]
-                for i in range(m + 1, n):
-                    line[i] -= column[i] * value
-            for m in range(n - 1, -1, -1):
-                column = columns[m]
-                value = line[m] * column[m]
-                line[m] = value
-                for i in range(m):
-                    line[i] -= column[i] * value
-            for i in range(n):
-                out[start + i, j, c] = line[i]
+    stride = field.shape[0] * LANES
+    line = np.empty(stride)
+    out[:] = field
+    for group in range(factors.shape[0]):
+        n, flat = _most_rows(count, group), factors[group].reshape(-1)
+        line[:] = 0.0
+        for lane in range(LANES):
+            j = group * PAIR + lane // 2
+            if j < count.size:
+                for i in range(count[j]):
+                    line[i * LANES + lane] = field[first[j] + i, j, lane % 2]
+        for m in range(n):
+            below = (m + 1) * LANES
+            subtract_multiple(line, below, flat, m * stride + below, line, m * LANES, n - m - 1)
+        for m in range(n - 1, -1, -1):
+            multiply(line, m * LANES, flat, m * stride + m * LANES, 1)
+            subtract_multiple(line, 0, flat, m * stride, line, m * LANES, m)
+        for lane in range(LANES):
+            j = group * PAIR + lane // 2
+            if j < count.size:
+                for i in range(count[j]):
+                    out[first[j] + i, j, lane % 2] = line[i * LANES + lane]

@@ -45,7 +45,7 @@ class Derivative(NamedTuple):
 
 
 class Space(NamedTuple):
-    """Work space: column factors (nx, 2, ny, ny), Krylov basis (m + 1, 2 ny nx) and transforms, see `convolve`."""
+    """Work space: column factors (see `factors_of`), Krylov basis (m + 1, 2 ny nx) and transforms, see `convolve`."""
 
     factors: np.ndarray
     basis: np.ndarray

@@ -18,7 +18,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.contact.influence import Influence, convolve
-from trackroller.contact.kalker.columns import column_ranges
+from trackroller.contact.kalker.columns import column_ranges, factors_of
 from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
 
@@ -179,7 +179,7 @@ def _workspace(problem: Problem, krylov: int) -> tuple[Law, Work]:
         Columns(functions.column, *column_ranges(problem.height)),
         Operator(functions.p, functions.q),
         Space(
-            np.empty((nx, 2, ny, ny)),
+            factors_of(ny, nx),
             np.empty((krylov + 1, 2 * ny * nx)),
             np.empty((2, *functions.p.shape), complex),
         ),
