@@ -15,7 +15,8 @@ from importlib import resources
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebval, chebvander
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants
+from trackroller.contact.common import Resultants
+from trackroller.contact.slip import Creepage
 from trackroller.errors import InputError
 
 LARGEST_RATIO = 50.0  # of b/a; the smallest ratio is its inverse
@@ -82,19 +83,19 @@ def creepage_coefficients(axis_ratio, poisson_ratio) -> CreepageCoefficients:
     return CreepageCoefficients(*values.reshape(4, *shape))
 
 
-def resultants(ellipse: Ellipse, longitudinal, lateral, spin, elastic: Elastic) -> Resultants:
+def linear_resultants(a, b, creep: Creepage, shear_modulus, coefficients: CreepageCoefficients) -> Resultants:
     """Return the forces and the spin moment of the linear theory, in which no element slides.
 
     Parameters
     ----------
-    ellipse : Ellipse
-        Contact ellipses, arrays (n,) [mm], [MPa].
-    longitudinal, lateral : array_like, shape (n,)
-        Creepages xi and eta [1].
-    spin : array_like, shape (n,)
-        Spin creepage phi [1/mm]. The rigid slip is w = (eta - phi y, xi + phi x).
-    elastic : Elastic
-        Combined constants, arrays (n,).
+    a, b : ndarray, shape (n,)
+        Lateral and rolling semi-axis [mm].
+    creep : Creepage
+        Rigid slip w = (eta - phi y, xi + phi x) [1], [1/mm].
+    shear_modulus : ndarray, shape (n,)
+        Combined shear modulus G [MPa].
+    coefficients : CreepageCoefficients
+        See `creepage_coefficients`.
 
     Returns
     -------
@@ -105,13 +106,12 @@ def resultants(ellipse: Ellipse, longitudinal, lateral, spin, elastic: Elastic) 
     -----
     Valid for creepages so small that the traction reaches the friction bound nowhere.
     """
-    c = creepage_coefficients(ellipse.semi_axis_rolling / ellipse.semi_axis_lateral, elastic.poisson_ratio)
-    square = ellipse.semi_axis_rolling * ellipse.semi_axis_lateral
-    g = elastic.shear_modulus
+    xi, eta, phi, c = creep.longitudinal, creep.lateral, creep.spin, coefficients
+    size, stiffness = np.sqrt(a * b), a * b * shear_modulus
     return Resultants(
-        g * (-square * c.c22 * lateral + square**1.5 * c.c23 * spin),
-        -g * square * c.c11 * longitudinal,
-        -g * (square**1.5 * c.c23 * lateral + square**2 * c.c33 * spin),
+        -stiffness * (c.c22 * eta - size * c.c23 * phi),
+        -(stiffness * c.c11 * xi),
+        -stiffness * size * (c.c23 * eta + size * c.c33 * phi),
     )
 
 

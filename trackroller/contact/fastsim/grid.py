@@ -155,7 +155,7 @@ def solve_grid(
     settings = settings or FastsimSettings()
     loaded, strips, area = _problem(patch, slip, friction, elastic, settings.profile_slip, travel_speed)
     kernel = partial(strip_sums, loaded, strips, settings.law.knots)
-    return extrapolated(kernel, settings.steps, area, loaded.friction * patch.normal_force)
+    return extrapolated(kernel, settings.steps, area, np.isfinite(patch.normal_force))
 
 
 def tractions(

@@ -27,7 +27,7 @@ from trackroller.contact.common import Elastic, Ellipse, Slip, SurfaceTractions
 from trackroller.contact.fastsim.point import Strips, Totals, advance, enter, march, one_strip, write
 from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution, extrapolated, surface
 from trackroller.contact.friction_laws import Knots
-from trackroller.contact.linear import creepage_coefficients, sliding_flexibility
+from trackroller.contact.linear import creepage_coefficients, linear_resultants, sliding_flexibility
 from trackroller.contact.slip import Creepage
 from trackroller.numerics.threads import share_rows
 
@@ -53,7 +53,7 @@ def _all_sums(ellipses, strips, rule, law, steps, totals, first, last):
     middles, bounds = np.empty(steps), np.empty(steps)
     for i in range(first, last):
         a, b, bound = ellipses.a[i], ellipses.b[i], ellipses.bound[i]
-        knots, total = Knots(law.speed / strips.speed[i], law.factor), Totals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        knots, total = Knots(law.speed / strips.speed[i], law.factor), Totals(0.0, 0.0, 0.0, 0.0, 0.0)
         for k in range(nodes.size):
             edge = b * math.sqrt(1.0 - nodes[k] * nodes[k])
             h = 2.0 * edge / steps
@@ -126,8 +126,8 @@ def flexibilities(a, b, limit, creep: Creepage, shear_modulus, poisson_ratio) ->
     both = across + turn
     l_x = np.where(both > 0, (across * l_2 + turn * l_3) / np.where(both > 0, both, 1.0), l_2)
     # forces of the linear theory over the largest force: a measure of how much of the patch slides
-    square = a * b * g
-    forces = np.hypot(square * c.c11 * xi, square * (c.c22 * eta - np.sqrt(a * b) * c.c23 * phi))
+    held = linear_resultants(a, b, creep, g, c)
+    forces = np.hypot(held.driving_force, held.lateral_force)
     with np.errstate(divide="ignore", invalid="ignore"):
         slides = 1.0 / (1.0 + (SLIDING_FORCE * limit / forces) ** 2)
         pole = 1.0 / (1.0 + (phi * a) ** 2 / (xi**2 + eta**2))  # 1 far away, 0 in the middle
@@ -205,7 +205,7 @@ def solve_patch(
     rule, law = np.polynomial.legendre.leggauss(settings.strips), settings.law.knots
     ellipses, strips = _problem(ellipse, creep, friction, elastic, travel_speed, rule[0])
     area, kernel = np.pi * ellipses.a * ellipses.b, partial(_all_sums, ellipses, strips, rule, law)
-    return extrapolated(kernel, settings.steps, area, 2.0 / 3.0 * area * ellipses.bound)
+    return extrapolated(kernel, settings.steps, area, np.isfinite(area * ellipses.bound))
 
 
 def tractions(

@@ -34,18 +34,17 @@ class Strips(NamedTuple):
 
 
 class State(NamedTuple):
-    """Traction [MPa] and slip [1] at a point, friction over its value at rest, and its difference from the law."""
+    """Traction [MPa] and slip [1] at a point, and friction over its value at rest."""
 
     shear_x: float
     shear_y: float
     slip_x: float
     slip_y: float
     friction: float
-    lack: float
 
 
 class Totals(NamedTuple, Generic[T]):
-    """F_T, F_A [N], M_R [N mm], dissipation per distance [N], adhesion area [mm^2] and lack of friction [N].
+    """F_T, F_A [N], M_R [N mm], dissipation per distance [N] and adhesion area [mm^2].
 
     Numbers of one patch, or arrays (n,).
     """
@@ -55,7 +54,6 @@ class Totals(NamedTuple, Generic[T]):
     moment: T
     dissipation: T
     adhesion: T
-    lack: T
 
 
 @njit(cache=True)
@@ -90,14 +88,14 @@ def _shortened(zx, zy, l_x, l_y, g):
 
 @njit(cache=True)
 def _relaxed(friction, speed, h, stiffness, law):
-    """Return the friction one step further towards that of its slip speed, and how far it was from it.
+    """Return the friction one step further towards that of its slip speed.
 
     Friction that falls at once with the slip of an elastic spring is unstable. It therefore follows over a length of
     the order of the elastic displacement times the slope of the law (Vollebregt & Schuttelaars 2012);
     `stiffness` = L g.
     """
     target, slope = polyline(speed, law.speed, law.factor)
-    return friction + (target - friction) / (1.0 + 2.0 * stiffness * abs(slope) / h), abs(target - friction)
+    return friction + (target - friction) / (1.0 + 2.0 * stiffness * abs(slope) / h)
 
 
 @njit(cache=True)
@@ -113,17 +111,17 @@ def _step(strip, middle, h, bound, law, old):
     else:
         tx, ty = _shortened(zx, zy, l_x, l_y, g)
         sx, sy = l_x * (tx - zx) / h, l_y * (ty - zy) / h
-    friction, lack = old.friction, 0.0
+    friction = old.friction
     if law.speed.size > 1:
-        friction, lack = _relaxed(friction, math.hypot(sx, sy), h, max(l_x, l_y) * bound, law)
-    return State(tx, ty, sx, sy, friction, lack)
+        friction = _relaxed(friction, math.hypot(sx, sy), h, max(l_x, l_y) * bound, law)
+    return State(tx, ty, sx, sy, friction)
 
 
 @njit(cache=True)
 def enter(strip, y, law):
     """Return the state at the leading edge y [mm]: no traction, and the friction of the rigid slip."""
     speed = math.hypot(strip.lateral - strip.spin * y, strip.along)
-    return State(0.0, 0.0, 0.0, 0.0, polyline(speed, law.speed, law.factor)[0], 0.0)
+    return State(0.0, 0.0, 0.0, 0.0, polyline(speed, law.speed, law.factor)[0])
 
 
 @njit(cache=True)
@@ -139,8 +137,8 @@ def march(total, strip, edge, h, area, middles, bounds, law):
     """Add a strip, marched from its leading edge [mm], to the totals; `area` is the area of a step [mm^2]."""
     old = enter(strip, edge, law)
     for j in range(bounds.size):
-        middle, bound = middles[j], bounds[j]
-        new = _step(strip, middle, h, bound, law, old)
+        middle = middles[j]
+        new = _step(strip, middle, h, bounds[j], law, old)
         mean_x, mean_y = 0.5 * (old.shear_x + new.shear_x), 0.5 * (old.shear_y + new.shear_y)
         sticks = new.slip_x == 0.0 and new.slip_y == 0.0
         total = Totals(
@@ -149,7 +147,6 @@ def march(total, strip, edge, h, area, middles, bounds, law):
             total.moment + area * (strip.x * mean_y - middle * mean_x),
             total.dissipation - area * (mean_x * new.slip_x + mean_y * new.slip_y),
             total.adhesion + (area if sticks else 0.0),
-            total.lack + area * bound * new.lack,
         )
         old = new
     return total
@@ -159,4 +156,4 @@ def march(total, strip, edge, h, area, middles, bounds, law):
 def write(totals, i, found):
     """Store the totals of patch i in arrays."""
     totals.lateral[i], totals.driving[i], totals.moment[i] = found.lateral, found.driving, found.moment
-    totals.dissipation[i], totals.adhesion[i], totals.lack[i] = found.dissipation, found.adhesion, found.lack
+    totals.dissipation[i], totals.adhesion[i] = found.dissipation, found.adhesion

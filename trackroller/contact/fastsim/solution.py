@@ -54,14 +54,11 @@ class FastsimSolution:
         Dissipation per distance travelled [N].
     stick_fraction : ndarray, shape (n,)
         Share of the adhesion area in the patch [1].
-    friction_change : ndarray, shape (n,)
-        Mean difference between the friction and that of the local slip speed, under a falling law [1].
     """
 
     resultants: Resultants
     friction_energy_per_distance: np.ndarray
     stick_fraction: np.ndarray
-    friction_change: np.ndarray
 
     @property
     def works(self) -> Works:
@@ -69,7 +66,7 @@ class FastsimSolution:
         return Works.of_friction(self.friction_energy_per_distance)
 
 
-def extrapolated(kernel: Kernel, steps: int, area: np.ndarray, limit: np.ndarray) -> FastsimSolution:
+def extrapolated(kernel: Kernel, steps: int, area: np.ndarray, known: np.ndarray) -> FastsimSolution:
     """Solve n patches with `steps` and twice as many steps along each strip, and extrapolate to infinitely many.
 
     Parameters
@@ -78,8 +75,10 @@ def extrapolated(kernel: Kernel, steps: int, area: np.ndarray, limit: np.ndarray
         Writes the totals of some patches. Its error is of first order in the length of a step.
     steps : int
         Number of steps of the first pass.
-    area, limit : ndarray, shape (n,)
-        Area [mm^2] and mu F_N [N] of the patches; NaN where there is no patch.
+    area : ndarray, shape (n,)
+        Area of the patches [mm^2].
+    known : ndarray of bool, shape (n,)
+        False where there is no patch.
 
     Returns
     -------
@@ -90,11 +89,10 @@ def extrapolated(kernel: Kernel, steps: int, area: np.ndarray, limit: np.ndarray
     coarse, fine = (Totals(*(np.zeros(n) for _ in Totals._fields)) for _ in range(2))
     for totals, count in ((coarse, steps), (fine, 2 * steps)):
         share_rows(partial(kernel, count, totals), n, 4)
-    missing = ~np.isfinite(limit)
-    best = Totals(*(np.where(missing, np.nan, 2.0 * f - c) for c, f in zip(coarse, fine, strict=True)))
+    best = Totals(*(np.where(known, 2.0 * f - c, np.nan) for c, f in zip(coarse, fine, strict=True)))
     with np.errstate(divide="ignore", invalid="ignore"):
-        stick, lack = fine.adhesion / area, np.where(limit > 0, fine.lack / limit, 0.0)
-    return FastsimSolution(Resultants(best.lateral, best.driving, best.moment), best.dissipation, stick, lack)
+        stick = fine.adhesion / area
+    return FastsimSolution(Resultants(best.lateral, best.driving, best.moment), best.dissipation, stick)
 
 
 def surface(

@@ -161,7 +161,7 @@ def strip_sums(loaded, strips, law, steps, totals, first, last):
     middles, bounds = np.empty(steps), np.empty(steps)
     for i in range(first, last):
         knots = Knots(law.speed / strips.speed[i], law.factor)
-        total = Totals(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        total = Totals(0.0, 0.0, 0.0, 0.0, 0.0)
         for j in range(strips.x.shape[1]):
             p, strip = loaded.pressure[i, :, j].copy(), one_strip(strips, i, j)
             total = _sum(total, p, loaded, i, strip, middles, bounds, knots)
