@@ -15,8 +15,8 @@ from synthetic_results import PAIRS, grid_study, sampled_study
 
 from trackroller.report.figures.study import draw_all
 from trackroller.report.findings import occurrence
+from trackroller.report.inputs import Row
 from trackroller.report.page import contents, models_used, write_report
-from trackroller.report.sheet.rows import Row
 from trackroller.report.tables import regime_table, validity_table
 from trackroller.report.view import StudyView
 from trackroller.roller.dataset import VALIDITY_BITS

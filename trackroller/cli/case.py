@@ -1,4 +1,4 @@
-"""Commands that solve or draw one case."""
+"""Commands that solve or draw one case, or solve the blocks of a load spectrum."""
 
 from __future__ import annotations
 
@@ -105,6 +105,25 @@ def solve_and_tell(
     if json or target is not None:
         print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
     return 1
+
+
+def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) -> None:
+    """Solve the blocks of a spectrum file; print tables or JSON, write netCDF or a page."""
+    target, sheet = (None if place is None else writable(place) for place in (out, page))
+    from trackroller.report.sheet.page import write_spectrum  # heavy: jinja2
+    from trackroller.report.sheet.text import as_json, print_spectrum
+    from trackroller.study.spectrum.file import load_spectrum
+    from trackroller.study.spectrum.solve import solve_spectrum
+
+    dataset = solve_spectrum(load_spectrum(path))
+    if target is not None:
+        write_result(dataset, target)
+    if sheet is not None:
+        write_spectrum(dataset, sheet, path.name)
+    if json:
+        print(as_json(dataset))
+    elif target is None:
+        print_spectrum(dataset)
 
 
 def is_failed(dataset: xr.Dataset) -> bool:

@@ -143,7 +143,7 @@ def verify(
     folder: Annotated[Path, typer.Argument(help="results/NAME of a study that was run", show_default=False)],
 ) -> None:
     """Check every file of a study against the digests in its RO-Crate; exit 1 if one is missing or changed."""
-    from trackroller.cli.crate import print_verified
+    from trackroller.cli.study import print_verified
 
     raise typer.Exit(print_verified(folder))
 
@@ -154,7 +154,7 @@ def rerun(
     results: Annotated[Path, typer.Option("--results", help="folder for the repeated study")] = Path("rerun"),
 ) -> None:
     """Solve a study again from its RO-Crate alone and compare; exit 1 if a value differs."""
-    from trackroller.cli.crate import print_rerun
+    from trackroller.cli.study import print_rerun
 
     raise typer.Exit(print_rerun(crate, results))
 
@@ -167,7 +167,7 @@ def spectrum(
     report: Annotated[Path | None, typer.Option("--report", help="write the page of the spectrum (HTML) too")] = None,
 ) -> None:
     """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours."""
-    from trackroller.cli.spectrum import run_spectrum
+    from trackroller.cli.case import run_spectrum
 
     run_spectrum(file, as_json, out, report)
 
@@ -188,25 +188,34 @@ def plot(
 @materials.command("list")
 def materials_list() -> None:
     """Print the names and values of all materials."""
-    from trackroller.cli.materials import print_list
+    from trackroller.materials.tables import material_rows
 
-    print_list()
+    _print_rows(material_rows)
 
 
 @materials.command("show")
 def materials_show(name: Annotated[str, typer.Argument(show_default=False)]) -> None:
     """Print every value of a material with its unit and source, and whether it is a placeholder."""
-    from trackroller.cli.materials import print_material
+    from trackroller.materials.tables import material_details
 
-    print_material(name)
+    _print_rows(material_details, name)
 
 
 @materials.command("friction")
 def materials_friction() -> None:
     """Print the friction coefficient of each pair of materials."""
-    from trackroller.cli.materials import print_friction
+    from trackroller.materials.tables import friction_rows
 
-    print_friction()
+    _print_rows(friction_rows)
+
+
+def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> None:
+    from trackroller.materials import load_database
+    from trackroller.report.terminal import print_table
+
+    rows = rows_of(load_database(), *names)
+    heads = list(rows[0] if rows else ())
+    print_table(heads, [[row.get(head, "") for head in heads] for row in rows], 220)
 
 
 @materials.command("add")
@@ -217,9 +226,11 @@ def materials_add(
     replace: Annotated[bool, typer.Option("--replace", help="change a material that the file has already")] = False,
 ) -> None:
     """Write a material into your own file; comments in the file stay."""
-    from trackroller.cli.materials import add
+    from trackroller.cli.case import settings_of
+    from trackroller.materials import add_material
 
-    add(name, settings, file, replace)
+    material = add_material(file, name, replace=replace, **settings_of(settings))
+    print(f"material '{material.name}' is in {file}")
 
 
 def main() -> None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 from rich.filesize import decimal
-from rich.table import Table
 
 from trackroller.cli.case import case_of, is_study
+from trackroller.report.terminal import print_table
 from trackroller.roller.case import to_table
 from trackroller.roller.options import Options
 from trackroller.study.config import load_study
@@ -76,9 +75,8 @@ def _explain_study(path: Path, no_shortcuts: bool) -> None:
 
 
 def _print_stages(table, options) -> None:
-    console = Console(width=None if Console().is_terminal else 140)
-    shown = Table("stage", "runs", "of", "why")
-    shown.columns[1].justify = shown.columns[2].justify = "right"
-    for stage in stages_of(table, options):
-        shown.add_row(stage.name, f"{stage.count}" if stage.runs else "-", f"{stage.total} {stage.unit}", stage.why)
-    console.print(shown)
+    rows = [
+        (stage.name, f"{stage.count}" if stage.runs else "-", f"{stage.total} {stage.unit}", stage.why)
+        for stage in stages_of(table, options)
+    ]
+    print_table(("stage", "runs", "of", "why"), rows, 140, right=(1, 2))

@@ -43,11 +43,9 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     >>> tr.report(ds, "sheet.html").name
     'sheet.html'
     """
-    from trackroller.report.sheet.page import write_sheet  # heavy: jinja2, and matplotlib for the figures
+    from trackroller.report.sheet.page import write_sheet, write_spectrum  # heavy: jinja2
 
     if "damage_sum" in ds:
-        from trackroller.report.sheet.spectrum_page import write_spectrum
-
         return write_spectrum(ds, path)
     if "study" not in ds.attrs:
         return write_sheet(ds, path)

@@ -7,7 +7,6 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-import netCDF4
 import xarray as xr
 
 from trackroller.analysis.sensitivity import analyse
@@ -71,21 +70,11 @@ def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:
     beside = out.with_name(f".{out.name}.tmp")
     shutil.rmtree(beside, ignore_errors=True)
     beside.mkdir(parents=True)
-    draw_all(Path(study_nc), beside, Path(sensitivity_nc) if has_analysis(sensitivity_nc) else None)
+    draw_all(Path(study_nc), beside, Path(sensitivity_nc))
     shutil.rmtree(out, ignore_errors=True)
     beside.rename(out)
 
 
 def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:
     """Write the report, with the sensitivity analysis where there is one."""
-    analysis = Path(sensitivity_nc) if has_analysis(sensitivity_nc) else None
-    write_report(Path(study_nc), Path(figures), Path(out), analysis)
-
-
-def has_analysis(sensitivity_nc: str | Path) -> bool:
-    """Return whether the file holds an analysis.
-
-    Otherwise it only says why there is none.
-    """
-    with netCDF4.Dataset(sensitivity_nc) as file:
-        return len(file.variables) > 0
+    write_report(Path(study_nc), Path(figures), Path(out), Path(sensitivity_nc))

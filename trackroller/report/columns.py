@@ -11,7 +11,7 @@ import xarray as xr
 
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.outputs import flat, read_study
+from trackroller.study.outputs import case_dims, flat, read_study
 
 INNER = ("contact", "body", "y", "x", "n", "section_x", "section_y", "section_z", "component")
 CATEGORIES = ("material_pair", "roller_material", "guide_material")
@@ -43,8 +43,10 @@ SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lyin
 
 
 def study_dims(ds: xr.Dataset) -> list[str]:
-    """Name the dimensions that count cases, in the order of the data set: `case`, or the factors of a grid."""
-    return [d for d in map(str, ds.dims) if d not in INNER and (d == "case" or d in ds.coords or d in PARAMETERS)]
+    """Name the dimensions that count cases: `case`, or the factors of a grid, in the order of the study file."""
+    found = [d for d in map(str, ds.dims) if d not in INNER and (d == "case" or d in ds.coords or d in PARAMETERS)]
+    given = case_dims(ds, read_study(ds).get("factors") or {})
+    return [*(d for d in given if d in found), *(d for d in found if d not in given)]
 
 
 def _columns(ds: xr.Dataset, dims: list[str], names: Iterable[str]) -> dict[str, np.ndarray]:

@@ -4,16 +4,59 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, unit_text
-from trackroller.report.sheet.rows import Row, input_row
+from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, unit_text
 from trackroller.report.tables import Table
 from trackroller.report.view import StudyView
+from trackroller.roller.record import is_default
+
+MATERIAL_ROWS = (  # attribute, words, unit
+    ("youngs_modulus", "Young's modulus E", "MPa"),
+    ("poisson_ratio", "Poisson's ratio nu", ""),
+    ("tensile_strength", "tensile strength R_m", "MPa"),
+    ("fatigue_limit", "fatigue limit sigma_D", "MPa"),
+    ("cycles_at_fatigue_limit", "cycles at the fatigue limit N_k", ""),
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A quantity in words with its value, its unit, and whether it is the default of an input."""
+
+    words: str
+    value: str
+    unit: str = ""
+    default: bool = False
+
+
+def is_told(name: str, value: Any) -> bool:
+    """Return whether an input stands on the sheet: mappings and the guide only if they are given."""
+    return value is not None or name not in (*MAPPING_FIELDS, "guide_overrollings_per_hour")
+
+
+def input_row(name: str, value: Any) -> Row:
+    """Return an input with its unit; mark the default."""
+    if name in PARAMETERS:
+        parameter = PARAMETERS[name]
+        shown = "not given" if value is None else number(value) if isinstance(value, (int, float)) else str(value)
+        words = f"{parameter.long_name} {parameter.symbol}"
+        return Row(words, shown, unit_text(parameter.unit).replace("–", ""), is_default(name, value))
+    if name in MAPPING_FIELDS:
+        shown = level_text(name, value if isinstance(value, str) else json.dumps(value, sort_keys=True))
+    else:
+        shown = str(value.get("name", "inline")) if isinstance(value, Mapping) else str(value)
+    return Row(plain(name), shown, "", is_default(name, value))
+
+
+def material_rows(material: Material) -> list[Row]:
+    """Return the values of a material."""
+    told = [Row(words, number(getattr(material, name)), unit) for name, words, unit in MATERIAL_ROWS]
+    return [Row("name", material.name), *told, Row("exponent of the S-N curve k", rounded(material.woehler_exponent))]
 
 
 def factor_table(view: StudyView) -> Table | None:

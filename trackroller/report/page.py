@@ -21,13 +21,12 @@ from trackroller.report.comparison import report_section
 from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.inputs import base_rows, correlation_row, factor_table, materials_table, record_rows
+from trackroller.report.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
 from trackroller.report.known_errors import friction_error
 from trackroller.report.numbers import capital, count, long_name, percent, rounded
-from trackroller.report.sheet.rows import Row
 from trackroller.report.summary import in_short
 from trackroller.report.tables import Table, best_table, cell, reason_table, regime_table, validity_table
-from trackroller.report.view import StudyView
+from trackroller.report.view import StudyView, load_analysis
 from trackroller.report.workbook import export
 from trackroller.study.design.sampling import ARRAYS
 from trackroller.study.files import write_text
@@ -74,8 +73,7 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     pathlib.Path
         The path of the report.
     """
-    ds = xr.load_dataset(study_nc)
-    sens = xr.load_dataset(sensitivity_nc) if sensitivity_nc is not None and sensitivity_nc.is_file() else None
+    ds, sens = xr.load_dataset(study_nc), load_analysis(sensitivity_nc)
     content = contents(ds, sens)
     content["figures"] = _guarded(lambda: dict.fromkeys(PLACES, ()), figures, Path(figures_dir))
     content["explorer"] = _guarded(lambda: None, explorer, ds, None, sens)

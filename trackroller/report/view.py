@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,14 @@ LIVES = (
 BODIES = ("roller", "guide")
 MOST_LEVELS = 12  # a factor with more levels is looked at in classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
+
+
+def load_analysis(path: Path | str | None) -> xr.Dataset | None:
+    """Return the analysis in a file; None without a file, or if the file only says why there is none."""
+    if path is None or not Path(path).is_file():
+        return None
+    found = xr.load_dataset(path)
+    return found if found.data_vars else None
 
 
 @dataclass(frozen=True)

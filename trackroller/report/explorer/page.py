@@ -18,7 +18,6 @@ import xarray as xr
 from trackroller.analysis.pareto import default_objectives, study_pareto
 from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS
-from trackroller.report.columns import study_dims
 from trackroller.report.decisions import heading
 from trackroller.report.explorer.inputs import solve_inputs, strengths
 from trackroller.report.explorer.pack import pack, plain_level
@@ -26,10 +25,10 @@ from trackroller.report.explorer.rows import STATES, Column, collect
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count
-from trackroller.report.view import StudyView
+from trackroller.report.view import StudyView, load_analysis
 from trackroller.study.files import StudyFolder, write_text
 from trackroller.study.goals import statistic
-from trackroller.study.outputs import case_dims, read_study
+from trackroller.study.outputs import read_study
 
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
 
@@ -100,7 +99,6 @@ def pareto_rows(ds: xr.Dataset, cases: int) -> np.ndarray:
         return marked
     if front is not None:
         marked[front["row"].values[front["optimal"].values == 1]] = True
-        marked = marked[_design_rows(ds)]
     return marked
 
 
@@ -126,15 +124,6 @@ def design_points(ds: xr.Dataset, sens: xr.Dataset | None) -> dict[str, Any] | N
     labels = {name: heading(front, name) for name in names}
     values = {name: [plain_level(value) for value in front[name].values.tolist()] for name in names}
     return {"goals": goals, "factors": factors, "labels": labels, "values": values}
-
-
-def _design_rows(ds: xr.Dataset) -> np.ndarray:
-    """Return the row of the design of each case: its factors may stand in another order than the dimensions."""
-    dims = study_dims(ds)
-    order = [d for d in case_dims(ds, read_study(ds).get("factors") or {}) if d in dims]
-    order += [d for d in dims if d not in order]
-    rows = np.arange(np.prod([ds.sizes[d] for d in order], dtype=int)).reshape([ds.sizes[d] for d in order])
-    return rows.transpose([order.index(d) for d in dims]).ravel()
 
 
 def compared(view: StudyView) -> str:
@@ -166,15 +155,6 @@ def secured(page: str) -> str:
     return page.replace(POLICY, "; ".join(policy), 1)
 
 
-def _analysis(study_nc: Path) -> xr.Dataset | None:
-    """Return the analysis beside a study, None if there is none."""
-    path = study_nc.with_name("sensitivity.nc")
-    if not path.is_file():
-        return None
-    with xr.open_dataset(path) as opened:
-        return opened.load() if opened.data_vars else None
-
-
 def write_explorer(study_nc: Path, out: Path | None = None) -> Path:
     """Write the explorer of a gathered study as one HTML file.
 
@@ -200,13 +180,12 @@ def write_explorer(study_nc: Path, out: Path | None = None) -> Path:
         raise InputError(
             "study", str(study_nc), "a folder results/NAME with study.nc, or such a file", "Run the study."
         )
-    with xr.open_dataset(path) as opened:
-        ds = opened.load()
+    ds = xr.load_dataset(path)
     view = StudyView.of(ds)
     content = {
         "name": str(view.study.get("name") or path.parent.name),
         "description": str(view.study.get("description") or ""),
-        "explorer": explorer(ds, view, _analysis(path)),
+        "explorer": explorer(ds, view, load_analysis(path.with_name("sensitivity.nc"))),
     }
     out = path.with_name("explorer.html") if out is None else Path(out)
     write_text(out, secured(render("explorer.html.j2", content)))

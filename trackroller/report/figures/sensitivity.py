@@ -6,11 +6,9 @@ caption and sentence, or None where the design does not support it.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
+import seaborn
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trackroller.report import sentences as words
@@ -69,16 +67,21 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
         return None
     figure = style.new_figure(22 + 6.0 * len(ranks))
     axes = figure.add_subplot()
-    place = dict(zip((r.factor for r in ranks), np.arange(len(ranks))[::-1].astype(float), strict=True))
-    first = [r for r in words.order(sens, output, "S1") if r.factor in place] if index == "ST" else []
-    look = {"height": 0.38 if first else 0.62, "color": style.palette(2)[0], "hatch": ""}
-    shares = index not in words.SIGNED
-    _bars(axes, ranks, {f: p + 0.19 * bool(first) for f, p in place.items()}, look | {"label": "total index"}, shares)
-    if first:
-        look |= {"color": style.palette(2)[1], "hatch": "////", "label": "first-order index"}
-        _bars(axes, first, {f: p - 0.19 for f, p in place.items()}, look, shares)
+    place = np.arange(len(ranks))[::-1].astype(float)
+    drawn = ("ST", "S1") if index == "ST" else (index,)
+    for i, name in enumerate(drawn):
+        own = {r.factor: r for r in words.order(sens, output, name)}
+        value, low, high = np.array([own[r.factor][2:] if r.factor in own else [np.nan] * 3 for r in ranks]).T
+        if name not in words.SIGNED:  # a share of variance is not drawn below 0
+            value, low, high = (np.maximum(v, 0.0) for v in (value, low, high))
+        at = place + (0.19 - 0.38 * i) * (len(drawn) > 1)
+        look = {"height": 0.38 if len(drawn) > 1 else 0.62, "hatch": "////" * i, "color": style.palette(2)[i]}
+        axes.barh(at, value, edgecolor="0.15", linewidth=0.6, label=words.INDEX_WORDS[name], **look)
+        whisker = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
+        axes.errorbar(value, at, xerr=np.abs([value - low, high - value]), **whisker)
+    if len(drawn) > 1:
         axes.legend(loc="lower right")
-    axes.set_yticks(list(place.values()), [capital(r.name) for r in ranks])
+    axes.set_yticks(place, [capital(r.name) for r in ranks])
     axes.tick_params(axis="y", length=0)
     axes.grid(axis="y", visible=False)
     axes.axvline(0, color="0.2", linewidth=0.7)
@@ -93,21 +96,6 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
 
 def _axis(sens: xr.Dataset, output: str, index: str) -> str:
     return f"{AXIS[index]} [{effect_unit(sens, output) if index in ('mu_star', 'effect') else '–'}]"
-
-
-def _bars(axes: Axes, ranks: list[words.Rank], place: dict[str, float], look: dict[str, Any], shares: bool) -> None:
-    """Draw bars with whiskers; `shares` of variance are not drawn below 0."""
-    at = np.array([place[r.factor] for r in ranks])
-    value = np.array([r.value for r in ranks])
-    ends = np.array([[r.low, r.high] for r in ranks]).T
-    if shares:
-        value, ends = np.maximum(value, 0.0), np.where(np.isnan(ends), np.nan, np.maximum(ends, 0.0))
-    axes.barh(at, value, edgecolor="0.15", linewidth=0.6, **look)
-    error = np.abs(ends - value)
-    good = np.isfinite(error).all(axis=0)
-    if good.any():
-        whisker: dict[str, Any] = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
-        axes.errorbar(value[good], at[good], xerr=error[:, good], **whisker)
 
 
 def overview(sens: xr.Dataset) -> style.Drawn:
@@ -136,19 +124,14 @@ def overview(sens: xr.Dataset) -> style.Drawn:
 def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, head: str) -> Figure:
     """Draw a heat map with its values written in."""
     figure = style.new_figure(34 + 5.2 * len(rows))
-    axes = figure.add_subplot()
-    limit = max(float(np.nanmax(np.abs(table))), 1e-9)
-    image = axes.imshow(table, cmap="Greys", vmin=0.0, vmax=limit, aspect="auto")
-    for (i, j), value in np.ndenumerate(table):
-        if np.isfinite(value):
-            text = f"{value:.2f}".removeprefix("0") if abs(value) < 10 else f"{value:.3g}"
-            colour = "white" if value > 0.6 * limit else "0.1"
-            axes.text(j, i, text, ha="center", va="center", fontsize=7, color=colour)
-    axes.set_yticks(range(len(rows)), rows)
-    axes.set_xticks(range(len(columns)), columns, rotation=25, ha="right", rotation_mode="anchor")
+    texts = [[f"{v:.2f}".removeprefix("0") if abs(v) < 10 else f"{v:.3g}" for v in row] for row in table]
+    look = {"cmap": "Greys", "vmin": 0.0, "vmax": max(float(np.nanmax(np.abs(table))), 1e-9), "annot_kws": {"size": 7}}
+    bar = {"label": label, "shrink": 0.9, "pad": 0.02}
+    axes = seaborn.heatmap(table, ax=figure.add_subplot(), annot=np.array(texts), fmt="", cbar_kws=bar, **look)
+    axes.set_yticks(0.5 + np.arange(len(rows)), rows, rotation=0)
+    axes.set_xticks(0.5 + np.arange(len(columns)), columns, rotation=25, ha="right", rotation_mode="anchor")
     axes.tick_params(length=0)
     axes.grid(visible=False)
-    figure.colorbar(image, ax=axes, label=label, shrink=0.9, pad=0.02)
     style.head(figure, head)
     return figure
 
@@ -202,23 +185,13 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     for share, dash in ((1.0, "--"), (0.5, ":")):
         label = "σ = μ*" if share == 1 else "σ = μ*/2"
         axes.plot([0, top], [0, share * top], color="0.4", linestyle=dash, linewidth=0.8, label=label)
-    colours = style.palette(10)
-    for i, rank in enumerate(words.order(sens, output)):
-        j = int(np.flatnonzero(part["factor"].values == rank.factor)[0])
+    whisker = {"capsize": 1.5, "elinewidth": 0.7, "linestyle": "none"}
+    edge = {"markeredgecolor": "0.15", "markeredgewidth": 0.5}
+    ranks = words.order(sens, output)
+    for i, (rank, colour) in enumerate(zip(ranks, style.palette(len(ranks)), strict=True)):
         half = np.abs([[rank.value - rank.low], [rank.high - rank.value]])
-        look = {"color": colours[i % len(colours)], "marker": style.MARKERS[i % len(style.MARKERS)]}
-        axes.errorbar(
-            x[j],
-            y[j],
-            xerr=half if np.isfinite(half).all() else None,
-            capsize=1.5,
-            linestyle="none",
-            markeredgecolor="0.15",
-            markeredgewidth=0.5,
-            elinewidth=0.7,
-            label=capital(rank.name),
-            **look,
-        )
+        look = {"color": colour, "marker": style.MARKERS[i % 10], "label": capital(rank.name)}
+        axes.errorbar(rank.value, float(part["sigma"].sel(factor=rank.factor)), xerr=half, **whisker, **edge, **look)
     unit = effect_unit(sens, output)
     axes.set_xlabel(f"mean absolute effect μ* [{unit}]")
     axes.set_ylabel(f"spread of the effects σ [{unit}]")

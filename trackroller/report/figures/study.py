@@ -29,7 +29,7 @@ from trackroller.report.figures.sensitivity import (
 )
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.known_errors import FRICTION_OUTPUTS, friction_error
-from trackroller.report.view import StudyView
+from trackroller.report.view import StudyView, load_analysis
 
 log = logging.getLogger(__name__)
 Draw = Callable[[], style.Drawn]
@@ -56,8 +56,7 @@ def draw_all(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) 
         The figures drawn, in the order of the report. A figure that cannot be drawn is left out with a logged warning,
         so that a figure never stops a run.
     """
-    ds = xr.load_dataset(study_nc)
-    sens = None if sensitivity_nc is None else xr.load_dataset(sensitivity_nc)
+    ds, sens = xr.load_dataset(study_nc), load_analysis(sensitivity_nc)
     view = StudyView.of(ds)
     jobs = list(_jobs(ds, view, sens))
     if sens is not None:

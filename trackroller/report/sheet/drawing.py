@@ -7,15 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.report import html
 from trackroller.report.numbers import rounded
 from trackroller.roller.record import inputs_of
 
 if TYPE_CHECKING:
     import xarray as xr
 
-WIDTH, HEIGHT = 300.0, 330.0  # of the drawing [px]
+SIZE = np.array([300.0, 330.0])  # width and height of the drawing [px]
 LONGEST = 62.0  # the largest force [px]
 SHORT = 30.0  # arrows of friction below this length [px] have no label
+AWAY = 9.0  # from the tip of an arrow to its label [px]
+DOWN = np.array([0.0, 4.0])  # from the middle of a label to the line on which it stands [px]
 ARC = 40  # points of an arc
 
 
@@ -35,31 +38,27 @@ def drawing(ds: xr.Dataset) -> str:
     values = inputs_of(ds)
     alpha, r_guide = math.radians(values["contact_angle"]), values["guide_profile_radius"]
     height = values["axis_distance"]
-    scale = min(0.86 * HEIGHT / (height + r_guide), 0.3 * WIDTH / r_guide)
-    picture = _Picture(scale, 0.5 * WIDTH, 0.06 * HEIGHT + height * scale)
-    picture.polygon(_circle(r_guide), "guide")
-    picture.polygon(_roller(alpha, r_guide, values["roller_profile_radius"], height), "roller")
-    picture.line((-2.2 * r_guide, height), (2.2 * r_guide, height), "axis")
-    forces = _forces(ds, values, alpha, r_guide, height)
-    largest = max((math.hypot(*vector) for _, vector, _ in forces), default=1.0)
-    for start, vector, label in forces:
-        picture.arrow(start, tuple(LONGEST / largest / scale * v for v in vector), label)
-    for number, sign in ((1, 1), (2, -1)):
-        at = (sign * r_guide * math.sin(alpha), r_guide * math.cos(alpha))
-        picture.dot(at)
-        picture.text((0.72 * at[0], 0.72 * at[1]), str(number), "label")
-    title = "Section through the roller's axis, to scale, with the forces on the roller"
-    return (
-        f'<svg class="drawing" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img" aria-label="{title}">'
-        f"<title>{title}</title>"
-        '<defs><marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="6" markerHeight="6" orient="auto">'
-        f'<path d="M0 0L8 4L0 8z" class="tip"/></marker></defs>{"".join(picture.parts)}</svg>'
-    )
+    scale = min(0.86 * SIZE[1] / (height + r_guide), 0.3 * SIZE[0] / r_guide)
+    origin = np.array([0.5 * SIZE[0], 0.06 * SIZE[1] + height * scale])
 
+    def place(points: Any) -> np.ndarray:
+        return origin + scale * np.asarray(points, dtype=float) * (1, -1)
 
-def _circle(radius: float) -> np.ndarray:
     turn = np.linspace(0.0, 2.0 * np.pi, 2 * ARC)
-    return radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    outline = _roller(alpha, r_guide, values["roller_profile_radius"], height)
+    forces = _forces(ds, values, alpha)
+    largest = max((float(np.hypot(*force)) for *_, force in forces), default=1.0)
+    contacts = r_guide * np.array([[math.sin(alpha), math.cos(alpha)], [-math.sin(alpha), math.cos(alpha)]])
+    content = {
+        "size": [f"{length:g}" for length in SIZE],
+        "outlines": [("guide", place(r_guide * np.stack([np.cos(turn), np.sin(turn)], 1))), ("roller", place(outline))],
+        "axis": place([(-2.2 * r_guide, height), (2.2 * r_guide, height)]),
+        "forces": [
+            _arrow(place(at), LONGEST / largest * force * (1, -1), index, load) for at, index, load, force in forces
+        ],
+        "contacts": [(place(at), place(0.72 * at) + DOWN) for at in contacts],
+    }
+    return html.render("drawing.svg.j2", content)
 
 
 def _roller(alpha: float, r_guide: float, r_roller: float, height: float) -> np.ndarray:
@@ -82,67 +81,31 @@ def _roller(alpha: float, r_guide: float, r_roller: float, height: float) -> np.
     return np.concatenate([(flank * (-1, 1))[::-1], flank, ends])
 
 
-def _forces(ds: xr.Dataset, values: dict[str, Any], alpha: float, r_guide: float, height: float) -> list:
-    """Return the forces on the roller in the section: (start, vector, label) in mm and N."""
-    found = []
+def _forces(ds: xr.Dataset, values: dict[str, Any], alpha: float) -> list[tuple[np.ndarray, str, float, np.ndarray]]:
+    """Return the forces on the roller in the section: place [mm], index, size and vector [N]."""
+    found, axle = [], np.array([0.0, values["axis_distance"]])
+    radial, axial = values["radial_force"], values["axial_force"]
     for number, sign in ((1, 1.0), (2, -1.0)):
         own = ds.sel(contact=number)
-        at = (sign * r_guide * math.sin(alpha), r_guide * math.cos(alpha))
+        normal = np.array([sign * math.sin(alpha), math.cos(alpha)])
+        along = np.array([math.cos(alpha), -sign * math.sin(alpha)])
         load, lateral = float(own["normal_force"]), float(own["lateral_force"])
         if math.isfinite(load):
-            found.append((at, (sign * math.sin(alpha) * load, math.cos(alpha) * load), f"F_N {rounded(load)} N"))
-        if math.isfinite(lateral) and abs(lateral) > 0.02 * abs(values["radial_force"]):
-            along = (math.cos(alpha) * lateral, -sign * math.sin(alpha) * lateral)
-            found.append((at, along, f"F_T {rounded(lateral)} N"))
-    radial, axial = values["radial_force"], values["axial_force"]
-    found.append(((0.0, height), (0.0, radial), f"F_rad {rounded(radial)} N"))
-    if axial:
-        found.append(((0.0, height), (axial, 0.0), f"F_ax {rounded(axial)} N"))
-    return found
+            found.append((values["guide_profile_radius"] * normal, "N", load, load * normal))
+        if math.isfinite(lateral) and abs(lateral) > 0.02 * abs(radial):
+            found.append((values["guide_profile_radius"] * normal, "T", lateral, lateral * along))
+    found.append((axle, "rad", radial, np.array([0.0, radial])))
+    return found + ([(axle, "ax", axial, np.array([axial, 0.0]))] if axial else [])
 
 
-class _Picture:
-    """SVG elements in a frame of mm with its origin at the centre of the guide's contour."""
+def _arrow(start: np.ndarray, step: np.ndarray, index: str, size: float) -> dict[str, Any]:
+    """Return a force with its label beside the tip.
 
-    def __init__(self, scale: float, left: float, top: float) -> None:
-        self.scale, self.left, self.top = scale, left, top
-        self.parts: list[str] = []
-
-    def _at(self, point) -> tuple[float, float]:
-        return self.left + point[0] * self.scale, self.top - point[1] * self.scale
-
-    def polygon(self, points: np.ndarray, name: str) -> None:
-        """Add a filled outline."""
-        told = " ".join("{:.1f},{:.1f}".format(*self._at(p)) for p in points)
-        self.parts.append(f'<polygon class="{name}" points="{told}"/>')
-
-    def line(self, start, end, name: str, tip: bool = False) -> None:
-        """Add a line, with an arrow's tip if asked for."""
-        (x1, y1), (x2, y2) = self._at(start), self._at(end)
-        marker = ' marker-end="url(#tip)"' if tip else ""
-        self.parts.append(f'<line class="{name}" x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"{marker}/>')
-
-    def arrow(self, start, vector, label: str) -> None:
-        """Add a force with its label beside the tip."""
-        end = (start[0] + vector[0], start[1] + vector[1])
-        self.line(start, end, "force", tip=True)
-        length = math.hypot(*vector) or 1.0
-        away = 9.0 / self.scale
-        beside = (end[0] + away * vector[0] / length, end[1] + away * vector[1] / length)
-        if label.startswith("F_T") and length * self.scale < SHORT:
-            return  # its label would cover those of the other forces; the table has the value
-        anchor = "middle" if abs(vector[0]) < 0.35 * length else "start" if vector[0] > 0 else "end"
-        self.text(beside, label, "force-label", anchor)
-
-    def dot(self, point) -> None:
-        """Add a point of contact."""
-        x, y = self._at(point)
-        self.parts.append(f'<circle class="dot" cx="{x:.1f}" cy="{y:.1f}" r="2.6"/>')
-
-    def text(self, point, text: str, name: str, anchor: str = "middle") -> None:
-        """Add a label; an underscore starts a subscript."""
-        x, y = self._at(point)
-        head, _, rest = text.partition("_")
-        sub, _, tail = rest.partition(" ")
-        told = f'{head}<tspan dy="3" font-size="8">{sub}</tspan><tspan dy="-3"> {tail}</tspan>' if rest else head
-        self.parts.append(f'<text class="{name}" x="{x:.1f}" y="{y + 4:.1f}" text-anchor="{anchor}">{told}</text>')
+    A short arrow of friction has no label, which would cover those of the other forces: the table has its value.
+    """
+    length = float(np.hypot(*step)) or 1.0
+    anchor = "middle" if abs(step[0]) < 0.35 * length else "start" if step[0] > 0 else "end"
+    end = start + step
+    beside = end + AWAY / length * step + DOWN
+    told = {"index": index, "size": rounded(size), "labelled": index != "T" or length >= SHORT}
+    return {"start": start, "end": end, "beside": beside, "anchor": anchor, **told}

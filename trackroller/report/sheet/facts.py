@@ -14,16 +14,9 @@ import numpy as np
 from trackroller.damage import fatigue
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.report.flags import Flag, flags_of
-from trackroller.report.inputs import as_material, material_source
-from trackroller.report.numbers import life, rounded
-from trackroller.report.sheet.rows import (
-    Row,
-    input_row,
-    is_told,
-    limit_rows,
-    material_rows,
-    quantity_rows,
-)
+from trackroller.report.inputs import Row, as_material, input_row, is_told, material_rows, material_source
+from trackroller.report.numbers import life, number, plain, rounded, unit_text
+from trackroller.report.view import BODIES
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.limits import Limits, limits
 from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of
@@ -34,7 +27,6 @@ if TYPE_CHECKING:
 
     from trackroller.materials import Material
 
-BODIES = ("roller", "guide")
 ON_SURFACE = 1e-6  # a peak less deep than this share of the patch lies on the surface
 CONTACT_ROWS = (  # variable, words
     ("normal_force", "normal force F_N"),
@@ -84,7 +76,6 @@ class Facts:
     """All statements of a sheet on one roller."""
 
     verdict: str
-    regime: str
     reason: str
     inputs: list[Row]
     materials: list[tuple[str, list[Row], str]]
@@ -119,7 +110,6 @@ def collect(ds: xr.Dataset) -> Facts:
     lives = _lives(ds, inputs, materials)
     return Facts(
         verdict=_verdict(regime, ds, lives, found, inputs),
-        regime=regime,
         reason=str(ds["reason"].item()) if "reason" in ds else "",
         inputs=[input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
         materials=body_materials(stored),
@@ -128,10 +118,15 @@ def collect(ds: xr.Dataset) -> Facts:
         lives=lives,
         limits=limit_rows(found, inputs),
         flags=flags_of(ds),
-        options=_options(ds),
+        options=", ".join(f"{plain(name)} {ds.attrs[name]}" for name in OPTIONS if ds.attrs.get(name)),
         command=command_of(ds),
-        versions=", ".join(f"{name} {version}" for name, version in versions().items()),
+        versions=versions_text(),
     )
+
+
+def versions_text() -> str:
+    """Return the versions of the programs that a result depends on."""
+    return ", ".join(f"{name} {version}" for name, version in versions().items())
 
 
 def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
@@ -238,5 +233,25 @@ def _weakest(ds: xr.Dataset) -> int:
     return int(ds["contact"].values[int(np.nanargmin(hours.values))])
 
 
-def _options(ds: xr.Dataset) -> str:
-    return ", ".join(f"{name.replace('_', ' ')} {ds.attrs[name]}" for name in OPTIONS if ds.attrs.get(name))
+def quantity_rows(ds: xr.Dataset, names: tuple[tuple[str, str], ...]) -> list[Row]:
+    """Return the finite ones of some results, each with its unit."""
+    return [
+        Row(words, number(float(ds[name])), unit_text(ds[name].attrs.get("units", "1")).replace("–", ""))
+        for name, words in names
+        if name in ds and np.isfinite(float(ds[name]))
+    ]
+
+
+def limit_rows(found: Limits, inputs: Mapping[str, Any]) -> list[Row]:
+    """Return the limits of a roller in words."""
+    low, high = map(rounded, found.axial_force)
+    rows = [Row("lift-off: both contacts carry load for axial forces", f"{low} to {high}", "N")]
+    if any(map(math.isnan, found.axial_force)):
+        rows = [Row(rows[0].words, "not defined: no state with two loaded contacts was found")]
+    if any(map(math.isfinite, found.motor_force)):
+        drive, brake = map(rounded, found.motor_force)
+        rows.append(Row("full slip: the roller does not skid for motor forces", f"{drive} to {brake}", "N"))
+    lock = found.self_locking_friction
+    told = f"from {rounded(lock)} (now {number(inputs['friction_coefficient'])})"
+    special = "none up to 2" if math.isinf(lock) else "not defined: a contact has lifted"
+    return [*rows, Row("self-locking by friction", told if math.isfinite(lock) else special)]

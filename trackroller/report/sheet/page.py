@@ -1,15 +1,22 @@
-"""The sheet of one roller as a page of HTML, to print or to send."""
+"""The sheet of one roller and the page of a load spectrum as HTML, to print or to send."""
 
 from __future__ import annotations
 
+import json
+import shlex
 import tempfile
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from trackroller.report import html
-from trackroller.report.numbers import life, number, rounded
+from trackroller.report.inputs import input_row, is_told
+from trackroller.report.numbers import capital, life, number, rounded
 from trackroller.report.sheet.drawing import drawing
-from trackroller.report.sheet.facts import collect
+from trackroller.report.sheet.facts import body_materials, collect, versions_text
+from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
+from trackroller.report.view import BODIES
 from trackroller.study.files import write_text
 
 if TYPE_CHECKING:
@@ -20,14 +27,14 @@ FULL = 150.0  # percent of a limit at the right end of a bar
 
 
 def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "") -> Path:
-    """Write the sheet of a solved roller.
+    """Write the sheet of a solved roller as one HTML file that stands alone.
 
     Parameters
     ----------
     ds : xarray.Dataset
         Result of `trackroller.solve` for one case. Figures need the outputs `tractions` and `subsurface`.
     path : Path or str
-        The HTML file to write; it stands alone.
+        The file to write.
     name : str
         Head of the sheet.
 
@@ -47,11 +54,16 @@ def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "") -> Path:
 
 def render(ds: xr.Dataset, name: str = "") -> str:
     """Return the sheet as HTML text; see `write_sheet`."""
+    drawn = {}
+    if any(v.ndim > 2 for v in ds.values()):
+        from trackroller.report.figures.contact import plot_case  # heavy: matplotlib
+
+        drawn = _pictures(partial(plot_case, ds))
     content = {
         "facts": collect(ds),
         "name": name or "Track roller",
         "drawing": drawing(ds) if "normal_force" in ds else "",
-        "figures": _figures(ds),
+        "figures": [drawn[name] for name in SHOWN if name in drawn],
         "full": FULL,
     }
     return html.render("sheet.html.j2", content, life=life, number=number, rounded=rounded, bar=bar)
@@ -62,16 +74,47 @@ def bar(share: float) -> float:
     return round(min(100.0 * share, FULL) / FULL * 100.0, 1)
 
 
-def _figures(ds: xr.Dataset) -> list[dict[str, str]]:
-    """Draw the figures that the data set has fields for, as data URIs with captions."""
-    if not any(v.ndim > 2 for v in ds.values()):
-        return []
-    from trackroller.report.figures.contact import plot_case  # heavy: matplotlib
+def _pictures(draw: Callable[[Path], list[Any]]) -> dict[str, dict[str, str]]:
+    """Draw figures, and return the data URI, caption and sentence of each by its name."""
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        return {i.name: vars(i) | {"source": html.data_uri(folder / f"{i.name}.svg")} for i in draw(folder)}
 
-    with tempfile.TemporaryDirectory() as folder:
-        infos = {info.name: info for info in plot_case(ds, Path(folder))}
-        return [
-            {"caption": infos[name].caption, "source": html.data_uri(Path(folder) / f"{name}.svg")}
-            for name in SHOWN
-            if name in infos
-        ]
+
+def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml") -> Path:
+    """Write the page of a load spectrum as one HTML file that stands alone.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `solve_spectrum`.
+    path : Path or str
+        The file to write.
+    file : str
+        Name of the spectrum file, for the command that repeats the page.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    from trackroller.report.figures import spectrum, style  # heavy: matplotlib
+
+    inputs = json.loads(ds.attrs["roller"])
+    drawn = _pictures(partial(style.draw_all, [partial(spectrum.damage_by_block, ds)]))
+    content = {
+        "name": capital(str(ds.attrs["title"])),
+        "description": str(ds.attrs.get("description", "")),
+        "said": [sentence.text for sentence in sentences(ds)],
+        "lives": [(body, life_rows(ds, body)) for body in BODIES],
+        "conventions": capital(str(ds.attrs["life_conventions"])),
+        "figure": next(iter(drawn.values()), None),
+        "inputs": [input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
+        "materials": body_materials(json.loads(ds.attrs["materials"])),
+        "blocks": block_table(ds),
+        "flags": warnings(ds),
+        "command": f"trackroller spectrum {shlex.quote(file)} --report {shlex.quote(Path(path).name)}",
+        "versions": versions_text(),
+    }
+    write_text(Path(path), html.render("spectrum.html.j2", content))
+    return Path(path)

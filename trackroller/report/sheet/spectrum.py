@@ -10,8 +10,8 @@ from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.choices import chance
 from trackroller.report.claims import Sentence
 from trackroller.report.flags import flags_of
+from trackroller.report.inputs import Row
 from trackroller.report.numbers import capital, life, listing, long_name, unit_text, with_unit
-from trackroller.report.sheet.rows import Row
 from trackroller.report.tables import Table, cell
 from trackroller.study.spectrum.file import LOAD_FIELDS
 from trackroller.study.spectrum.solve import BODIES

@@ -1,4 +1,4 @@
-"""The facts of one roller for the terminal and as JSON."""
+"""Results of one roller and of a load spectrum for the terminal, and as JSON."""
 
 from __future__ import annotations
 
@@ -6,46 +6,46 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console
-from rich.table import Table
 
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.flags import flags_of
 from trackroller.report.sheet.facts import Facts, collect
+from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
+from trackroller.report.terminal import print_table
+from trackroller.report.view import BODIES
 from trackroller.roller.record import inputs_of, is_default, materials_of
 from trackroller.study.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.report.sheet.rows import Row
+    from trackroller.report.inputs import Row
 
 
 def print_facts(ds: xr.Dataset) -> None:
     """Print the facts of a solved roller: verdict, inputs with defaults, contacts, life, limits and warnings."""
     facts = collect(ds)
-    console = Console(width=None if Console().is_terminal else 120, highlight=False, markup=False, soft_wrap=True)
-    console.print(facts.verdict)
+    print(facts.verdict)
     regime = REGIME_LABELS[int(ds["regime"])]
-    console.print(f"regime: {regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
+    print(f"regime: {regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
     if facts.reason:
-        console.print(f"reason: {facts.reason}")
-    _print_inputs(console, facts)
+        print(f"reason: {facts.reason}")
+    _print_inputs(facts)
     if any(contact.carries for contact in facts.contacts):
-        _print_contacts(console, facts)
+        _print_contacts(facts)
     for head, rows in (("roller", facts.whole), ("life", facts.lives), ("limits", facts.limits)):
         for row in rows:
-            console.print(f"{head:<8} {row.words}: {row.value} {row.unit}".rstrip())
+            print(f"{head:<8} {row.words}: {row.value} {row.unit}".rstrip())
     for flag in facts.flags:
-        console.print(f"warning  {flag.sentence} {flag.remedy}")
+        print(f"warning  {flag.sentence} {flag.remedy}")
     undefined = [str(name) for name, variable in ds.data_vars.items() if variable.ndim <= 2 and _is_undefined(variable)]
     if undefined and not any(contact.carries for contact in facts.contacts):
-        console.print(f"undefined here: all {len(undefined)} forces, stresses, lives and other results")
+        print(f"undefined here: all {len(undefined)} forces, stresses, lives and other results")
     elif undefined:
-        console.print(f"undefined here: {', '.join(undefined)}")
+        print(f"undefined here: {', '.join(undefined)}")
     fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
     if fields:
-        console.print(f"fields (write them with -o): {', '.join(fields)}")
+        print(f"fields (write them with -o): {', '.join(fields)}")
 
 
 def _is_undefined(variable: xr.DataArray) -> bool:
@@ -53,28 +53,41 @@ def _is_undefined(variable: xr.DataArray) -> bool:
     return variable.dtype.kind == "f" and bool(variable.isnull().all())
 
 
-def _print_inputs(console: Console, facts: Facts) -> None:
+def _print_inputs(facts: Facts) -> None:
     for default, head in ((False, "given"), (True, "default")):
         told = [_told(row) for row in facts.inputs if row.default is default]
         if told:
-            console.print(f"{head:<8} {', '.join(told)}")
-    console.print(f"options  {facts.options}")
+            print(f"{head:<8} {', '.join(told)}")
+    print(f"options  {facts.options}")
 
 
 def _told(row: Row) -> str:
     return f"{row.words} {row.value} {row.unit}".rstrip()
 
 
-def _print_contacts(console: Console, facts: Facts) -> None:
-    table = Table("quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit")
-    for rows in zip(*(contact.rows for contact in facts.contacts), strict=True):
-        table.add_row(rows[0].words, *(row.value for row in rows), rows[0].unit)
+def _print_contacts(facts: Facts) -> None:
+    rows: list[list[str]] = []
+    for own in zip(*(contact.rows for contact in facts.contacts), strict=True):
+        rows.append([own[0].words, *(row.value for row in own), own[0].unit])
     for bodies in zip(*(contact.bodies for contact in facts.contacts), strict=True):
-        body = bodies[0].body
-        table.add_row(f"peak stress of the {body}", *(f"{b.peak:.5g}" for b in bodies), "MPa")
-        table.add_row("  share of its fatigue limit", *(f"{100 * b.of_fatigue_limit:.3g}" for b in bodies), "%")
-        table.add_row("  share of its tensile strength", *(f"{100 * b.of_strength:.3g}" for b in bodies), "%")
-    console.print(table)
+        rows.append([f"peak stress of the {bodies[0].body}", *(f"{b.peak:.5g}" for b in bodies), "MPa"])
+        rows.append(["  share of its fatigue limit", *(f"{100 * b.of_fatigue_limit:.3g}" for b in bodies), "%"])
+        rows.append(["  share of its tensile strength", *(f"{100 * b.of_strength:.3g}" for b in bodies), "%"])
+    print_table(["quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit"], rows, 120)
+
+
+def print_spectrum(ds: xr.Dataset) -> None:
+    """Print the damage of each block, the lives, sentences on their causes and warnings."""
+    told = block_table(ds)
+    title = f"{ds.attrs['title']}: damage per shift"
+    print_table(told.heads, told.rows, 180, range(1, len(told.heads)), title)
+    print(told.note)
+    for body in BODIES:
+        print(f"{body:<7} {'; '.join(f'{row.words}: {row.value} {row.unit}'.rstrip() for row in life_rows(ds, body))}")
+    for sentence in sentences(ds):
+        print(sentence.text)
+    for text in warnings(ds):
+        print(f"warning {text}")
 
 
 def as_json(ds: xr.Dataset) -> str:
