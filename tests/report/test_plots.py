@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,6 +47,13 @@ SMALL = {
 def drawn(ds: xr.Dataset, folder) -> set[str]:
     ds.to_netcdf(folder / "study.nc")
     return {info.name for info in draw_all(folder / "study.nc", folder / "figures")}
+
+
+@pytest.fixture
+def unsaved(monkeypatch):
+    """Render each figure once and write no file, for tests that look at what is drawn."""
+    paths = (Path("figure.svg"), Path("figure.png"))
+    monkeypatch.setattr(style, "save", lambda figure, out_dir, name: (figure.draw_without_rendering(), paths)[1])
 
 
 @pytest.fixture(scope="module")
@@ -122,11 +130,11 @@ def test_the_same_study_gives_the_same_svg(grid, tmp_path):
         assert again.read_bytes() == (folder / "figures" / f"{info.name}.svg").read_bytes()
 
 
-def test_a_sample_along_case_gets_every_figure(tmp_path):
+def test_a_sample_along_case_gets_every_figure(tmp_path, unsaved):
     assert drawn(sampled_study(200), tmp_path) == ALL
 
 
-def test_unlimited_lives_are_drawn_above_the_finite_ones(tmp_path):
+def test_unlimited_lives_are_drawn_above_the_finite_ones(tmp_path, unsaved):
     values, top = capped(np.array([10.0, np.inf, np.nan, 0.0]))
     assert top == 100.0 and values[1] == 100.0 and np.isnan(values[2:]).all()
     assert "bands-roller_life_hours" in drawn(grid_study(SMALL, unlimited=True), tmp_path)
@@ -261,7 +269,7 @@ def test_a_case_is_named_by_what_differs_from_the_defaults():
     assert named == "axial force 10 N, free rolling and PA6 on 1.7225-normalised"
 
 
-def test_frictionless_and_tall_contacts_are_drawn(tmp_path):
+def test_frictionless_and_tall_contacts_are_drawn(tmp_path, unsaved):
     """mu = 0 has no tractions to show; an ellipse longer in the rolling direction has its panels side by side."""
     free = solve_sliding(tr.Case(friction_coefficient=0.0, motor_force=0.0), outputs=OUTPUTS)
     assert {i.name for i in plot_case(free, tmp_path / "free")} == {"contact_1_stress", "contact_2_stress"}
@@ -269,7 +277,7 @@ def test_frictionless_and_tall_contacts_are_drawn(tmp_path):
     assert {i.name for i in plot_case(tall, tmp_path / "tall")} == {"contact_shear", "contact_energy"}
 
 
-def test_a_lifted_contact_is_left_out(solved, tmp_path):
+def test_a_lifted_contact_is_left_out(solved, tmp_path, unsaved):
     ds = solved.copy()
     for name, variable in ds.data_vars.items():
         if "contact" in variable.dims and variable.dtype.kind == "f":
@@ -296,7 +304,7 @@ def test_drawing_leaves_the_callers_matplotlib_alone(grid):
 
 
 @pytest.mark.parametrize("motor_force", [-30.0, 0.0])
-def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force):
+def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force, unsaved):
     """A case without a contact to draw raises no error."""
     ds = solve_sliding(tr.Case(axial_force=150.0, motor_force=motor_force), outputs=OUTPUTS)
     assert int(ds["regime"]) == 2

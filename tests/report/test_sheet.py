@@ -11,6 +11,8 @@ import subprocess
 
 import numpy as np
 import pytest
+import yaml
+from command_line import trackroller
 from reference_cases import solve_sliding
 from typer.testing import CliRunner
 
@@ -21,6 +23,7 @@ from trackroller.report.flags import flags_of
 from trackroller.report.sheet.facts import collect
 from trackroller.report.sheet.page import render
 from trackroller.report.sheet.text import as_json
+from trackroller.roller.limits import limits
 
 SCATTER = {"like": "PA6", "name": "PA6 with scatter", "scatter_in_cycles": 4.0}
 CASES = {
@@ -32,6 +35,20 @@ CASES = {
     "skidding": tr.Case(motor_force=-300),
     "overloaded": tr.Case(radial_force=-3000, axial_force=0, motor_force=0),
 }
+
+
+@pytest.fixture(scope="module", autouse=True)
+def limits_searched_once():
+    """Keep the limits of each case: a page, a text and their facts would search them anew."""
+    kept = {}
+
+    def searched(case, model):
+        key = repr((case, model))
+        return kept[key] if key in kept else kept.setdefault(key, limits(case, model))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("trackroller.report.sheet.facts.limits", searched)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -148,24 +165,28 @@ def test_a_report_is_written_for_one_case_only(tmp_path, solved):
         tr.report(solve_sliding([tr.Case(), tr.Case()], "forces"), tmp_path / "two.html")
 
 
-def test_the_command_line_writes_sheet_and_text(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "my-roller.yaml").write_text("axial_force: 12\ncontact_model: sliding\n")
-    done = CliRunner().invoke(app, ["solve", "my-roller.yaml", "--report", "sheet.html"])
-    assert done.exit_code == 0, done.output
-    page = (tmp_path / "sheet.html").read_text(encoding="utf-8")
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    """Return the sheet of the case with most rows, as the command line writes it, and what is printed."""
+    place = tmp_path_factory.mktemp("sheet")
+    case = CASES["plastic"]
+    (place / "my-roller.yaml").write_text(yaml.safe_dump(case.as_dict() | {"contact_model": "sliding"}))
+    done = trackroller("solve", "my-roller.yaml", "--report", "sheet.html", cwd=place)
+    return place / "sheet.html", done.stdout
+
+
+def test_the_command_line_writes_sheet_and_text(written):
+    page = written[0].read_text(encoding="utf-8")
     assert "my-roller" in page and page.count("<figure>") == 3
-    assert "given    axial force F_ax 12 N" in done.output and "friction coefficient mu 0.3" in done.output
+    told, default = re.findall(r"^(?:given|default) .*$", written[1], re.M)
+    assert told.startswith("given    radial force F_rad −20 N, axial force F_ax 3 N")
+    assert default.startswith("default ") and "friction coefficient mu 0.3" in default
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="needs chromium")
-def test_the_sheet_prints_on_one_page(tmp_path):
-    ds = solve_sliding(
-        CASES["plastic"], ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
-    )
-    (tmp_path / "sheet.html").write_text(render(ds), encoding="utf-8")
+def test_the_sheet_prints_on_one_page(written, tmp_path):
     flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-pdf-header-footer"]
     target = tmp_path / "sheet.pdf"
     command = ["chromium", *flags, f"--print-to-pdf={target}", f"--user-data-dir={tmp_path}/profile"]
-    subprocess.run([*command, (tmp_path / "sheet.html").as_uri()], check=True, capture_output=True, timeout=120)
+    subprocess.run([*command, written[0].as_uri()], check=True, capture_output=True, timeout=120)
     assert len(re.findall(rb"/Type\s*/Page\b", target.read_bytes())) == 1

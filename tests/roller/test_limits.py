@@ -16,7 +16,11 @@ from trackroller.roller import limits as searched
 
 CASE = tr.Case(motor_force=0, axial_force=10, friction_coefficient=0.2)
 
-limits = functools.partial(searched.limits, contact_model="sliding")
+
+@functools.cache
+def limits(case: tr.Case) -> searched.Limits:
+    """Search the limits of a case once for all tests."""
+    return searched.limits(case, contact_model="sliding")
 
 
 def _regime(case: tr.Case) -> str:

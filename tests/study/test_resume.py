@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
+import multiprocessing
 import re
 import shutil
 import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 
@@ -58,11 +57,14 @@ def run(data, results, **more):
 
 
 def run_apart(results, kill=None):
-    """Run the study in a separate process, which may kill itself with SIGKILL."""
-    code = f"import test_resume as t; t.run(t.DATA, {str(results)!r})"
-    paths = os.pathsep.join(map(str, (HERE.parent, HERE, HERE / "study")))
-    env = os.environ | ({"FAKE_KILL": str(kill)} if kill else {}) | {"PYTHONPATH": paths}
-    return subprocess.run([sys.executable, "-c", code], cwd=HERE, env=env, capture_output=True, text=True, timeout=120)
+    """Run the study in a fork of this process, which may kill itself with SIGKILL; return its exit code."""
+    with pytest.MonkeyPatch.context() as patch:
+        if kill:
+            patch.setenv("FAKE_KILL", str(kill))
+        child = multiprocessing.get_context("fork").Process(target=run, args=(DATA, results))
+        child.start()
+    child.join(120)
+    return child.exitcode
 
 
 def test_gathered_grid_has_its_factors_as_labelled_dimensions(tmp_path):
@@ -98,9 +100,9 @@ def test_files_carry_their_conventions_and_coordinates_have_no_fill_value(tmp_pa
 def test_killed_run_goes_on_and_ends_bit_for_bit_the_same(tmp_path, solved, monkeypatch):
     _, whole, _ = run(DATA, tmp_path / "whole")
     before = sum(solved().values())
-    codes = [run_apart(tmp_path / "killed", before + 7 + 16 * i).returncode for i in range(3)]
+    codes = [run_apart(tmp_path / "killed", before + 7 + 16 * i) for i in range(3)]
     assert all(code == -9 for code in codes)
-    assert run_apart(tmp_path / "killed").returncode == 0
+    assert run_apart(tmp_path / "killed") == 0
     killed = xr.open_dataset(tmp_path / "killed" / "s" / "study.nc").load()
     xr.testing.assert_identical(killed.drop_attrs(), whole.drop_attrs())
     lost = sum(solved().values()) - 2 * before
@@ -133,7 +135,7 @@ def test_growing_a_study_solves_new_cases_only(tmp_path, solved, more):
 
 
 def test_killed_and_then_grown_study_keeps_finished_blocks(tmp_path, solved):
-    assert run_apart(tmp_path, 45).returncode == -9
+    assert run_apart(tmp_path, 45) == -9
     plan, _, _ = run(changed(axial_force=[10.0, *LOADS]), tmp_path)
     assert sum(solved().values()) <= plan.size + 20
 
