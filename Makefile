@@ -9,7 +9,7 @@ CORES ?= all
 SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile validation/rules
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
-.PHONY: env env-ci lock study validate test test-quick lint docs explorer explorer-check test-slurm test-long clean-results
+.PHONY: env env-ci lock study validate test test-quick test-browser lint docs explorer explorer-check test-slurm test-long clean-results
 
 env: $(STAMP)
 
@@ -44,7 +44,7 @@ study: $(STAMP)
 validate: $(STAMP)
 	$(BIN)/snakemake -s validation/Snakefile --quiet rules host --cores $(CORES)
 
-# -ra lists what was skipped and why; CI and make test-long run the slow tests as well
+# -ra lists what was skipped and why; CI runs the slow tests and those in a browser as well
 test: $(STAMP)
 	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal
 
@@ -68,6 +68,10 @@ docs: $(CI_STAMP)
 	$(BIN)/python -m validation.adopt.extremes --check
 	$(BIN)/python -m validation.adopt.paper --check
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
+# the pages in a browser; needs Chromium, and axe-core from `npm ci` in web/
+test-browser: $(STAMP)
+	$(BIN)/python -m pytest -q -ra -m browser tests/report
 
 # the script of the explorer from web/src, which needs Node and npm; the check compares it byte for byte
 explorer:

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from snakemake import cli
+
 ROOT = Path(__file__).parents[1]
 SNAKEMAKE = str(Path(sys.executable).parent / "snakemake")
+QUIET = ("--quiet", "host")
+HANGS = 900  # [s], more than the slowest machine needs
 STUDY = """
 name: tiny
 description: a small study
@@ -37,21 +42,53 @@ def copy_program(folder: Path) -> Path:
     return Path(shutil.copy(ROOT / "Snakefile", folder))
 
 
-def command(*words: str, snakefile: Path = ROOT / "Snakefile") -> list[str]:
-    """Return the words that start Snakemake on two cores, and name each rule that it runs."""
-    return [SNAKEMAKE, "-s", str(snakefile), "--quiet", "host", "--cores", "2", "--nocolor", *words]
+def command(*words: str, snakefile: Path = ROOT / "Snakefile", quiet: tuple[str, ...] = QUIET) -> list[str]:
+    """Return the words that start Snakemake on two cores; without more words it names each rule that it runs."""
+    return [SNAKEMAKE, "-s", str(snakefile), *quiet, "--cores", "2", "--nocolor", *words]
 
 
-def snakemake(folder: Path, *words: str, code: int = 0, snakefile: Path = ROOT / "Snakefile") -> str:
-    """Run Snakemake in a folder, require an exit code, and return what it printed."""
-    words = tuple(command(*words, snakefile=snakefile))
-    hangs = 900  # [s], more than the slowest machine needs
+def environment(snakefile: Path) -> dict[str, str]:
+    """Return the environment in which a copied workflow takes the package beside it."""
     paths = os.pathsep.join([str(snakefile.parent), os.environ.get("PYTHONPATH", "")])
-    env = os.environ | {"PYTHONPATH": paths}  # a copied workflow takes the package beside it
-    done = subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True, timeout=hangs)
+    return dict(os.environ) | {"PYTHONPATH": paths}
+
+
+def snakemake_process(folder: Path, *words: str, code: int = 0, snakefile: Path = ROOT / "Snakefile") -> str:
+    """Run Snakemake in a folder as users do, require an exit code, and return what it printed."""
+    words, env = tuple(command(*words, snakefile=snakefile)), environment(snakefile)
+    done = subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True, timeout=HANGS)
     told = done.stdout + done.stderr
     assert done.returncode == code, told
     return told
+
+
+def snakemake(folder: Path, *words: str, code: int = 0, snakefile: Path = ROOT / "Snakefile", quiet=QUIET) -> str:
+    """Do what `snakemake_process` does in a fork of this process, which has imported Snakemake already."""
+    told = folder / ".told.txt"
+    words = command(*words, snakefile=snakefile, quiet=quiet)[1:]
+    context = multiprocessing.get_context("fork")
+    child = context.Process(target=_main, args=(folder, told, snakefile, words))
+    child.start()
+    child.join(HANGS)
+    child.kill()
+    text = told.read_text()
+    assert child.exitcode == code, text
+    return text
+
+
+def _main(folder: Path, told: Path, snakefile: Path, words: list[str]) -> None:
+    """Be a Snakemake that prints into a file and imports the package beside the Snakefile."""
+    with told.open("w") as stream:
+        os.dup2(stream.fileno(), 1)
+        os.dup2(stream.fileno(), 2)
+    sys.stdout, sys.stderr = (open(number, "w", buffering=1, closefd=False) for number in (1, 2))
+    os.chdir(folder)
+    os.environ |= environment(snakefile)
+    if snakefile.parent != ROOT:
+        sys.path.insert(0, str(snakefile.parent))
+        for name in [name for name in sys.modules if name.partition(".")[0] == "trackroller"]:
+            del sys.modules[name]
+    cli.main(words)
 
 
 def started(told: str) -> list[str]:

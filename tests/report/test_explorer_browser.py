@@ -22,7 +22,7 @@ from trackroller.report.page import write_report
 from trackroller.report.view import StudyView
 from trackroller.study.config import parse_study
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")]
 
 AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
 FACTORS = {

@@ -174,6 +174,7 @@ OVERFLOW = """(() => {
 })()"""
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
 def test_a_browser_shows_it_whole_and_without_console_errors(report):
     """Nothing is wider than the window, every figure loads, the console stays empty."""

@@ -183,6 +183,7 @@ def test_the_command_line_writes_sheet_and_text(written):
     assert default.startswith("default ") and "friction coefficient mu 0.3" in default
 
 
+@pytest.mark.browser
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="needs chromium")
 def test_the_sheet_prints_on_one_page(written, tmp_path):
     flags = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-pdf-header-footer"]
