@@ -108,9 +108,9 @@ MUTATIONS = {
     ),
     "exponent": Mutation(
         "S-N curve, exponent k",
-        "damage/sn_curve.py",
-        "np.log(knee / first) /",
-        "np.log(first * knee) /",
+        "materials/sn_curve.py",
+        "np.log(cycles) / np.log(stresses)",
+        "np.log(cycles) * np.log(stresses)",
         ("materials/test_sn_curve.py", "damage/test_fatigue.py"),
     ),
     "creepage-index": Mutation(

@@ -127,7 +127,7 @@ class FastsimModel(ContactModel):
         return Resultants.unknown(len(rows)).replaced(known, solution.resultants)
 
     def surface(self, ellipse, slip, friction, rows):
-        # patches too slender for the theory occur in full slip only, which needs no more of it than grid and pressure
+        # Patches that are too slender for the theory occur in full slip only, which needs just their grid and pressure.
         a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
         known = np.maximum(a, b) <= MOST_SLENDER * np.minimum(a, b)
         near = np.where(known, a, np.clip(a, b / MOST_SLENDER, b * MOST_SLENDER))

@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.halfspace.peak_settings import PeakSettings
 
-if TYPE_CHECKING:  # these modules load numba, and a plan does without
+if TYPE_CHECKING:  # these modules load numba, which a plan does not need
     from trackroller.contact.common import Elastic
     from trackroller.contact.friction_laws import FrictionLaw
 

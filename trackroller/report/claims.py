@@ -22,7 +22,7 @@ FEW = 20  # fewer events are named one by one, without a cause
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # rows of a class below which its median is not compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
-COVERED = 0.8  # share of a class that must lie in levels with rows enough, so that pooling can be checked
+COVERED = 0.8  # share of a class that must lie in levels with enough rows; otherwise pooling cannot be checked
 UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change
 ENDS = ("low", "high")
 MOST = 0.9  # share of pairs that must agree in the direction of an effect
@@ -52,7 +52,7 @@ class Effect:
 
     Attributes
     ----------
-    low, high : levels (of pairs), or the last value of the low class and the first of the high one (of classes)
+    low, high : the two levels of pairs; of classes the last value of the low and the first value of the high class
     ratio : median of the ratios of pairs, or ratio of the medians of the classes [1]
     interval : 95 % interval of that ratio of medians (of classes), NaN for pairs
     size : number of pairs, or of rows in the smaller class
@@ -87,7 +87,7 @@ def median_interval(values: np.ndarray) -> tuple[float, float]:
     -----
     The order statistics k and n - k + 1 enclose the median with probability 1 - 2 P(B < k), B binomial (n, 1/2).
     """
-    from scipy.stats import binom  # heavy, and the sheet of one case does without
+    from scipy.stats import binom  # heavy, and the sheet of one case does not need it
 
     values = np.sort(values)
     k = int(binom.ppf(0.025, len(values), 0.5))
@@ -195,7 +195,7 @@ def class_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) ->
 def comparable(view: StudyView, effect: Effect, column: str, rows: np.ndarray) -> bool:
     """Say whether pooling over the categories can be checked.
 
-    It can where both classes of the factor hold rows enough at most levels of each category.
+    It can where both classes of the factor have enough rows at most levels of each category.
     """
     x, values = (view.table[c].to_numpy(dtype=float) for c in (effect.factor, column))
     good = rows & np.isfinite(values) & (values > 0)

@@ -59,7 +59,7 @@ def _columns(ds: xr.Dataset, dims: list[str], names: Iterable[str]) -> dict[str,
 def input_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
     """Flatten factors and other inputs that vary over `dims` in one common order."""
     own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
-    words = [f"{n}_value" for n in PARAMETERS]  # the numbers of friction given as a word
+    words = [f"{n}_value" for n in PARAMETERS]  # numbers that belong to a friction coefficient given as a word
     return _columns(ds, dims, [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *CATEGORIES])
 
 

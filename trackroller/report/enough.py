@@ -17,7 +17,7 @@ from trackroller.report.sentences import of_output
 from trackroller.study.design.sampling import ARRAYS
 
 HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
-FEWEST = 64  # samples that give a B10 an interval: the bound is an order statistic, not the shortest life
+FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
 
 
 def samples(sens: xr.Dataset, asked: int) -> Sentence | None:

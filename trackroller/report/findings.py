@@ -44,7 +44,7 @@ def valid_designs(view: StudyView) -> Sentence:
 
 
 def _outside(view: StudyView) -> list[tuple[str, str, np.ndarray]]:
-    """Return the rolling cases outside the model by flag and, where the data tell, by body."""
+    """Return the rolling cases outside the model by flag, and by body if the data set has flags of bodies."""
     found = []
     for flag in (f for f in OUTSIDE if f in view.flags):
         for body in BODIES if view.by_body and flag in OF_BODY else ("",):
@@ -151,7 +151,10 @@ def _levels_words(view: StudyView, name: str, levels: Any) -> str:
 def _most_frequent(
     view: StudyView, hit: np.ndarray, among: np.ndarray
 ) -> tuple[str, tuple[Any, int, int], tuple[Any, int, int]] | None:
-    """Return the factor with the largest contrast that every category shares: its most and its least frequent level."""
+    """Return the factor whose levels differ most in how often they are hit, and its most and least frequent level.
+
+    The order of these two levels must be the same within every category.
+    """
     best = None
     for name in view.factors:
         levels = view.levels(name)

@@ -79,7 +79,7 @@ def count(cases: int) -> str:
 def share(part: int, whole: int) -> str:
     """Write a share of cases in percent.
 
-    Only all of them are 100 % and only none of them are 0 %.
+    The result is 100 % only if all cases count, and 0 % only if no case counts.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ def regime_table(view: StudyView) -> Table | None:
 
 
 def validity_table(view: StudyView) -> Table | None:
-    """Count the rolling cases that carry each validity flag, by body where the data tell, and say where."""
+    """Count the rolling cases that carry each validity flag, by body if the data tell it, and name where they occur."""
     rows = []
     for flag in view.flags:
         for body in BODIES if view.by_body and flag in OF_BODY else ("",):

@@ -121,9 +121,8 @@ class StudyView:
     def held_level(self, name: str) -> Any:
         """Return the level at which a factor is held.
 
-        That of the base case, else the middle one.
-
-        Of contact models it is the most exact model.
+        It is the level of the base case, or the middle level if the base case has none. Contact models are held at the
+        most exact model.
         """
         levels = self.levels(name)
         if name == "contact_model":

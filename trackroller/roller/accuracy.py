@@ -270,7 +270,7 @@ def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]
 
 def table_errors() -> Levels:
     """Return the measured errors of the creep forces in the table, over mu F_N and mu F_N sqrt(a b)."""
-    from trackroller.contact.table import stored  # heavy: numba, and a plan at a preset does without
+    from trackroller.contact.table import stored  # loads numba, which a plan at a preset does not need
 
     errors = stored().errors
     median, p99 = (max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99"))

@@ -212,7 +212,7 @@ def build(
     xarray.Dataset
         With the coordinates `contact` and `body`.
     """
-    import xarray as xr  # heavy: `VARIABLES` is needed where no data set is made
+    import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
 
     variables: dict[str, Any] = {}
     for name, array in values.items():

@@ -164,7 +164,10 @@ class Mirror:
         return full, twin
 
     def spread(self, good: np.ndarray, found: np.ndarray, sign: float = 1.0) -> np.ndarray:
-        """Copy the values of the solved patches `asked(good)` to all patches `good`; `sign` -1: a mirror flips it."""
+        """Copy the values of the solved patches `asked(good)` to all patches `good`.
+
+        With `sign` = -1 mirror images get the negative value.
+        """
         full, twin = self._copies(good, found, self.asked(good))
         if sign < 0:
             full[twin] = -full[twin] + 0.0

@@ -182,7 +182,7 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:
-    """Yield contact model and rows of cases that can be solved in one batch; frictionless cases stand apart."""
+    """Yield contact model and rows of cases that can be solved in one batch; frictionless cases are a batch alone."""
     bare = requirements.is_frictionless(table) & options.shortcuts
     keys = list(zip(bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
     rows: dict[tuple, list[int]] = {}

@@ -46,7 +46,7 @@ class StudyFolder:
     def earlier(self) -> dict[str, Any]:
         """Return the study as it was planned last, {} if there is none."""
         try:
-            from trackroller.materials.yaml_file import read_mapping  # heavy: NumPy, and --help does without
+            from trackroller.materials.yaml_file import read_mapping  # loads NumPy, which --help does not need
 
             return read_mapping(self.study_file, "study")
         except InputError:

@@ -8,7 +8,7 @@ regimes, how many converged, residuals, and where the balance that was taken lie
 
 - the one followed from constant friction by raising the velocity from nothing. Where it ends on the way, the followed
   roller slips suddenly, and nothing is compared;
-- those at a velocity 1 % smaller and larger: a case that stands apart from both while these agree took another one.
+- those at a velocity 1 % smaller and larger: a case that differs from both while these agree took another balance.
 """
 
 from __future__ import annotations

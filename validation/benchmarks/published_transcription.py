@@ -288,7 +288,9 @@ def time_transcription(
             continue
         low, high = np.array(search_box(contact)).T
         places = rng.uniform(low, high, (sample, 3))
-        equivalent(stress_at(contact, places[0], style))  # derivation and first-call costs stay outside
+        equivalent(
+            stress_at(contact, places[0], style)
+        )  # the measured time leaves out the derivation and the first call
         start, start_cpu = time.perf_counter(), time.process_time()
         for place in places:
             equivalent(stress_at(contact, place, style))

@@ -1,4 +1,7 @@
-"""The shipped comparison of contact models (`snakemake contact_models`): a study like any other, and its patches."""
+"""The shipped comparison of contact models: a study like any other, and its patches.
+
+    snakemake -s validation/Snakefile --cores all contact_models
+"""
 
 from __future__ import annotations
 
@@ -56,7 +59,7 @@ def write_words(study_nc: str, path: Path) -> None:
 
     with xr.open_dataset(study_nc) as ds:
         paired = pairs(ds)
-        said = sentences(paired) if paired is not None else ["The study has but one contact model."]
+        said = sentences(paired) if paired is not None else ["The study has only one contact model."]
     path.write_text("\n".join(said) + "\n", encoding="utf-8")
 
 

@@ -158,7 +158,7 @@ def mirror(run: Run) -> Finding:
 
 
 def condition(run: Run) -> Finding:
-    """Condition number of the normal forces: their relative change over that of loads and friction."""
+    """Return the condition number of the normal forces: their relative change over that of loads and friction."""
     step, worst = 1e-6 if run.model == "sliding" else 1e-3, np.zeros(len(run.scene.cases))
     base = run.result.normal_force.values
     for name in (*FORCES, "friction_coefficient"):

@@ -19,8 +19,8 @@ from validation.kalker_table.nodes import FORCES, LOG_RATIOS, PARTS, POISSON, No
 
 # Fine grids are cheap where much of a patch slides, most of all at rho = 1.
 ELEMENTS, SLIDING_ELEMENTS = (28, 32), 40
-MOSTLY_SLIDING = 8  # first level with the larger number of elements
-ROUGH_ELEMENTS = 24  # for what Poisson's ratio adds
+MOSTLY_SLIDING = 8  # first level of rho that is solved with the larger number of ELEMENTS
+ROUGH_ELEMENTS = 24  # for the coefficients in Poisson's ratio
 RATIOS_OF_POISSON = (0.0, table.POISSON, 0.5)
 # ends of rho, chi, theta and ln g
 ENDS = ((0.0, 1.0), (0.0, np.pi / 2), (-np.pi / 2, np.pi / 2), LOG_RATIOS)

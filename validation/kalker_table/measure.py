@@ -43,7 +43,7 @@ def patches(n: int, seed: int) -> Problem:
     g, nu = np.exp(rng.uniform(*LOG_RATIOS, n)), rng.uniform(0.0, 0.5, n)
     rho, theta = rng.uniform(0.02, 0.98, n), rng.uniform(-np.pi / 2, np.pi / 2, n)
     kappa = np.where(np.arange(n) % 2, 10 ** rng.uniform(-1.0, np.log10(LARGEST_COUPLING), n), 0.0)
-    plane = HALF_WAY * rho / (1.0 - rho)  # of both creepages
+    plane = HALF_WAY * rho / (1.0 - rho)  # size of longitudinal and spin creepage together
     z = kappa * creepage_coefficients(g, nu).c11 * coupling_creepage(g)
     x, r = plane * np.sin(theta) + z, np.hypot(plane, z)
     r = np.sqrt(x**2 + (plane * np.cos(theta)) ** 2 + z**2)

@@ -30,7 +30,7 @@ LARGEST_SLIP = 1e100  # creepages are cut off here; far below, the patch already
 
 
 def spin_arm(g):
-    """Return L/c of patches with c = sqrt(a b); the spin pole leaves a slender patch (b << a) at theta = 60 deg."""
+    """Return the lever arm L of spin over c = sqrt(a b); the pole leaves a slender patch (b << a) at theta = 60 deg."""
     return np.sqrt((1.0 / g + g / 4.0) / 3.0)
 
 

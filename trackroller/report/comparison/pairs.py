@@ -24,7 +24,7 @@ RESULTS = (
 
 
 def pairs(ds: xr.Dataset) -> xr.Dataset | None:
-    """Return the designs of a study by contact model; None if the study has but one model.
+    """Return the designs of a study by contact model; None if the study has only one model.
 
     Parameters
     ----------
@@ -32,11 +32,12 @@ def pairs(ds: xr.Dataset) -> xr.Dataset | None:
 
     Returns
     -------
-    Dataset over `contact_model` (the cheapest first, the reference last) and `design`: those results that a comparison
-    looks at, NaN where a design lacks a model (regime -1), and as coordinates all inputs, `spin` and `lean`, which is
-    mu tan(alpha). A design is here if the reference and one model more solved it; two cases are one design if they
-    agree in every input but the model. Attributes: `reference`, `left` (cases without a partner), `life` (words), and
-    as JSON `factors` (what else varies), `grid` (whether every combination is there) and `base`.
+    Dataset over `contact_model` (the cheapest first, the reference last) and `design`. Cases whose inputs agree except
+    for the model are one design. The data set holds the designs that the reference and at least one other model
+    solved. Variables: the results that are compared, NaN (regime -1) where a design lacks a model. Coordinates: all
+    inputs, `spin`, and `lean`, which is mu tan(alpha). Attributes: `reference`, `left` (number of cases without a
+    partner), `life` (words), and as JSON `factors` (the other factors), `grid` (whether every combination exists) and
+    `base`.
     """
     if MODEL not in ds.variables or "regime" not in ds:
         return None
@@ -77,7 +78,9 @@ def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
     """
     varied = [n for n in table if n != MODEL and table[n].nunique(dropna=False) > 1]
     design = table.groupby(varied, dropna=False, sort=False).ngroup() if varied else pd.Series(0, table.index)
-    first = pd.Series(np.arange(len(table)), table.index).groupby([table[MODEL], design]).first()  # of equal cases
+    first = (
+        pd.Series(np.arange(len(table)), table.index).groupby([table[MODEL], design]).first()
+    )  # equal cases count once
     rows = first.unstack(fill_value=-1).reindex(models).to_numpy()
     rows = rows[:, (rows[-1] >= 0) & (rows[:-1] >= 0).any(axis=0)]
     return rows[:, np.argsort(rows[-1], kind="stable")]

@@ -86,7 +86,7 @@ def _lead(view: StudyView, column: str, rows: np.ndarray) -> str:
 
 
 def _series(view: StudyView, name: str, rows: np.ndarray, colours: Series, lead: str) -> Series:
-    """Return the groups to tell apart in a panel: a deciding number is one line, as is a factor with too few rows."""
+    """Return the groups that get a line each; a deciding number and a factor with too few rows have one line."""
     whole = [("", np.ones(rows.sum(), bool))]
     if name == lead:
         return whole if view.ordered(name) or len(colours) < len(view.levels(name)) else colours
@@ -94,7 +94,7 @@ def _series(view: StudyView, name: str, rows: np.ndarray, colours: Series, lead:
 
 
 def _drawable(view: StudyView, name: str, rows: np.ndarray, chosen: np.ndarray) -> bool:
-    """Say whether at least two classes of a factor have rows enough for a median."""
+    """Say whether at least two classes of a factor have enough rows for a median."""
     counts = np.bincount(classes(view, name, rows, BINS)[0][chosen])
     return bool((counts >= FEWEST).sum() > 1)
 

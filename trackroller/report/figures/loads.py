@@ -16,7 +16,7 @@ from trackroller.report.groups import coloured
 from trackroller.report.numbers import factor_label, listing, number, quantity, symbol, with_unit
 from trackroller.report.view import BODIES, StudyView
 
-SAME = 0.9  # rank correlation from which a factor and the fit say the same
+SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
 MEDIANS = "Lines: medians of the designs; bands: 5 to 95 %."
 FORCES = (
     ("normal_force", "Normal force", r"$F_\mathrm{N}$"),

@@ -34,7 +34,7 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
 
     Returns
     -------
-    Values with NaN where nothing can be drawn, and the height of the unlimited lives, None without any.
+    Values with NaN where nothing can be drawn, and the height of the unlimited lives, None if all lives are finite.
     """
     life = np.asarray(life, dtype=float)
     finite = life[np.isfinite(life) & (life > 0)]
@@ -89,7 +89,7 @@ def drive_entries(drives: list[Any]) -> Entries:
 
 
 def drive_of(levels: list[Any] | None) -> list[Any]:
-    """Return the drives to tell apart: up to five levels, else one line for all."""
+    """Return the drives that get a line each: up to five levels, otherwise one line for all."""
     return levels if levels is not None and len(levels) <= 5 else [None]
 
 

@@ -87,7 +87,7 @@ def _trade(
     groups: list[tuple[str, np.ndarray]],
     joined: bool,
 ) -> None:
-    """Draw one goal over another; a set for two goals is joined by the steps that bound it."""
+    """Draw one goal over another; steps join the Pareto set of a study with two goals."""
     (x, up_x), (y, up_y) = across, upwards
     best = front["optimal"].values == 1
     xs, ys = front[x].values.astype(float), front[y].values.astype(float)

@@ -16,13 +16,13 @@ from trackroller.report.groups import BINS, classes
 from trackroller.report.numbers import capital, factor_label, long_name
 from trackroller.report.view import StudyView
 
-FEWEST = 5  # cases of a sample outside the most frequent regime
+FEWEST = 5  # a sample with fewer cases outside the most frequent regime has no map
 
 
 def regime_map(view: StudyView) -> style.Drawn:
     """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most.
 
-    It answers: where may the roller not be used? None where nothing or too little of a sample does not roll.
+    It answers: where may the roller not be used? Return None if all cases roll, or nearly all cases of a sample.
     """
     if "regime" not in view.table or len(view.factors) < 2:
         return None

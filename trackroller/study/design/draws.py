@@ -61,7 +61,7 @@ def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -
     if method == "lhs":
         unit = grown_lhs(len(free), [*check_sizes(settings.get("grown_from", ()), n), n], seed, root)
     else:
-        from scipy.stats import qmc  # heavy, and a plan of a grid does without
+        from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
 
         engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
         with warnings.catch_warnings():
@@ -87,10 +87,11 @@ def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
 def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     """Draw SALib's trajectories; a list moves between a random pair of its different values instead.
 
-    Bins over SALib's four levels would never show the fifth value of a list. Its whole steps would be divided by 2/3,
-    so that its mu* would be 1.5 times too large beside continuous factors.
+    If the values of a list were bins over SALib's four levels, a fifth value would never occur. A step between two
+    values would also be divided by the step 2/3 of the unit range, so that mu* of a list would be 1.5 times too large
+    beside that of continuous factors.
     """
-    from SALib.sample import morris  # heavy, and other designs do without
+    from SALib.sample import morris  # heavy, and other designs do not need it
 
     levels = settings["levels"]
     if not isinstance(levels, int) or levels < 4 or levels % 2:

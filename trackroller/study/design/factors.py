@@ -78,7 +78,7 @@ class Factor:
 
     @property
     def ordered(self) -> bool:
-        """Return whether its values are finite numbers, so that more and less mean something."""
+        """Return whether the values of the factor are finite numbers, which have an order."""
         return self.numeric and (not self.discrete or all(math.isfinite(v) for v in self.levels))
 
     def take(self, index: np.ndarray) -> np.ndarray:
@@ -123,7 +123,7 @@ class Factor:
             return low * (high / low) ** unit
         if self.kind == "triangular":
             return _triangular(unit, *self.numbers)
-        from scipy.stats import norm, truncnorm  # heavy, and grids of values do without
+        from scipy.stats import norm, truncnorm  # heavy, and grids of values do not need it
 
         mean, deviation, *ends = self.numbers
         if self.kind == "normal":

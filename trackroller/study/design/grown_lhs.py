@@ -31,7 +31,7 @@ def grown_lhs(count: int, sizes: Sequence[int], seed: int, root: np.ndarray | No
     -------
     Quantiles in the unit cube, shape (sizes[-1], count). The first sizes[i] rows are the sample of that size.
     """
-    from scipy.stats import qmc  # heavy, and a plan of a grid does without
+    from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
 
     unit: np.ndarray = qmc.LatinHypercube(d=count, rng=np.random.default_rng(seed)).random(sizes[0])
     unit = correlate(unit, root, strata=True)

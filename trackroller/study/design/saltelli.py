@@ -27,7 +27,7 @@ def draw(blocks: int, groups: Sequence[int], second_order: bool, seed: int) -> n
     -------
     (blocks x rows of a block, number of columns) quantiles
     """
-    from scipy.stats import qmc  # heavy, and a plan of a grid does without
+    from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
 
     k, exchanged = len(groups), max(groups) + 1
     base = qmc.Sobol(d=2 * k, seed=seed).random(blocks)  # `seed`, as SALib has it: `rng` scrambles in another way
