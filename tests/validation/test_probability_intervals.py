@@ -8,7 +8,7 @@ from validation import probability_intervals as program
 
 @pytest.mark.parametrize("design", ["lhs", "grown lhs"])
 def test_our_intervals_hold_the_truth_where_wilsons_do_not(design):
-    """Ours cover at least 88 %, with partly empty strata as well; Wilson's stay below 85 % for a mean of four points."""
+    """Ours cover at least 88 %, with partly empty strata too; Wilson's stay below 85 % for a mean of four points."""
     unit = program.DESIGNS["sobol"](1 << 15, 1)
     exact = np.mean([event(unit) for event, _ in program.EVENTS.values()], axis=1)
     found = program.measure(design, 100, 60, exact)
