@@ -10,8 +10,8 @@ Lengths are scaled by c = sqrt(a b), tractions by the largest traction bound, sl
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -132,8 +132,7 @@ def convolve(field, p, q, work, out):
     out[:] = work[0, :ny, :nx]
 
 
-@dataclass(frozen=True)
-class Influence:
+class Influence(NamedTuple):
     """Influence functions of ny x nx elements for products by fast Fourier transforms; a field is x + iy.
 
     They give the slips in rolling, or the displacements.
@@ -172,9 +171,15 @@ def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: 
     return Influence(_multipliers(p, ny, nx), _multipliers(q, ny, nx), float(scale), own_column)
 
 
+def rounded(*values: float) -> tuple[float, ...]:
+    """Return numbers with DIGITS digits."""
+    return tuple(float(f"{value:.{DIGITS}g}") for value in values)
+
+
 def influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool = True) -> Influence:
     """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept."""
-    return _influence(*(float(f"{v:.{DIGITS}g}") for v in (hx, hy, poisson)), ny, nx, rolling)
+    hx, hy, poisson = rounded(hx, hy, poisson)
+    return _influence(hx, hy, poisson, ny, nx, rolling)
 
 
 def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
@@ -186,7 +191,8 @@ def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
     return Influence(p, np.zeros_like(p), 1.0, np.zeros((2, 1))).product(pressure)
 
 
-def hertz_coupling_slip(a: float, b: float, ny: int, nx: int) -> np.ndarray:
+@njit(cache=True, nogil=True)
+def hertz_coupling_slip(a, b, ny, nx):
     """Return the slip -du/dy, x + iy, of Hertz's pressure at the centres of elements, for p_max = K = G = 1.
 
     Parameters
@@ -205,18 +211,27 @@ def hertz_coupling_slip(a: float, b: float, ny: int, nx: int) -> np.ndarray:
     -----
     u is the field of `pressure_displacements`. The pressure is a pile of elliptical layers of constant pressure. Inside
     a layer u is linear in x and y; outside, u follows from the analytic function z - sqrt(z^2 - c^2) of z = x + iy with
-    c^2 = a^2 - b^2. The integral of du/dy over the layers is a closed form.
+    c^2 = a^2 - b^2. The integral of du/dy over the layers is a closed form. It is computed for one quadrant.
     """
-    x, y = (side * ((2.0 * np.arange(m) + 1.0) / m - 1.0) for side, m in ((a, nx), (b, ny)))
-    z = x[None, :] + 1j * y[:, None]
     square = a * a - b * b
     square = math.copysign(max(abs(square), ROUND * a * b), square)
-    z = np.where(z == 0.0, 1e-9 * a, z)  # the centre of an odd number of elements
     c = np.sqrt(complex(square))
-    height = np.sqrt(np.maximum(1.0 - (z.real / a) ** 2 - (z.imag / b) ** 2, 0.0))
-    root = z * np.sqrt(1.0 - (1.0 - height * height) * square / z**2)
-    outside = (2j * a * b / square) * (1.0 - height - z / c * np.log((c + z) / (c * height + root)))
-    return outside.conjugate() + (2j * a / (a + b)) * height
+    out = np.empty((ny, nx), np.complex128)
+    for j in range(ny // 2, ny):
+        y = b * ((2.0 * j + 1.0) / ny - 1.0)
+        for i in range(nx // 2, nx):
+            x = a * ((2.0 * i + 1.0) / nx - 1.0)
+            z = complex(x, y)
+            if z == 0.0:
+                z = complex(1e-9 * a, 0.0)  # the centre of an odd number of elements
+            height = math.sqrt(max(1.0 - (x / a) ** 2 - (y / b) ** 2, 0.0))
+            root = z * np.sqrt(1.0 - (1.0 - height * height) * square / (z * z))
+            outside = (2j * a * b / square) * (1.0 - height - z / c * np.log((c + z) / (c * height + root)))
+            slip = outside.conjugate() + (2j * a / (a + b)) * height
+            mirror = complex(-slip.real, slip.imag)
+            out[j, i] = out[ny - 1 - j, nx - 1 - i] = slip
+            out[j, nx - 1 - i] = out[ny - 1 - j, i] = mirror
+    return out
 
 
 def difference(behind, here, ahead, far, hy):

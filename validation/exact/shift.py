@@ -15,7 +15,7 @@ import numpy as np
 from trackroller.contact.common import Elastic, Ellipse, Resultants
 from trackroller.contact.influence import influence
 from trackroller.contact.kalker.cells import unit_cells
-from trackroller.contact.kalker.newton import Problem, newton
+from trackroller.contact.kalker.newton import Problem, newton, room_for
 
 
 @dataclass(frozen=True)
@@ -98,10 +98,11 @@ def shift_patch(
     functions = influence(2.0 * a / (elements * c), 2.0 * b / (elements * c), nu, elements, elements, rolling=False)
     rigid = ((lateral - turn * y) + 1j * (rolling + turn * x)) * g / (friction * p * c)
     problem = Problem(functions, rigid, height, 0.0, np.zeros(1), np.ones(1))
-    traction, slip, bound, residual, _, _ = newton(problem, np.zeros_like(rigid), tolerance, 60, 80)
+    room = room_for(elements, elements, 80)
+    (traction, slip), residual, _, _ = newton(problem, room, np.zeros_like(rigid), tolerance, 60)
     scale = friction * p * 4.0 * a * b / elements**2
     sums = np.array([traction.real.sum(), traction.imag.sum(), (x * traction.imag - y * traction.real).sum()]) * scale
-    stick = (height > 0) & (np.abs(traction - slip / functions.own) <= bound)
+    stick = (height > 0) & (np.abs(traction - slip / functions.own) <= room.bound)
     fraction = float(share[stick].sum() / share.sum())
     field = np.stack([traction.real, traction.imag])
     return ShiftSolution(Resultants(*sums[:, None]), field, stick, fraction, residual)

@@ -6,29 +6,28 @@ Inside a patch, lengths are divided by c = sqrt(a b), tractions by mu p_max and 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from trackroller.contact.friction_laws import FrictionLaw
-from trackroller.contact.influence import coupling_slip, hertz_coupling_slip, influence
+from trackroller.contact.influence import coupling_slip, hertz_coupling_slip, influence, rounded
 from trackroller.contact.kalker.loops import reals
-from trackroller.contact.kalker.newton import Problem, newton
+from trackroller.contact.kalker.newton import Problem, newton, room_for
 from trackroller.numerics.threads import share_rows
 
+PIECE = 16  # patches of the same shape that a thread solves in one call
 TOWARDS_LAW = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)  # shares of a friction law that are met one after the other
 
 
-@dataclass(frozen=True)
-class Batch:
+class Batch(NamedTuple):
     """Patches to solve, arrays (n,) unless stated.
 
     semi_axis_lateral, semi_axis_rolling [mm]; bound : mu p_max [MPa]; ratio : mu p_max / G; poisson_ratio;
     coupling : K / mu; along (n, nx) : rolling part of the rigid slip; lateral [-], spin [1/mm] : the lateral part is
-    lateral - spin y; travel_speed [mm/s]; height, share (n, ny, nx) : mean pressure over the largest and share inside
-    the patch of each element; is_hertzian : the pressures are those of ellipses.
+    lateral - spin y; travel_speed [mm/s]; height, share (n, ny, nx), for ellipses (1, ny, nx) : mean pressure over the
+    largest and share inside the patch of each element; is_hertzian : the pressures are those of ellipses.
     """
 
     semi_axis_lateral: np.ndarray
@@ -45,16 +44,28 @@ class Batch:
     share: np.ndarray
     is_hertzian: bool
 
-    def rigid_slip(self, i: int) -> np.ndarray:
-        """Return the scaled rigid slip (ny, nx) of patch i as complex numbers, lateral + 1j rolling."""
-        ny = self.height.shape[1]
-        y = self.semi_axis_rolling[i] * ((2.0 * np.arange(ny) + 1.0) / ny - 1.0)
-        factor = 1.0 / self.ratio[i] if self.ratio[i] > 0.0 else 1.0
-        return factor * ((self.lateral[i] - self.spin[i] * y)[:, None] + 1j * self.along[i][None, :])
+    @property
+    def solvable(self) -> np.ndarray:
+        """Return which patches have friction and finite sizes, (n,)."""
+        size = self.semi_axis_lateral * self.semi_axis_rolling
+        with np.errstate(invalid="ignore"):
+            finite = np.isfinite(self.ratio * size) & (self.semi_axis_lateral > 0.0) & (self.semi_axis_rolling > 0.0)
+            return finite & (self.ratio > 0.0)
 
 
-@dataclass(frozen=True)
-class Report:
+@njit(cache=True, nogil=True)
+def _rigid_slip(batch, i, out):
+    """Write the scaled rigid slip of patch i into `out` (ny, nx), lateral + 1j rolling."""
+    ny, nx = out.shape
+    factor = 1.0 / batch.ratio[i] if batch.ratio[i] > 0.0 else 1.0
+    for k in range(ny):
+        y = batch.semi_axis_rolling[i] * ((2.0 * k + 1.0) / ny - 1.0)
+        lateral = factor * (batch.lateral[i] - batch.spin[i] * y)
+        for j in range(nx):
+            out[k, j] = complex(lateral, factor * batch.along[i, j])
+
+
+class Report(NamedTuple):
     """Numbers of n solved patches: forces (n, 3) F_T, F_A [N], M_R [N mm]; the others (n,).
 
     stick_fraction [-]; dissipation : summed over the elements; work : of the rigid slip; pressure_work : of the
@@ -75,7 +86,7 @@ class Report:
     @classmethod
     def empty(cls, n: int) -> Report:
         """Return a report of zeros."""
-        zeros = {field.name: np.zeros(n) for field in fields(cls)}
+        zeros = {field: np.zeros(n) for field in cls._fields}
         return cls(**zeros | {"forces": np.zeros((n, 3)), "own_slip": np.ones(n)})
 
     @property
@@ -86,8 +97,7 @@ class Report:
             return np.where(work != 0, self.dissipation / work - 1.0, 0.0)
 
 
-@dataclass(frozen=True)
-class Found:
+class Found(NamedTuple):
     """Start and result of n patches.
 
     traction (n, 2, ny, nx) over mu p_max: first the start, then the result; slip (n, 2, ny, nx) per travel speed;
@@ -163,62 +173,110 @@ def _sums(field, height, share, rho, a, b, stick):
     return _Sums(force_x, force_y, moment, dissipation, work, pressed, sticking, covered)
 
 
-def _solve(problem: Problem, traction: np.ndarray, control, report: Report, i: int):
+@njit(cache=True, nogil=True)
+def _solve(problem, room, traction, tolerance, limit):
     """Solve by Newton's method; if a friction law defeats it, approach the law from constant friction in steps."""
-    limits = control.tolerance, control.steps, control.krylov
-    *found, report.residual[i], report.steps[i], report.products[i] = newton(problem, traction, *limits)
-    if report.residual[i] <= control.tolerance or problem.knots.size == 1:
-        return found
+    at, residual, steps, products = newton(problem, room, traction, tolerance, limit)
+    if residual <= tolerance or problem.knots.size == 1:
+        return at, residual, steps, products
     for part in TOWARDS_LAW:
         factors = problem.factors[0] + part * (problem.factors - problem.factors[0])
         eased = Problem(problem.influence, problem.rigid, problem.height, problem.scale, problem.knots, factors)
-        *found, report.residual[i], steps, products = newton(eased, found[0], *limits)
-        report.steps[i] += steps
-        report.products[i] += products
-        if report.residual[i] > control.tolerance:
+        at, residual, more, further = newton(eased, room, at[0].copy(), tolerance, limit)
+        steps, products = steps + more, products + further
+        if residual > tolerance:
             break  # a steeper share of the law will not converge either
-    return found
+    return at, residual, steps, products
 
 
-def _one_patch(batch: Batch, law: FrictionLaw, control, found: Found, i: int) -> None:
-    """Solve patch i."""
-    a, b, ratio = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i], batch.ratio[i]
-    traction, slip, stick, report = found.traction[i], found.slip[i], found.stick[i], found.report
-    rigid = batch.rigid_slip(i)
-    if not (ratio > 0.0 and a > 0.0 and b > 0.0 and math.isfinite(ratio * a * b)):
-        traction[:] = 0.0
-        slip[0], slip[1] = rigid.real, rigid.imag
-        return
-    height = np.ascontiguousarray(batch.height[i])
-    ny, nx = height.shape
-    c = math.sqrt(a * b)
-    hx, hy = 2.0 * a / (nx * c), 2.0 * b / (ny * c)
-    functions = influence(hx, hy, batch.poisson_ratio[i], ny, nx)
-    report.own_slip[i] = ratio * functions.own
-    coupling = batch.coupling[i]
-    driver = rigid
-    if coupling != 0.0:
-        hertz = batch.is_hertzian
-        pressed = hertz_coupling_slip(a / c, b / c, ny, nx) if hertz else coupling_slip(height, hx, hy)
-        driver = rigid + coupling * pressed
-    problem = Problem(functions, driver, height, ratio * batch.travel_speed[i], law.speed, law.factor)
-    solved, moved, bound = _solve(problem, traction[0] + 1j * traction[1], control, report, i)
-    field = _Fields(reals(solved), reals(moved), reals(rigid), reals(driver), bound)
-    sums = _sums(field, height, batch.share[i], 1.0 / functions.own, a, b, stick)
-    _write(report, i, sums, 4.0 * a * b / (nx * ny), batch.bound[i], ratio)
-    traction[0], traction[1] = solved.real, solved.imag
-    if law.speed.size > 1:
-        found.factor[i] = np.divide(bound, height, out=np.ones_like(height), where=height > 0.0)
-    slip[0], slip[1] = ratio * moved.real, ratio * moved.imag
+@njit(cache=True, nogil=True)
+def _solve_patches(which, batch, functions, pressed, law, limits, found):
+    """Solve the patches `which` (m,), whose elements have the same shape; see `_solve_piece`."""
+    knots, factors = law
+    tolerance, limit, krylov = limits
+    ny, nx = batch.height.shape[1:]
+    room, report = room_for(ny, nx, krylov), found.report
+    rigid, start = np.empty((ny, nx), np.complex128), np.empty((ny, nx), np.complex128)
+    for i in which:
+        one = i if batch.height.shape[0] > 1 else 0
+        height, ratio, traction = batch.height[one], batch.ratio[i], found.traction[i]
+        _rigid_slip(batch, i, rigid)
+        driver = rigid
+        if batch.coupling[i] != 0.0:
+            driver = rigid + batch.coupling[i] * pressed
+        problem = Problem(functions, driver, height, ratio * batch.travel_speed[i], knots, factors)
+        for k in range(ny):
+            for j in range(nx):
+                start[k, j] = complex(traction[0, k, j], traction[1, k, j])
+        at, report.residual[i], report.steps[i], report.products[i] = _solve(problem, room, start, tolerance, limit)
+        field = _Fields(reals(at[0]), reals(at[1]), reals(rigid), reals(driver), room.bound)
+        sides = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i]
+        sums = _sums(field, height, batch.share[one], 1.0 / functions.own, *sides, found.stick[i])
+        _write_report(report, i, sums, 4.0 * sides[0] * sides[1] / (nx * ny), batch.bound[i], ratio)
+        report.own_slip[i] = ratio * functions.own
+        _write_fields(found, i, field, height, ratio)
 
 
-def _write(report: Report, i: int, sums: _Sums, cell: float, bound: float, ratio: float) -> None:
+@njit(cache=True, nogil=True)
+def _write_fields(found, i, field, height, ratio):
+    """Store tractions, slips and, under a friction law, factors of patch i."""
+    varies = found.factor.shape[1:] == height.shape
+    for k in range(height.shape[0]):
+        for j in range(height.shape[1]):
+            for c in range(2):
+                found.traction[i, c, k, j] = field.traction[k, j, c]
+                found.slip[i, c, k, j] = ratio * field.slip[k, j, c]
+            if varies and height[k, j] > 0.0:
+                found.factor[i, k, j] = field.bound[k, j] / height[k, j]
+
+
+@njit(cache=True, nogil=True)
+def _write_report(report, i, sums, cell, bound, ratio):
     """Store the sums of patch i with their units; `cell` is the area of an element [mm^2]."""
     report.stick_fraction[i] = sums.sticking / sums.covered
-    report.forces[i] = np.array([sums.lateral, sums.driving, sums.moment]) * cell * bound
+    report.forces[i, 0] = sums.lateral * cell * bound
+    report.forces[i, 1] = sums.driving * cell * bound
+    report.forces[i, 2] = sums.moment * cell * bound
     scale = bound * ratio
     report.dissipation[i] = sums.dissipation * cell * scale
     report.work[i], report.pressure_work[i] = sums.work * cell * scale, sums.pressure_work * cell * scale
+
+
+class _Piece(NamedTuple):
+    """Numbers of patches with the same elements, and half sides of a patch and Poisson's ratio, scaled and rounded."""
+
+    which: np.ndarray
+    lateral: float
+    rolling: float
+    poisson_ratio: float
+
+
+def _pieces(batch: Batch) -> list[_Piece]:
+    """Return the solvable patches in pieces of at most PIECE with the same elements and, on grids, pressures."""
+    shapes: dict[tuple, list[int]] = {}
+    for i in np.flatnonzero(batch.solvable).tolist():
+        a, b = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i]
+        c = math.sqrt(a * b)
+        key = rounded(a / c, b / c, batch.poisson_ratio[i])
+        shapes.setdefault(key if batch.is_hertzian else (*key, i), []).append(i)
+    return [
+        _Piece(np.array(rows[k : k + PIECE]), *key[:3])
+        for key, rows in shapes.items()
+        for k in range(0, len(rows), PIECE)
+    ]
+
+
+def _solve_piece(batch: Batch, law: FrictionLaw, control, found: Found, piece: _Piece) -> None:
+    """Solve the patches of a piece."""
+    _, ny, nx = batch.height.shape
+    which, a, b, poisson_ratio = piece
+    hx, hy = 2.0 * a / nx, 2.0 * b / ny
+    functions, pressed = influence(hx, hy, poisson_ratio, ny, nx), np.zeros((ny, nx), complex)
+    if np.any(batch.coupling[which] != 0.0):
+        hertz = batch.is_hertzian
+        pressed = hertz_coupling_slip(a, b, ny, nx) if hertz else coupling_slip(batch.height[which[0]], hx, hy)
+    limits = control.tolerance, control.steps, control.krylov
+    _solve_patches(which, batch, functions, pressed, (law.speed, law.factor), limits, found)
 
 
 def solve_batch(batch: Batch, law: FrictionLaw, control, found: Found) -> None:
@@ -236,8 +294,16 @@ def solve_batch(batch: Batch, law: FrictionLaw, control, found: Found) -> None:
         Start of the iteration, overwritten by the result.
     """
 
-    def work(first: int, last: int) -> None:
-        for i in range(first, last):
-            _one_patch(batch, law, control, found, i)
+    rest = ~batch.solvable
+    for i in np.flatnonzero(rest).tolist():
+        rigid = np.empty(batch.height.shape[1:], complex)
+        _rigid_slip(batch, i, rigid)
+        found.slip[i] = rigid.real, rigid.imag
+    found.traction[rest] = 0.0
+    pieces = _pieces(batch)
 
-    share_rows(work, batch.ratio.size, 1, 1)
+    def work(first: int, last: int) -> None:
+        for piece in pieces[first:last]:
+            _solve_piece(batch, law, control, found, piece)
+
+    share_rows(work, len(pieces), 1, 1)

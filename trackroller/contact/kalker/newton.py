@@ -11,7 +11,6 @@ Fields are complex, x + iy, (ny, nx); compiled loops run over their real numbers
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -29,11 +28,10 @@ from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_
 SHORT, RISE, TRIAL = 2, 8.0, 3
 
 
-@dataclass(frozen=True)
-class Problem:
+class Problem(NamedTuple):
     """Tangential problem of one patch.
 
-    Parameters
+    Attributes
     ----------
     influence : Influence
         Influence functions of the elements.
@@ -64,6 +62,38 @@ class Law(NamedTuple):
     factors: np.ndarray
     falls: bool
     rho: float
+
+
+class Room(NamedTuple):
+    """Work space for patches of ny x nx elements: fields of the iteration and arrays of its linear systems."""
+
+    bound: np.ndarray
+    slope: np.ndarray
+    held: np.ndarray
+    mean: np.ndarray
+    value: np.ndarray
+    projection: np.ndarray
+    turn: np.ndarray
+    space: Space
+
+
+@njit(cache=True, nogil=True)
+def room_for(ny, nx, krylov):
+    """Return work space for patches of ny x nx elements, with a Krylov space of at most `krylov` vectors."""
+    return Room(
+        np.empty((ny, nx)),
+        np.zeros((ny, nx)),
+        np.zeros((ny, nx), np.bool_),
+        np.zeros((ny, nx, 2)),
+        np.empty((ny, nx), np.complex128),
+        np.empty((3, ny, nx)),
+        np.empty((4, ny, nx)),
+        Space(
+            factors_of(ny, nx),
+            np.empty((krylov + 1, 2 * ny * nx)),
+            np.empty((2, 2 * ny, 2 * nx), np.complex128),
+        ),
+    )
 
 
 class Work(NamedTuple):
@@ -164,53 +194,47 @@ def _iterate(law, work, at, tolerance, limit):
     return largest, iteration, products
 
 
-def _workspace(problem: Problem, krylov: int) -> tuple[Law, Work]:
-    ny, nx = problem.height.shape
-    functions = problem.influence
-    rho = 1.0 / functions.own
-    falls = problem.knots.size > 1
-    work = Work(
-        np.empty((ny, nx)),
-        np.zeros((ny, nx)),
-        np.zeros((ny, nx), bool),
-        np.zeros((ny, nx, 2)),
-        np.empty((ny, nx), complex),
-        Derivative(np.empty((3, ny, nx)), np.empty((4, ny, nx)), falls, rho),
-        Columns(functions.column, *column_ranges(problem.height)),
-        Operator(functions.p, functions.q),
-        Space(
-            factors_of(ny, nx),
-            np.empty((krylov + 1, 2 * ny * nx)),
-            np.empty((2, *functions.p.shape), complex),
-        ),
-    )
-    return Law(problem.height, problem.scale, problem.knots, problem.factors, falls, rho), work
-
-
-def newton(problem: Problem, traction: np.ndarray, tolerance: float, limit: int, krylov: int):
+@njit(cache=True, nogil=True)
+def newton(problem, room, traction, tolerance, limit):
     """Solve the friction law on one patch, starting from `traction`.
 
     Parameters
     ----------
     problem : Problem
         The patch.
+    room : Room
+        Work space, overwritten.
     traction : ndarray of complex, shape (ny, nx)
         Start, scaled.
     tolerance : float
         Largest residual of the friction law in any element, scaled as the traction.
-    limit, krylov : int
-        Limits of Newton steps and of the Krylov space of one step.
+    limit : int
+        Limit of Newton steps.
 
     Returns
     -------
     tuple
-        Tractions, slips and traction bounds at these slips, (ny, nx) each; largest component of the residual; number
-        of Newton steps; number of products.
+        Tractions and slips (2, ny, nx); largest component of the residual; number of Newton steps; number of products.
+        The traction bounds at these slips are in `room`.
     """
-    law, work = _workspace(problem, krylov)
-    at = np.empty((2, *traction.shape), complex)
+    functions, rho, falls = problem.influence, 1.0 / problem.influence.own, problem.knots.size > 1
+    first, loaded = column_ranges(problem.height)
+    room.mean[:] = 0.0
+    work = Work(
+        room.bound,
+        room.slope,
+        room.held,
+        room.mean,
+        room.value,
+        Derivative(room.projection, room.turn, falls, rho),
+        Columns(functions.column, first, loaded),
+        Operator(functions.p, functions.q),
+        room.space,
+    )
+    law = Law(problem.height, problem.scale, problem.knots, problem.factors, falls, rho)
+    at = np.empty((2, *traction.shape), np.complex128)
     at[0] = traction
-    convolve(at[0], work.operator.p, work.operator.q, work.space.transforms, at[1])
+    convolve(at[0], functions.p, functions.q, room.space.transforms, at[1])
     at[1] += problem.rigid
-    found = _iterate(law, work, at, tolerance, limit)
-    return at[0], at[1], work.bound, *found
+    largest, steps, products = _iterate(law, work, at, tolerance, limit)
+    return at, largest, steps, products

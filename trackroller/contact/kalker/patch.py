@@ -34,8 +34,8 @@ def _level(
     start: np.ndarray,
 ) -> batch.Found:
     """Solve on the grid of the tractions `start` (n, 2, elements, elements), which the result overwrites."""
-    n, elements = friction.size, start.shape[-1]
-    height, share = (np.broadcast_to(v, (n, elements, elements)) for v in cells(ellipse, elements))
+    elements = start.shape[-1]
+    height, share = (v.reshape(-1, elements, elements) for v in cells(ellipse, elements))
     a, bound = ellipse.semi_axis_lateral, friction * ellipse.max_pressure
     x = ellipse.centre[:, None] + a[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):
