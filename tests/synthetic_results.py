@@ -141,7 +141,7 @@ def _finish(ds: xr.Dataset, factors: dict, design: str) -> xr.Dataset:
         "outputs": ["forces", "contact", "peak_stress", "life"],
     }
     ds.attrs |= {
-        "study": yaml.safe_dump(study),
+        "study": yaml.safe_dump(study, sort_keys=False),  # factors in the order of the dimensions, as `gather` has them
         "trackroller_version": "0.1.0",
         "commit": "abcdef0",
         "seed": 1,
