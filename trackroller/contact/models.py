@@ -71,7 +71,7 @@ class KalkerModel(ContactModel):
     name = "kalker"
 
     def __init__(self, given: Rolling, settings: Accuracy, trusts_table: bool = False) -> None:
-        law, elastic = given.law, given.elastic
+        self.given, law, elastic = given, given.law, given.elastic
         elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
         chosen = kalker.KalkerSettings(elements=elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip)
         self._law = KalkerLaw(elastic, chosen, given.travel_speed)
@@ -92,6 +92,15 @@ class KalkerModel(ContactModel):
 
     def shares(self, ellipse, slip, friction, rows):
         return kalker.shares(ellipse, self._solution(ellipse, slip, friction, rows))
+
+    def finer_shares(self, ellipse, slip, friction, rows):
+        if self.correction is None:
+            return None
+        settings, elastic = self.correction.settings, self.given.elastic.take(rows)
+        creep = kalker.Creepage.of_slip(slip, settings.profile_slip)
+        coarse = self._solution(ellipse, slip, friction, rows)
+        found = kalker.refined(ellipse, creep, friction, elastic, settings, coarse)
+        return (*kalker.shares(ellipse, found), found.converged)
 
     def power(self, ellipse, slip, friction, rows):
         if self.correction is not None:

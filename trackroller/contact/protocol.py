@@ -97,6 +97,13 @@ class ContactModel:
         """
         return None
 
+    def finer_shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+        """Return `shares` after solving the patches on twice the elements, and whether this has converged, (m,).
+
+        None if the model does not refine patches.
+        """
+        return None
+
     def power(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
         """Return the dissipation per distance travelled and the part of it that the pressures supply, (m,)."""
         raise NotImplementedError

@@ -15,12 +15,13 @@ import numpy as np
 
 from trackroller.halfspace.ellipse import FIELD, fields_of, refinement, unit_rule
 from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Patches, lengths
-from trackroller.halfspace.peak_seeds import along_turn, best_seeds, scan_points, spike
+from trackroller.halfspace.peak_seeds import along_turn, best_seeds, ridge_points, scan_points, spike
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.numerics.rows import Rows
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
+RIDGE_WORTH, LITTLE_FRICTION = 0.6, 0.05  # stress at the surface over the largest, and friction, that ridges need
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
 
 
@@ -61,7 +62,7 @@ class Peak(Rows):
 def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: float) -> Peak:
     """Return the peaks of both bodies of each patch, in normalised coordinates."""
     n, slender = len(patches.rows), patches.slender
-    climbs = _seeded(dataclasses.replace(patches, fields=_rough(patches.fields)), rules, settings)
+    climbs = _seeded(patches, rules, settings)
     # Tractions on a grid are less smooth than sliding ones, so that a finer rule gains little in the first sweep.
     # the scan is rough: climbs that fall behind with better quadrature are given up, and sooner with every sweep
     finalists = settings.finalists + 2 * slender
@@ -86,11 +87,14 @@ def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: fl
     return Peak(*(v.reshape(n, 2) for v in (summit, *climbs.u[best].T, error)))
 
 
-def _seeded(patches: Patches, rules: Rules, settings: PeakSettings) -> Climbs:
-    """Scan the patches and return climbs from the highest places."""
+def _seeded(fine: Patches, rules: Rules, settings: PeakSettings) -> Climbs:
+    """Scan the patches and return climbs from the highest places, below few elements at first."""
+    patches = dataclasses.replace(fine, fields=_rough(fine.fields))
     n, count = len(patches.rows), settings.seeds + 5 * patches.slender
     points = scan_points(patches.rows, patches.slender, patches.adhesion)
     values = patches.scan(points, rules.scan)
+    if patches.adhesion:
+        points, values = _with_ridges(fine, points, values, rules.scan)
     apart = APART[patches.slender]
     chosen = np.stack([best_seeds(points, values[:, :, body], count, apart) for body in (0, 1)], axis=1).ravel()
     of, body, _ = (index.ravel() for index in np.indices((n, 2, count)))
@@ -103,6 +107,25 @@ def _seeded(patches: Patches, rules: Rules, settings: PeakSettings) -> Climbs:
     else:
         climbs.f[rows] = climbs.values(rows, u[rows], rules.climb, rules.climb)
     return climbs
+
+
+def _with_ridges(patches: Patches, points: np.ndarray, values: np.ndarray, rule: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return scan points (n, m, 3) and their stresses (n, m, 2) with points where sliding begins.
+
+    These are scanned in patches with a stress at the surface that is not far below the largest.
+    """
+    surface = np.where(points[..., 2:] == 0.0, values, 0.0).max(axis=1)
+    worth = (surface > RIDGE_WORTH * values.max(axis=1)).any(axis=1) & (patches.rows["friction"] > LITTLE_FRICTION)
+    line = ridge_points(patches.fields[worth])
+    rows, known = np.flatnonzero(worth), np.isfinite(line[:, 0, 0])
+    if not known.any():
+        return points, values
+    rows = rows[known]
+    some = Patches(patches.rows[rows], patches.fields[rows], patches.poisson_ratio[rows], patches.slender, True)
+    more = np.zeros((len(points), *line.shape[1:]))
+    found = np.zeros((*more.shape[:2], 2))
+    more[rows], found[rows] = line[known], some.scan(line[known], rule)
+    return np.concatenate([points, more], axis=1), np.concatenate([values, found], axis=1)
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:

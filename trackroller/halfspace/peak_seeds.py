@@ -36,6 +36,10 @@ SCAN = _scan_points(
 # For tractions with adhesion: in random designs the peaks lie below the centre, or on the surface far from the rim.
 SCAN_ADHESION = _scan_points(((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3, ((0.6, 5),)), *_DEEP))
 
+MOST_ON_RIDGE = 192  # points on the line where sliding begins
+STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
+NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
+
 SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
 
@@ -67,6 +71,35 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
     u /= np.maximum(np.hypot(u[..., 0], u[..., 1]), 1.0)[..., None]
     turning = np.concatenate([u, np.zeros((*u.shape[:2], 1))], axis=2)
     return np.concatenate([np.broadcast_to(SCAN, (len(patches), *SCAN.shape)), turning], axis=1)
+
+
+def ridge_points(fields: np.ndarray) -> np.ndarray:
+    """Return surface points on the line where sliding begins, (n, MOST_ON_RIDGE, 3); NaN in patches without it.
+
+    Where a patch begins to slide, the traction changes with the root of the distance. Stresses at the surface have a
+    cusp there, so that all peaks at the surface of random designs lie on this line.
+
+    Parameters
+    ----------
+    fields : numpy.ndarray, shape (n, 2, ny, nx)
+        Traction over its bound on grids.
+    """
+    n, _, ny, nx = fields.shape
+    x, y = ((2.0 * np.arange(m) + 1.0) / m - 1.0 for m in (nx, ny))
+    slides = (fields**2).sum(axis=1) >= STICKS
+    beside = np.zeros_like(slides)
+    beside[:, 1:] |= slides[:, :-1]
+    beside[:, :-1] |= slides[:, 1:]
+    beside[:, :, 1:] |= slides[:, :, :-1]
+    beside[:, :, :-1] |= slides[:, :, 1:]
+    beside &= ~slides & (x**2 + y[:, None] ** 2 < NEAR_RIM**2)
+    out = np.full((n, MOST_ON_RIDGE, 3), np.nan)
+    for points, line in zip(out, beside, strict=True):
+        places = np.flatnonzero(line)
+        if places.size:
+            places = places[np.linspace(0, places.size - 1, MOST_ON_RIDGE).astype(int)]
+            points[:] = np.stack([x[places % nx], y[places // nx], np.zeros(MOST_ON_RIDGE)], axis=1)
+    return out
 
 
 def _fold(patches: np.ndarray, x: np.ndarray) -> np.ndarray:

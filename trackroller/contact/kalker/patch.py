@@ -8,6 +8,7 @@ traction.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -84,6 +85,16 @@ def shares(ellipse: Ellipse | GridPatch, solution: PatchSolution) -> tuple[np.nd
     return subgrid.both_shares(_fields(ellipse, solution))
 
 
+def refined(
+    ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings, coarse: PatchSolution
+) -> PatchSolution:
+    """Solve patches again on twice the elements of the solution `coarse`, from its tractions; see `solve_patch`."""
+    height, _ = cells(ellipse, 2 * settings.elements)
+    start = subgrid.shares(_fields(ellipse, coarse), 2) * height
+    finer = replace(settings, elements=2 * settings.elements, extrapolate=False)
+    return solve_patch(ellipse, creep, friction, elastic, finer, start)
+
+
 def _forces(ellipse: Ellipse | GridPatch, friction, found: batch.Found) -> np.ndarray:
     """Return the resultants (n, 3) of one grid: see `subgrid.forces`."""
     if not friction.size:
@@ -110,6 +121,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         error = value - _forces(ellipse, friction, coarse)
         weight, report = extrapolation.weight(_fields(ellipse, found).used), coarse.report
         limit = weight[:, None] * error
+        limit[:, 0] += np.sign(value[:, 0]) * _unseen(ellipse, creep, friction, elastic, settings)
         pressed = pressed + weight * (pressed - report.pressure_work)
         work = work + weight * (work - report.work - report.pressure_work)
         # observed to be of second order wherever a part of the patch slides
@@ -129,7 +141,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         energy,
         limit,
         np.abs(error),
-        _force_error(ellipse, friction, np.abs(error[:, :2]).max(axis=1), fine.stick_fraction, elements),
+        _force_error(friction * ellipse.normal_force, np.abs(error[:, :2]).max(axis=1), fine.stick_fraction, elements),
         fine.own_slip,
         fine.residual,
         fine.steps,
@@ -138,13 +150,23 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     )
 
 
-def _force_error(ellipse, friction, change: np.ndarray, stick: np.ndarray, elements: int) -> np.ndarray:
-    """Return the estimated error of the friction forces, (n,) [N], by their change from elements of twice the size."""
-    capacity = friction * ellipse.normal_force
+def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings) -> np.ndarray:
+    """Return what |F_T| lacks by `extrapolation.unseen_adhesion`, (n,) [N]; 0 where the formula was not fitted."""
+    if not (ellipse.is_hertzian and settings.law_in_use.is_constant):
+        return np.zeros(friction.size)
+    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(capacity > 0.0, change / capacity, 0.0)
-        ratio = ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
-    return capacity * extrapolation.force_error(share, stick, ratio, elements)
+        spin = np.abs(creep.spin) * np.sqrt(a * b) * elastic.shear_modulus / (friction * ellipse.max_pressure)
+        pole = np.abs(creep.longitudinal / creep.spin) / a
+        share = extrapolation.unseen_adhesion(spin, b / a, pole, settings.elements)
+    known = np.isfinite(share) & (creep.lateral == 0.0)
+    return np.where(known, share, 0.0) * friction * ellipse.normal_force
+
+
+def _force_error(capacity: np.ndarray, change: np.ndarray, stick: np.ndarray, elements: int) -> np.ndarray:
+    """Return the estimated error of the friction forces, (n,) [N], by their change from elements of twice the size."""
+    share = np.divide(change, capacity, out=np.zeros_like(change), where=capacity > 0.0)
+    return capacity * extrapolation.force_error(share, stick, elements)
 
 
 def _full(value, n: int) -> np.ndarray:

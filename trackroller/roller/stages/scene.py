@@ -71,6 +71,7 @@ class Results:
     values : results by name, arrays with the case as first axis
     surface : tractions of the existing patches, once computed
     share : traction of the existing patches over its bound, once computed
+    refined : patches whose peak was searched on twice the elements of the contact model, (2 n,)
     """
 
     scene: Scene
@@ -86,6 +87,7 @@ class Results:
     values: dict[str, np.ndarray] = field(default_factory=dict)
     surface: SurfaceTractions | None = None
     share: np.ndarray | None = None
+    refined: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
@@ -109,6 +111,7 @@ class Results:
             np.isfinite(normal),
             np.where(balance.jamming, JAMMING, 0).astype(np.int32),
             np.zeros(scene.n, bool),
+            refined=np.zeros(2 * scene.n, bool),
         )
         out.values["residual"] = np.where(rolls, np.fmax(balance.residual, unmet), balance.residual)
         return out
