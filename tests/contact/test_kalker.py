@@ -476,3 +476,26 @@ def test_forces_converge_with_an_observed_order_between_one_and_two():
     assert stick.min() < 0.02 and stick.max() > 0.5
     assert np.median(np.abs(told - best)) < 8e-4 and np.max(np.abs(told - best)) < 4e-3
     assert np.sqrt(np.mean((told - best) ** 2)) < 0.6 * np.sqrt(np.mean((grids[1] - best) ** 2))
+
+
+def test_adhesion_below_an_element_does_not_lower_the_lateral_force():
+    """Both grids lack the adhesion at the spin pole alike; the formula restores it within a third."""
+    ellipse = Ellipse(*(np.array([v]) for v in (1.0, 1.0, 500.0)))
+    spin = 30.0 * 0.2 * 500.0 / STEEL.shear_modulus  # normalised spin of 30
+    creep = Creepage(np.array([0.1 * spin]), np.zeros(1), np.array([spin]))
+    fine, rough = (solve_patch(ellipse, creep, 0.2, STEEL, KalkerSettings(elements=n)) for n in (96, 24))
+    capacity = 0.2 * ellipse.normal_force
+    restored = extrapolation.unseen_adhesion(np.array([30.0]), np.ones(1), np.array([0.1]), 24)
+    value, exact = (np.abs(s.resultants.lateral_force / capacity) for s in (rough, fine))
+    assert restored > 5e-4
+    assert np.abs(value - exact) < restored / 3.0 < np.abs(value - restored - exact)
+
+
+def test_unseen_adhesion_ends_where_elements_see_it_or_the_patch_slides():
+    """The share falls with the area of an element; a pole outside the patch leaves nothing unseen."""
+    lost = extrapolation.unseen_adhesion
+    one, inside = np.ones(1), np.zeros(1)
+    assert lost(40.0 * one, one, inside, 40) == pytest.approx(lost(20.0 * one, one, inside, 20) / 4.0)
+    assert lost(1.0 * one, one, inside, 24) < 1e-3 * lost(30.0 * one, one, inside, 24)
+    assert lost(1e5 * one, one, inside, 24) < 0.01 * lost(30.0 * one, one, inside, 24)
+    assert lost(30.0 * one, one, 1.1 * one, 24) == 0.0

@@ -8,6 +8,7 @@ import trackroller as tr
 from trackroller.contact.common import Ellipse, Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.peak import find_peaks
+from trackroller.halfspace.peak_seeds import MOST_ON_RIDGE, ridge_points
 from trackroller.halfspace.stress import von_mises
 from trackroller.roller.accuracy import PRESETS
 
@@ -197,3 +198,18 @@ def test_friction_brings_the_peak_to_the_surface():
     loads = solve_sliding([tr.Case(radial_force=-f) for f in (150, 250, 400)])
     assert np.all(np.diff(loads.peak_stress, axis=0) > 0)
     assert np.all(np.diff(loads.roller_life_hours) < 0)
+
+
+def test_ridge_points_lie_where_sliding_begins():
+    """Traction of a round adhesion area: the points lie on its rim, inside by at most one point of the grid."""
+    n, radius = 72, 0.6
+    x = (2.0 * np.arange(n) + 1.0) / n - 1.0
+    share = np.minimum(np.hypot(x, x[:, None]) / radius, 1.0).astype(np.float32)
+    fields = np.stack([[share, 0 * share], [0 * share + 1, 0 * share]])
+    points = ridge_points(fields)
+    assert points.shape == (2, MOST_ON_RIDGE, 3)
+    assert np.isnan(points[1]).all()  # full sliding
+    r, angle = np.hypot(*points[0, :, :2].T), np.arctan2(*points[0, :, :2].T)
+    assert radius - 2.0 * np.sqrt(2.0) / n < r.min() and r.max() < radius
+    assert np.histogram(angle, 12, (-np.pi, np.pi))[0].min() > 0.5 * MOST_ON_RIDGE / 12
+    assert (points[0, :, 2] == 0.0).all()

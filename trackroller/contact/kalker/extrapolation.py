@@ -42,8 +42,8 @@ def unseen_adhesion(spin: np.ndarray, ratio: np.ndarray, pole: np.ndarray, eleme
     return inside * share / (1.0 + (SEEN / of_element) ** 6) / (1.0 + of_element / SMALL)
 
 
-def force_error(change: np.ndarray, stick: np.ndarray, elements: int) -> np.ndarray:
-    """Return the estimated error of extrapolated friction forces over mu F_N, (n,).
+def force_error(change: np.ndarray, capacity: np.ndarray, stick: np.ndarray, elements: int) -> np.ndarray:
+    """Return the estimated error of extrapolated friction forces, (n,) [N].
 
     The change from elements of twice the size alone tells little, because the coarse grid hardly sees a small adhesion
     area. The formula was fitted to random designs, so that 1 in 100 errs by more; see
@@ -51,12 +51,13 @@ def force_error(change: np.ndarray, stick: np.ndarray, elements: int) -> np.ndar
 
     Parameters
     ----------
-    change : of the forces from elements of twice the size, over mu F_N, (n,)
+    change : of F_T, F_A (and M_R) from elements of twice the size, (n, 3) [N]
+    capacity : mu F_N, (n,) [N]
     stick : share of the adhesion area, (n,)
     elements : along each axis
     """
-    finer = (FITTED_AT / elements) ** 1.5
-    return FITTED * np.sqrt(finer * (change + 1e-3 * finer)) * np.cbrt(stick + 3e-3)
+    finer, largest = (FITTED_AT / elements) ** 1.5, np.abs(change[:, :2]).max(axis=1)
+    return FITTED * np.sqrt(finer * capacity * (largest + 1e-3 * finer * capacity)) * np.cbrt(stick + 3e-3)
 
 
 def energy(fine: np.ndarray, coarse: np.ndarray) -> np.ndarray:

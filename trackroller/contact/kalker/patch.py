@@ -141,7 +141,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         energy,
         limit,
         np.abs(error),
-        _force_error(friction * ellipse.normal_force, np.abs(error[:, :2]).max(axis=1), fine.stick_fraction, elements),
+        extrapolation.force_error(error, friction * ellipse.normal_force, fine.stick_fraction, elements),
         fine.own_slip,
         fine.residual,
         fine.steps,
@@ -161,12 +161,6 @@ def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, settings: Kalk
         share = extrapolation.unseen_adhesion(spin, b / a, pole, settings.elements)
     known = np.isfinite(share) & (creep.lateral == 0.0)
     return np.where(known, share, 0.0) * friction * ellipse.normal_force
-
-
-def _force_error(capacity: np.ndarray, change: np.ndarray, stick: np.ndarray, elements: int) -> np.ndarray:
-    """Return the estimated error of the friction forces, (n,) [N], by their change from elements of twice the size."""
-    share = np.divide(change, capacity, out=np.zeros_like(change), where=capacity > 0.0)
-    return capacity * extrapolation.force_error(share, stick, elements)
 
 
 def _full(value, n: int) -> np.ndarray:
