@@ -55,8 +55,8 @@ def _range(parameter: p.Parameter) -> str:
 def _option(option: p.Option) -> tuple[str, str, str, str]:
     """Return the row of an option: values with meanings, default, and the contact models that use it."""
     values = "; ".join(f"`{word}`: {meaning}" for word, meaning in option.values.items())
-    number = "a number in (0, 1)"
-    other = {"accuracy": number, "tolerance": number, "condition": "a condition", "switch": "true, false"}
+    number = "a number in ({:g}, {:g})".format(*option.bounds)
+    other = {"accuracy": number, "number": number, "condition": "a condition", "switch": "true, false"}
     default = ", ".join(option.default) if isinstance(option.default, tuple) else str(option.default)
     models = f"; for {', '.join(f'`{model}`' for model in option.models)} only" if option.models else ""
     told = [part for part in (values, other.get(option.kind, "")) if part]

@@ -172,6 +172,16 @@ def test_the_drawing_is_that_of_the_program(tmp_path):
     assert drawing.draw(tmp_path / "scene.svg").read_text(encoding="utf-8") == kept, "run: python docs/drawing.py"
 
 
+def test_the_map_of_formulas_names_files_and_functions_that_exist():
+    table = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8").split("## Where the formulas are")[1]
+    places = re.findall(r"`([\w/]+\.py)(?::(\w+))?`", table.split("\n## ")[0])
+    assert len(places) > 20
+    for path, name in places:
+        file = ROOT / ("" if path.startswith("validation/") else "trackroller") / path
+        assert file.is_file(), path
+        assert not name or re.search(rf"^(?:def|class) {name}\b", file.read_text(encoding="utf-8"), re.M), (path, name)
+
+
 def test_the_readme_fits_on_two_screens():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 600
 

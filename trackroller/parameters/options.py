@@ -25,8 +25,10 @@ class Option:
     values : dict of str
         Allowed words with their meanings; empty for numbers, conditions and switches.
     kind : str
-        "word" (one of `values`), "words" (several of them), "accuracy" (a word or a relative tolerance), "tolerance"
-        (a number in (0, 1)), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
+        "word" (one of `values`), "words" (several of them), "number" (within `bounds`), "accuracy" (a word or such a
+        number), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
+    bounds : tuple of float
+        Numbers between which a number must lie; the bounds themselves are not allowed.
     models : tuple of str
         Contact models to which the option applies; empty for all of them.
     required : bool
@@ -48,6 +50,7 @@ class Option:
     meaning: str
     values: Mapping[str, str] = field(default_factory=dict)
     kind: str = "word"
+    bounds: tuple[float, float] = (0, 1)
     models: tuple[str, ...] = ()
     required: bool = False
     factor: bool = False
@@ -62,12 +65,12 @@ class Option:
 
     def allowed(self) -> str:
         """Return what is allowed, in words."""
-        words = ", ".join(self.values)
+        words, number = ", ".join(self.values), f"in ({self.bounds[0]:g}, {self.bounds[1]:g})"
         return {
             "word": f"one of {words}",
             "words": f"a list of {words}" + (", at least one" if self.required else ", which may be empty"),
-            "accuracy": f"one of {words} or a relative tolerance in (0, 1)",
-            "tolerance": "a relative tolerance in (0, 1)",
+            "accuracy": f"one of {words} or a relative tolerance {number}",
+            "number": f"a number {number}",
             "condition": "a condition such as peak_stress > R_m",
             "switch": "true or false",
         }[self.kind]
@@ -99,8 +102,9 @@ class Option:
             raise InputError(where, value, self.allowed())
         if self.kind == "switch" and not isinstance(value, bool):
             raise InputError(where, value, self.allowed())
-        if self.kind in ("accuracy", "tolerance"):
-            if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < 1:
+        if self.kind in ("accuracy", "number"):
+            number = isinstance(value, (int, float)) and not isinstance(value, bool)
+            if not number or not self.bounds[0] < value < self.bounds[1]:
                 raise InputError(where, value, self.allowed())
             return float(value)
         return value
@@ -215,7 +219,7 @@ _OPTIONS = (
         "contact_tolerance",
         0.05,
         "without effect: it belonged to the former contact model auto",
-        kind="tolerance",
+        kind="number",
         identity=False,
         recorded=False,
     ),
@@ -260,9 +264,8 @@ def options_text() -> str:
     """Return the options with their values and defaults, for the help of a command."""
     told = []
     for option in OPTIONS.values():
-        values = " | ".join(option.values) or {"tolerance": "0..1", "condition": "CONDITION"}.get(
-            option.kind, "true|false"
-        )
+        kinds = {"number": "{:g}..{:g}".format(*option.bounds), "condition": "CONDITION", "switch": "true|false"}
+        values = " | ".join(option.values) or kinds[option.kind]
         default = ",".join(option.default) or "none" if isinstance(option.default, tuple) else option.default
         told.append(f"{option.name}={values} ({default})")
     return ", ".join(told)

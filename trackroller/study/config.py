@@ -84,7 +84,7 @@ class _Design(BaseModel):
 
 _TYPES: dict[str, Any] = {
     "words": tuple[str, ...],
-    "tolerance": float,
+    "number": float,
     "accuracy": str | float,
     "condition": str | None,
     "switch": bool,

@@ -32,12 +32,13 @@ def _option(option: Option) -> dict[str, Any]:
     """Return what the schema says about an option beyond its type."""
     words: dict[str, Any] = {"enum": list(option.values)}
     several = {"type": "array", "items": words, "uniqueItems": True}
-    number: dict[str, Any] = {"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 1}
+    low, high = option.bounds
+    number: dict[str, Any] = {"type": "number", "exclusiveMinimum": low, "exclusiveMaximum": high}
     if option.factor:
         return {"anyOf": [words, several | {"minItems": 1}]}
     if option.kind == "words":
         return several | ({"minItems": 1} if option.required else {})
-    single: dict[str, dict[str, Any]] = {"word": words, "accuracy": {"anyOf": [words, number]}, "tolerance": number}
+    single: dict[str, dict[str, Any]] = {"word": words, "accuracy": {"anyOf": [words, number]}, "number": number}
     return single.get(option.kind, {})
 
 

@@ -1,6 +1,6 @@
 """The shipped comparison of contact models: a study like any other, and its patches.
 
-    snakemake -s validation/Snakefile --cores all contact_models
+snakemake -s validation/Snakefile --cores all contact_models
 """
 
 from __future__ import annotations
