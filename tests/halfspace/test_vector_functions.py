@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 
 from trackroller.halfspace import vectors
+from trackroller.numerics.compiled import FAST
 
 exp, sine_cosine, log, angle = vectors.exp, vectors.sine_cosine, vectors.log, vectors.angle
 
 
-@numba.njit(fastmath=vectors.FAST, error_model="numpy")
+@numba.njit(fastmath=FAST, error_model="numpy")
 def evaluate(which, x, y, out):
     for i in range(x.size):
         if which == 0:

@@ -14,22 +14,21 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from rocket_fft import c2c
 
-FAST = {"contract", "reassoc", "arcp", "nsz"}
+from trackroller.numerics.compiled import compiled, fast
 
 ROUND = 1e-5  # least |a^2 - b^2|/(a b) at which the closed form for ellipses keeps its digits; the form errs by less
 DIGITS = 13  # digits of element sizes and Poisson's ratio; patches that differ by rounding share influence functions
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def _log_part(x, y):
     """Return x asinh(y / |x|), 0 at x = 0."""
     return 0.0 if x == 0.0 else x * math.asinh(y / abs(x))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def displacements(hx, hy, poisson, ny, nx, below, above):
     """Return the displacement differences at distances (j hy, i hx) of a unit traction on an element, for G = 1.
 
@@ -64,7 +63,7 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
     return _over_element(corner, 1.0 / math.pi)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _over_element(corner, factor):
     """Turn corner values (m, rows + 1, columns + 1) of a double antiderivative into integrals over elements."""
     out = np.empty((corner.shape[0], corner.shape[1] - 1, corner.shape[2] - 1))
@@ -76,7 +75,7 @@ def _over_element(corner, factor):
     return out
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def pressure_displacements(hx, hy, ny, nx, below, above):
     """Return the tangential displacement differences x, y of a unit pressure on an element for G = K = 1, (2, ., .).
 
@@ -95,7 +94,7 @@ def pressure_displacements(hx, hy, ny, nx, below, above):
     return _over_element(corner, -1.0 / math.pi)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _multipliers(kernel, ny, nx):
     """Return the spectrum (2 ny, 2 nx) of a complex influence function (2 ny - 1, 2 nx - 1) of the distances."""
     field = np.zeros((2 * ny, 2 * nx), np.complex128)
@@ -106,18 +105,20 @@ def _multipliers(kernel, ny, nx):
     return field
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def _combined(p, q, z, out):
     """Write P Z + Q conj(Z(-k)) into `out`."""
     ly, lx = z.shape
     for i in range(ly):
         mirror = ly - i if i > 0 else 0
-        out[i, 0] = p[i, 0] * z[i, 0] + q[i, 0] * z[mirror, 0].conjugate()
-        for j in range(1, lx):
-            out[i, j] = p[i, j] * z[i, j] + q[i, j] * z[mirror, lx - j].conjugate()
+        for j in range(lx):
+            a, b, c, d = p[i, j], q[i, j], z[i, j], z[mirror, lx - j if j > 0 else 0]
+            real = a.real * c.real - a.imag * c.imag + b.real * d.real + b.imag * d.imag
+            imag = a.real * c.imag + a.imag * c.real + b.imag * d.real - b.real * d.imag
+            out[i, j] = complex(real, imag)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def convolve(field, p, q, work, out):
     """Write the product of influence functions and tractions `field` into `out`, both (ny, nx).
 
@@ -191,7 +192,7 @@ def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
     return Influence(p, np.zeros_like(p), 1.0, np.zeros((2, 1))).product(pressure)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def hertz_coupling_slip(a, b, ny, nx):
     """Return the slip -du/dy, x + iy, of Hertz's pressure at the centres of elements, for p_max = K = G = 1.
 

@@ -12,10 +12,10 @@ import math
 from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
-from numba import njit
 
 from trackroller.contact.slip import pole_lateral, pole_line, pole_offset, pole_rolling, rolling_slip, slip_zeros
-from trackroller.halfspace.vectors import exp, inner
+from trackroller.halfspace.vectors import exp
+from trackroller.numerics.compiled import compiled, inner
 from trackroller.numerics.knots import polyline
 
 T = TypeVar("T", float, np.ndarray)  # one patch, or arrays over the patches
@@ -55,7 +55,7 @@ class Sums(NamedTuple, Generic[T]):
     power: T
 
 
-@njit(cache=True)
+@compiled
 def _insert(value, ends, count):
     """Insert `value` into the sorted first `count` of `ends`, if it lies between them; return the new number."""
     if not ends[0] < value < ends[count - 1]:
@@ -68,7 +68,7 @@ def _insert(value, ends, count):
     return count + 1
 
 
-@njit(cache=True)
+@compiled
 def _slip_breaks(patch, shift, ends, count):
     """Insert the zeros of the rolling slip at another `shift` and its kink at the equator; return the new number."""
     for zero in slip_zeros(patch.sine, patch.cosine, patch.radius, shift):
@@ -77,7 +77,7 @@ def _slip_breaks(patch, shift, ends, count):
     return _insert(equator if patch.sine > 0 else -equator, ends, count)
 
 
-@njit(cache=True)
+@compiled
 def _ends_across(patch, model, law, ends):
     """Write the sorted ends along x_C of the pieces with smooth slip and friction; return their number."""
     ends[0], ends[1], count = -patch.a, patch.a, 2
@@ -92,7 +92,7 @@ def _ends_across(patch, model, law, ends):
     return count
 
 
-@njit(cache=True)
+@compiled
 def _ends_along(low, high, eps, unit, knots, ends):
     """Write the sorted ends of the pieces of (low, high) in u between which eps cosh(u) unit passes no knot."""
     ends[0], ends[1], count = low, high, 2
@@ -145,7 +145,7 @@ def _column(d, eps, rule):
     return phi, phi_t, psi, work
 
 
-@njit(cache=True)
+@compiled
 def _law_column(d, eps, unit, law, rule, ends):
     """Integrate as `_column` with the law as a further factor, at the slip speed unit * rho."""
     eps = max(eps, _TINY)
@@ -210,7 +210,7 @@ def _one_patch(patch, model, law, rule):
     return Sums(f_t, f_a, m_r, power)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def integrate(first, last, patches, model, law, rule, out):
     """Write the integrals of the patches first..last into the arrays of `out`."""
     a, b, sine, cosine, radius, shift, speed = patches

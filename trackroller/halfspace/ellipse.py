@@ -23,7 +23,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from trackroller.errors import InputError
 from trackroller.halfspace.ellipse_kernels import (
@@ -41,7 +40,7 @@ from trackroller.halfspace.ellipse_kernels import (
 from trackroller.halfspace.influence import add_load
 from trackroller.halfspace.kernels import point_kernel
 from trackroller.halfspace.rigid_slip import pole_lateral, pole_line, pole_rolling
-from trackroller.halfspace.vectors import FAST, inner
+from trackroller.numerics.compiled import fast, inner
 from trackroller.numerics.quadrature import clustered_rule
 from trackroller.numerics.threads import share_rows
 
@@ -64,7 +63,8 @@ def _far_field(patch, field, x, y, z, rule, out):
     count = 4 * rule.shape[1]
     for i in range(rule.shape[1]):
         rho = math.sqrt(rule[0, i] * (2.0 - rule[0, i]))  # 1 - rho^2 = (1 - v)^2 makes the pressure a polynomial
-        weight = rule[1, i] * (1.0 - rule[0, i]) ** 2 * patch.a * patch.b * 2.0 * math.pi / count
+        shrink = 1.0 - rule[0, i]
+        weight = rule[1, i] * shrink * shrink * patch.a * patch.b * 2.0 * math.pi / count
         for j in range(count):
             angle = 2.0 * math.pi * (j + 0.5) / count
             px, py = patch.a * rho * math.cos(angle), patch.b * rho * math.sin(angle)
@@ -73,7 +73,7 @@ def _far_field(patch, field, x, y, z, rule, out):
             add_load(k, patch.friction * d_x * weight, patch.friction * d_y * weight, weight, out)
 
 
-@njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")
+@fast
 def _add_hertzian(at, rule, directions, out):
     """Add the pressure, and the friction in its direction at the point, which is stored in `directions`."""
     work = np.empty(SCRATCH)
@@ -90,7 +90,7 @@ def _add_hertzian(at, rule, directions, out):
         sum_waves(patch, Place(x, y, z, d_x, d_y), count, work, out[i])
 
 
-@njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")
+@fast
 def _add_other_directions(at, rule, directions, out):
     """Add the friction less that in its direction at the point."""
     work = np.empty(SCRATCH)
@@ -104,7 +104,7 @@ def _add_other_directions(at, rule, directions, out):
             sum_rays(patch, at.fields[row], place, count, rule, work, out[i])
 
 
-@njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")
+@fast
 def _add_far_field(at, rule, out):
     """Add the stresses at points far from their patches."""
     for i in range(len(at.points)):

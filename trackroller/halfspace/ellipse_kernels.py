@@ -14,7 +14,8 @@ import numpy as np
 
 from trackroller.halfspace.influence import PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU
 from trackroller.halfspace.rigid_slip import lateral_slip, pole_offset, rolling_slip_without_division
-from trackroller.halfspace.vectors import angle, exp, inner, log, sine_cosine
+from trackroller.halfspace.vectors import angle, exp, log, sine_cosine
+from trackroller.numerics.compiled import inner
 
 XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
 

@@ -15,11 +15,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from trackroller.halfspace.kernels import bilinear_corner, point_kernel, uniform_corner
+from trackroller.numerics.compiled import compiled, woven
 
 Array = NDArray[np.float64]
 FAR = 100.0  # grid spacings from the load where corner sums and point forces agree best (1e-8 of the local stress)
@@ -112,7 +112,7 @@ def corner_loads(x: Array, y: Array, tractions: Array, bilinear: bool = True) ->
     return CornerLoads(length, corners, _kept(x0 + outer[0], y0 + outer[1], far, POINT_FORCES), box, FAR)
 
 
-@numba.njit(inline="always")
+@woven
 def add_load(k, q_x, q_y, p, out):  # pragma: no cover (compiled)
     """Add the stresses of tractions q_x, q_y, p with the kernel values `k` (36,) to the stress parts `out` (4, 6)."""
     for c in range(6):
@@ -122,7 +122,7 @@ def add_load(k, q_x, q_y, p, out):  # pragma: no cover (compiled)
         out[SHEAR_NU, c] += q_x * k[NU + LOAD_X + c] + q_y * k[NU + LOAD_Y + c]
 
 
-@numba.njit(cache=True, error_model="numpy", nogil=True)
+@compiled
 def _sum(loads, x, y, z, out):  # pragma: no cover (compiled)
     """Add the stress parts of loads at one point (in grid spacings) to `out` (4, 6)."""
     for j in range(loads.places.shape[0]):
@@ -136,7 +136,7 @@ def _sum(loads, x, y, z, out):  # pragma: no cover (compiled)
         add_load(k, loads.weights[j, 0], loads.weights[j, 1], loads.weights[j, 2], out)
 
 
-@numba.njit(cache=True, error_model="numpy", nogil=True)
+@compiled
 def _sum_points(loads, points, out):  # pragma: no cover (compiled)
     """Add the stress parts of corner loads at points (n, 3) [mm] to `out` (n, 4, 6)."""
     box = loads.box
@@ -170,7 +170,7 @@ def stress_parts(loads: CornerLoads, points: Array) -> Array:
     return out
 
 
-@numba.njit(cache=True, error_model="numpy", nogil=True)
+@compiled
 def corner_table(x, y, z, poisson_ratio):  # pragma: no cover (compiled)
     """Return `bilinear_corner` as A + nu B at every pair of y (ny,) and x (nx,), depth z: (18, ny, nx), in spacings."""
     table = np.empty((NU, y.size, x.size))

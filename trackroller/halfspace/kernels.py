@@ -8,12 +8,12 @@ FLOOR is the distance below which logarithms stop growing, which keeps a step of
 
 from math import asinh, atan2, log, sqrt
 
-import numba
+from trackroller.numerics.compiled import compiled
 
 FLOOR = 1e-10
 
 
-@numba.njit(cache=True, error_model="numpy", inline="never")
+@compiled
 def point_kernel(x, y, z):
     """Return the stresses at (x, y, z) due to unit forces at the origin [1/length^2]."""
     x2, y2, z2 = x * x, y * y, z * z
@@ -86,7 +86,7 @@ def point_kernel(x, y, z):
     return load_x + load_y + load_z + nu_x + nu_y + nu_z
 
 
-@numba.njit(cache=True, error_model="numpy", inline="never")
+@compiled
 def uniform_corner(x, y, z):
     """Return the corner function of uniform tractions: d2/dxdy gives `point_kernel` [1]."""
     x2, y2, z2 = x * x, y * y, z * z
@@ -137,7 +137,7 @@ def uniform_corner(x, y, z):
     return load_x + load_y + load_z + nu_x + nu_y + nu_z
 
 
-@numba.njit(cache=True, error_model="numpy", inline="never")
+@compiled
 def bilinear_corner(x, y, z):
     """Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2]."""
     x2, y2, z2 = x * x, y * y, z * z

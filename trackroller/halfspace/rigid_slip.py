@@ -15,21 +15,14 @@ considering friction. Applied Mechanics 3, 692-704, eqs (20)-(25). doi:10.3390/a
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numba.extending import register_jitable
 
-from trackroller.halfspace.vectors import FAST
+from trackroller.numerics.compiled import fast_formula, formula
 
 _TINY = 1e-300  # keeps the slopes of a pole outside the patch finite
 
-# Without checks for division by zero, loops over these formulas run in vector registers.
-_formula: Any = register_jitable(error_model="numpy")
-_quick_formula: Any = register_jitable(error_model="numpy", fastmath=FAST)
 
-
-@_formula
+@formula
 def profile_slip(x, sine, cosine, radius):
     """Return the rolling slip v_y/omega of the circular guide profile, eq. (20) [mm].
 
@@ -55,7 +48,7 @@ def profile_slip(x, sine, cosine, radius):
     return -np.minimum(deep, deepest) / (np.sqrt(np.maximum(deepest - deep, 0.0)) + radius * cosine)
 
 
-@_formula
+@formula
 def rolling_slip(x, sine, cosine, radius, shift):
     """Return the rolling slip v_y/omega, eq. (21) [mm]: eq. (20) and the rolling radius shift x_spin sin(alpha).
 
@@ -76,7 +69,7 @@ def rolling_slip(x, sine, cosine, radius, shift):
     return shift + profile_slip(x, sine, cosine, radius)
 
 
-@_quick_formula
+@fast_formula
 def rolling_slip_without_division(x, sine, cosine, radius, shift):
     """Return `rolling_slip` as eq. (21) writes it; the stress kernels take it at millions of points.
 
@@ -88,7 +81,7 @@ def rolling_slip_without_division(x, sine, cosine, radius, shift):
     return (shift - flat) + np.sqrt(flat * flat - deep)
 
 
-@_formula
+@formula
 def slip_zeros(sine, cosine, radius, shift):
     """Return the two lateral positions where the rolling slip of eq. (21) vanishes [mm]; NaN where it does not.
 
@@ -101,7 +94,7 @@ def slip_zeros(sine, cosine, radius, shift):
     return np.sign(sine) * product / reach / cosine, -np.sign(sine) * reach / cosine
 
 
-@_formula
+@formula
 def pole_lateral(shift, sine):
     """Return the lateral position x_spin of the spin pole, eq. (23) [mm].
 
@@ -115,7 +108,7 @@ def pole_lateral(shift, sine):
     return shift / sine
 
 
-@_formula
+@formula
 def pole_rolling(x_spin, a, b):
     """Return y_spin of a spin pole on the trailing edge, eq. (22) [mm]; 0 for a pole outside the patch.
 
@@ -129,7 +122,7 @@ def pole_rolling(x_spin, a, b):
     return 0.0 - b * np.sqrt(np.maximum(1.0 - (x_spin / a) ** 2, 0.0))
 
 
-@_formula
+@formula
 def pole_line(a, x_spin, y_spin, model):
     """Return the coefficients of the line of poles y_delta(x), see `pole_offset`.
 
@@ -142,7 +135,7 @@ def pole_line(a, x_spin, y_spin, model):
     return 0.0 * y_spin, y_spin / np.maximum(x_spin + a, _TINY), y_spin / np.minimum(x_spin - a, -_TINY)
 
 
-@_formula
+@formula
 def pole_offset(x, a, k0, k1, k2):
     """Return y_delta(x), where the lateral slip vanishes, eq. (25) [mm].
 
@@ -152,7 +145,7 @@ def pole_offset(x, a, k0, k1, k2):
     return k0 + np.maximum(k1 * (x + a), k2 * (x - a))
 
 
-@_formula
+@formula
 def lateral_slip(y, offset, sine):
     """Return the lateral slip v_x/omega, eq. (24) [mm], with the `offset` y_delta of `pole_offset`."""
     return sine * (y - offset)

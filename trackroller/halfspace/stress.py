@@ -9,13 +9,12 @@ Stresses have a last axis of six in the order of COMPONENTS. They do not depend 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 from scipy import fft
 
 from trackroller.errors import InputError
 from trackroller.halfspace import influence
-from trackroller.halfspace.vectors import FAST, inner
+from trackroller.numerics.compiled import fast, inner
 from trackroller.numerics.threads import share_rows
 
 Array = NDArray[np.float64]
@@ -255,11 +254,12 @@ def von_mises(stress: ArrayLike) -> Array:
 @inner
 def _equivalent(sx, sy, sz, txy, tyz, txz):
     """Return sqrt(3 J2) of the components of stresses: numbers, or arrays of one shape."""
-    normal = (sx - sy) ** 2 + (sz - sx) ** 2 + (sy - sz) ** 2
-    return np.sqrt(0.5 * normal + 3.0 * (txy**2 + tyz**2 + txz**2))
+    a, b, c = sx - sy, sz - sx, sy - sz
+    normal = a * a + b * b + c * c
+    return np.sqrt(0.5 * normal + 3.0 * (txy * txy + tyz * tyz + txz * txz))
 
 
-@njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")
+@fast
 def von_mises_of_parts(parts, poisson_ratio, signs, out):
     """Write the von Mises stress of `body_stress` into `out` (m,), from parts (m, 4, 6), nu (m,) and signs (m,)."""
     stress = np.empty(6)

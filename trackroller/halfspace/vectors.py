@@ -7,23 +7,10 @@ stated ranges, far below the errors of the quadratures (tests/halfspace/test_vec
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-from numba import njit
 
-FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keeps NaN and inf
-
-
-def inner(function: Callable[..., Any]) -> Any:
-    """Compile a function that only compiled functions call, without the wrappers for callers in Python.
-
-    The function is always inlined. If numba linked it instead, the process that compiles and the processes that read
-    the cache would round the last digit differently.
-    """
-    options: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
-    return njit(cache=True, fastmath=FAST, error_model="numpy", **options)(function)
+from trackroller.numerics.compiled import inner
 
 
 @inner

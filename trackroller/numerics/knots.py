@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from numba import njit
+from trackroller.numerics.compiled import compiled
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def interval(value, knots, low, high):
     """Return the index i, low <= i < high, of the interval knots[i] <= value < knots[i + 1].
 
@@ -32,7 +32,7 @@ def interval(value, knots, low, high):
     return low
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def polyline(value, knots, values):
     """Return height and slope at `value` of the polyline through (knots, values).
 

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from trackroller.halfspace.rigid_slip import rolling_slip, rolling_slip_without_division
-from trackroller.halfspace.vectors import FAST
+from trackroller.numerics.compiled import FAST
 from validation.benchmarks.command import run
 
 

@@ -20,7 +20,7 @@ FLOOR is the distance below which logarithms stop growing, which keeps a step of
 
 from math import asinh, atan2, log, sqrt
 
-import numba
+from trackroller.numerics.compiled import compiled
 
 FLOOR = 1e-10
 '''
@@ -70,8 +70,7 @@ def function_source(name: str) -> str:
     rows = "".join(f"    {row} = {', '.join(values[6 * k : 6 * k + 6])}\n" for k, row in enumerate(_ROWS))
     prelude = _without_unused(_COMMON + ("" if name == "point_kernel" else _CORNER), lines + rows)
     return (
-        '\n\n@numba.njit(cache=True, error_model="numpy", inline="never")\n'
-        f'def {name}(x, y, z):\n    """{_TITLES[name]}"""\n{prelude}{lines}{rows}'
+        f'\n\n@compiled\ndef {name}(x, y, z):\n    """{_TITLES[name]}"""\n{prelude}{lines}{rows}'
         f"    return {' + '.join(_ROWS)}\n"
     )
 

@@ -21,7 +21,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from trackroller.contact.common import Elastic, Ellipse, Slip, SurfaceTractions
 from trackroller.contact.fastsim.point import Strips, Totals, advance, enter, march, one_strip, write
@@ -29,6 +28,7 @@ from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolutio
 from trackroller.contact.friction_laws import Knots
 from trackroller.contact.linear import creepage_coefficients, linear_resultants, sliding_flexibility
 from trackroller.contact.slip import Creepage
+from trackroller.numerics.compiled import compiled
 from trackroller.numerics.threads import share_rows
 
 # The flexibilities change from linear theory to full sliding with the creepages. Both numbers are fitted to the exact
@@ -46,7 +46,7 @@ class Ellipses(NamedTuple):
     bound: np.ndarray
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _all_sums(ellipses, strips, rule, law, steps, totals, first, last):
     """Write the totals of the ellipses first..last; rule = strips over a and their weights."""
     nodes, weights = rule
@@ -66,7 +66,7 @@ def _all_sums(ellipses, strips, rule, law, steps, totals, first, last):
         write(totals, i, total)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _all_fields(ellipses, strips, law, shear, slip, first, last):
     """March from the leading edge; write tractions and slip (n, 2, points, points) at element centres."""
     points = shear.shape[2]

@@ -9,8 +9,8 @@ import math
 from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
-from numba import njit
 
+from trackroller.numerics.compiled import compiled
 from trackroller.numerics.knots import polyline
 
 T = TypeVar("T", float, np.ndarray)  # one patch, or arrays over the patches
@@ -56,14 +56,14 @@ class Totals(NamedTuple, Generic[T]):
     adhesion: T
 
 
-@njit(cache=True)
+@compiled
 def one_strip(strips, i, j):
     """Return strip j of patch i."""
     x, lateral, spin, along, flexible_x, flexible_y, speed = strips
     return Strips(x[i, j], lateral[i], spin[i], along[i, j], flexible_x[i, j], flexible_y[i, j], speed[i])
 
 
-@njit(cache=True)
+@compiled
 def _shortened(zx, zy, l_x, l_y, g):
     """Return the traction (x, y) of length g at a slipping point with the trial traction z, |z| > g.
 
@@ -86,7 +86,7 @@ def _shortened(zx, zy, l_x, l_y, g):
     return share * px, share * py
 
 
-@njit(cache=True)
+@compiled
 def _relaxed(friction, speed, h, stiffness, law):
     """Return the friction one step further towards that of its slip speed.
 
@@ -98,7 +98,7 @@ def _relaxed(friction, speed, h, stiffness, law):
     return friction + (target - friction) / (1.0 + 2.0 * stiffness * abs(slope) / h)
 
 
-@njit(cache=True)
+@compiled
 def _step(strip, middle, h, bound, law, old):
     """Return the state after a step h about the place `middle` [mm]; `bound` is mu p at the end of the step [MPa]."""
     l_x, l_y = strip.flexible_x, strip.flexible_y
@@ -117,14 +117,14 @@ def _step(strip, middle, h, bound, law, old):
     return State(tx, ty, sx, sy, friction)
 
 
-@njit(cache=True)
+@compiled
 def enter(strip, y, law):
     """Return the state at the leading edge y [mm]: no traction, and the friction of the rigid slip."""
     speed = math.hypot(strip.lateral - strip.spin * y, strip.along)
     return State(0.0, 0.0, 0.0, 0.0, polyline(speed, law.speed, law.factor)[0])
 
 
-@njit(cache=True)
+@compiled
 def advance(strip, h, middles, bounds, law, state):
     """Return the state after steps h about the places `middles` [mm], with mu p at the end of each step [MPa]."""
     for j in range(bounds.size):
@@ -132,7 +132,7 @@ def advance(strip, h, middles, bounds, law, state):
     return state
 
 
-@njit(cache=True)
+@compiled
 def march(total, strip, edge, h, area, middles, bounds, law):
     """Add a strip, marched from its leading edge [mm], to the totals; `area` is the area of a step [mm^2]."""
     old = enter(strip, edge, law)
@@ -152,7 +152,7 @@ def march(total, strip, edge, h, area, middles, bounds, law):
     return total
 
 
-@njit(cache=True)
+@compiled
 def write(totals, i, found):
     """Store the totals of patch i in arrays."""
     totals.lateral[i], totals.driving[i], totals.moment[i] = found.lateral, found.driving, found.moment

@@ -9,10 +9,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from trackroller.contact.fastsim.point import Totals, advance, enter, march, one_strip, write
 from trackroller.contact.friction_laws import Knots
+from trackroller.numerics.compiled import compiled
 
 LONG = 8  # loaded elements from which the ends of an interval are extrapolated
 SUBSTEPS = 8  # steps between the centres of elements, for tractions
@@ -41,7 +41,7 @@ class Interval(NamedTuple):
     high: float
 
 
-@njit(cache=True)
+@compiled
 def _zero(far, middle, near):
     """Return how far beyond the last of three equidistant places their parabola vanishes, from 0.5 to 3 distances."""
     curve, slope = 0.5 * (far - 2.0 * middle + near), 0.5 * (3.0 * near - 4.0 * middle + far)
@@ -51,7 +51,7 @@ def _zero(far, middle, near):
     return min(max(2.0 * near / (-slope + math.sqrt(root)), 0.5), 3.0)
 
 
-@njit(cache=True)
+@compiled
 def _interval(p, last):
     """Return the loaded interval of the pressures p (N,) that ends with the element `last`.
 
@@ -75,7 +75,7 @@ def _interval(p, last):
     return Interval(first, last, middle - reach, middle + reach)
 
 
-@njit(cache=True)
+@compiled
 def _pressure(p, interval, t):
     """Return the pressure at the place t of an interval, up to a factor that is the same for the whole interval."""
     first, last, low, high = interval
@@ -94,7 +94,7 @@ def _pressure(p, interval, t):
     return math.sqrt((1.0 - part) * p[k] ** 2 + part * p[k + 1] ** 2)
 
 
-@njit(cache=True)
+@compiled
 def _scale(p, interval, steps):
     """Return the factor on `_pressure` with which its trapezoidal sum over the steps has the load of the elements."""
     load = total = 0.0
@@ -106,7 +106,7 @@ def _scale(p, interval, steps):
     return load / (total * length) if total > 0.0 else 0.0
 
 
-@njit(cache=True)
+@compiled
 def _sum(total, p, loaded, i, strip, middles, bounds, law):
     """Add one strip of patch i with pressures p (N,) to the totals and return them.
 
@@ -128,7 +128,7 @@ def _sum(total, p, loaded, i, strip, middles, bounds, law):
     return total
 
 
-@njit(cache=True)
+@compiled
 def _field(p, loaded, i, strip, law, shear, slip):
     """Write traction over its bound and slip (2, N) at the centres of the loaded elements of one strip of patch i."""
     hy, half, middles, bounds = loaded.hy[i], loaded.half[i], np.empty(SUBSTEPS), np.empty(SUBSTEPS)
@@ -155,7 +155,7 @@ def _field(p, loaded, i, strip, law, shear, slip):
             slip[0, j], slip[1, j] = state.slip_x, state.slip_y
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def strip_sums(loaded, strips, law, steps, totals, first, last):
     """Write the totals of the patches first..last into arrays (n,)."""
     middles, bounds = np.empty(steps), np.empty(steps)
@@ -168,7 +168,7 @@ def strip_sums(loaded, strips, law, steps, totals, first, last):
         write(totals, i, total)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def strip_fields(loaded, strips, law, shear, slip, first, last):
     """Write traction over its bound and slip of the patches first..last, (n, 2, N, M)."""
     for i in range(first, last):
@@ -178,7 +178,7 @@ def strip_fields(loaded, strips, law, shear, slip, first, last):
             _field(p, loaded, i, one_strip(strips, i, j), knots, shear[i, :, :, j], slip[i, :, :, j])
 
 
-@njit(cache=True)
+@compiled
 def strip_chords(pressure, chords):
     """Write the loaded length of each strip into `chords` (n, M), in elements."""
     for i in range(pressure.shape[0]):

@@ -9,12 +9,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.influence import coupling_slip, hertz_coupling_slip, influence, rounded
 from trackroller.contact.kalker.loops import reals
 from trackroller.contact.kalker.newton import Problem, newton, room_for
+from trackroller.numerics.compiled import compiled
 from trackroller.numerics.threads import share_rows
 
 PIECE = 16  # patches of the same shape that a thread solves in one call
@@ -53,7 +53,7 @@ class Batch(NamedTuple):
             return finite & (self.ratio > 0.0)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _rigid_slip(batch, i, out):
     """Write the scaled rigid slip of patch i into `out` (ny, nx), lateral + 1j rolling."""
     ny, nx = out.shape
@@ -146,7 +146,7 @@ class _Sums(NamedTuple):
     covered: float
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _sums(field, height, share, rho, a, b, stick):
     """Add up resultants, works and stick of one patch with tractions over mu p_max; mark sticking elements."""
     traction, slip, rigid, driver, bound = field
@@ -173,7 +173,7 @@ def _sums(field, height, share, rho, a, b, stick):
     return _Sums(force_x, force_y, moment, dissipation, work, pressed, sticking, covered)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _solve(problem, room, traction, tolerance, limit):
     """Solve by Newton's method; if a friction law defeats it, approach the law from constant friction in steps."""
     at, residual, steps, products = newton(problem, room, traction, tolerance, limit)
@@ -189,7 +189,7 @@ def _solve(problem, room, traction, tolerance, limit):
     return at, residual, steps, products
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _solve_patches(which, batch, functions, pressed, law, limits, found):
     """Solve the patches `which` (m,), whose elements have the same shape; see `_solve_piece`."""
     knots, factors = law
@@ -217,7 +217,7 @@ def _solve_patches(which, batch, functions, pressed, law, limits, found):
         _write_fields(found, i, field, height, ratio)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _write_fields(found, i, field, height, ratio):
     """Store tractions, slips and, under a friction law, factors of patch i."""
     varies = found.factor.shape[1:] == height.shape
@@ -230,7 +230,7 @@ def _write_fields(found, i, field, height, ratio):
                 found.factor[i, k, j] = field.bound[k, j] / height[k, j]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _write_report(report, i, sums, cell, bound, ratio):
     """Store the sums of patch i with their units; `cell` is the area of an element [mm^2]."""
     report.stick_fraction[i] = sums.sticking / sums.covered

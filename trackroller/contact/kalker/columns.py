@@ -8,15 +8,14 @@ are left out, so each component of each column is a small dense system. GMRES th
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from trackroller.contact.influence import FAST
+from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.lanes import LANES, multiply, subtract_multiple
 
 PAIR = LANES // 2  # columns whose systems are solved side by side
 
 
-@njit(cache=True)
+@compiled
 def column_ranges(bound):
     """Return the first row with a bound > 0 in each column, and the number of rows up to the last one."""
     ny, nx = bound.shape
@@ -30,19 +29,19 @@ def column_ranges(bound):
     return first, count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def factors_of(ny, nx):
     """Return room for the factors of all systems, (groups, ny, ny, LANES); lanes are x and y of PAIR columns."""
     return np.empty((-(-nx // PAIR), ny, ny, LANES))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _most_rows(count, group):
     """Return the largest number of loaded rows in the columns of a group."""
     return count[group * PAIR : (group + 1) * PAIR].max()
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def _factorise(columns, n):
     """Factorise matrices (., ., LANES) into L U in place; `columns` holds the matrices by their columns.
 
@@ -61,7 +60,7 @@ def _factorise(columns, n):
             subtract_multiple(flat, row + LANES, flat, below, flat, row, n - k - 1)
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def factorise(slips, derivative, rho, first, count, factors):
     """Factorise 1 - P' + rho P' B for each column and component into `factors`; P' without xy.
 
@@ -88,7 +87,7 @@ def factorise(slips, derivative, rho, first, count, factors):
         _factorise(columns, n)
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def apply_inverse(factors, first, count, field, out):
     """Apply the preconditioner to `field` and write `out`, both (ny, nx, 2); elements with bound 0 stay unchanged."""
     stride = field.shape[0] * LANES

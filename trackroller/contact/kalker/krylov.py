@@ -10,11 +10,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from trackroller.contact.influence import FAST, convolve
+from trackroller.contact.influence import convolve
 from trackroller.contact.kalker.columns import apply_inverse, factorise
 from trackroller.contact.kalker.loops import reals, row_means
+from trackroller.numerics.compiled import compiled, fast
 
 
 class Operator(NamedTuple):
@@ -60,7 +60,7 @@ class Triangle(NamedTuple):
     rhs: np.ndarray
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def dot(a, b):
     """Return the scalar product of two vectors."""
     total = 0.0
@@ -69,7 +69,7 @@ def dot(a, b):
     return total
 
 
-@njit(cache=True)
+@compiled
 def _rotate(triangle, k):
     """Apply Givens rotations to column k; the last entry of the right-hand side becomes the residual's norm."""
     hessenberg, givens, rhs = triangle
@@ -86,7 +86,7 @@ def _rotate(triangle, k):
     rhs[k] = c * rhs[k]
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def arnoldi(direction, product, mean, derivative, basis, k, triangle):
     """Extend the Krylov space by Newton's matrix times `direction` and return the norm of the residual.
 
@@ -122,7 +122,7 @@ def arnoldi(direction, product, mean, derivative, basis, k, triangle):
     return abs(triangle.rhs[k + 1])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def combination(basis, triangle, done, out):
     """Write the least-squares combination of basis[: done] into `out` (2 ny nx,)."""
     hessenberg, rhs = triangle.hessenberg, triangle.rhs
@@ -136,7 +136,7 @@ def combination(basis, triangle, done, out):
             out[j] += rhs[i] * basis[i, j]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def solve(value, derivative, columns, operator, tolerance, space, step):
     """Solve Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES; return the products.
 

@@ -5,19 +5,18 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
-from trackroller.contact.influence import FAST
+from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.knots import polyline
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def reals(field):
     """Return a view of a complex field (ny, nx) as real numbers (ny, nx, 2)."""
     return field.view(np.float64).reshape(field.shape[0], field.shape[1], 2)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def row_means(field, first, count, out):
     """Average each element (weight 1/2) with its neighbours in the rolling direction (1/4) within the patch."""
     out[:] = field
@@ -29,7 +28,7 @@ def row_means(field, first, count, out):
                 out[i, j, c] = 0.5 * field[i, j, c] + 0.25 * (field[behind, j, c] + field[ahead, j, c])
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def law_of_slip(slip, height, scale, knots, factors, bound, slope):
     """Compute the traction bound, height f(scale |s|), and its derivative with respect to |s|.
 
@@ -44,7 +43,7 @@ def law_of_slip(slip, height, scale, knots, factors, bound, slope):
             slope[i, j] = height[i, j] * steep * scale
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def residual(traction, slip, bound, rho, out):
     """Write F = tau - P_g(tau - rho s) into `out`; return its largest component (scaled as tau) and its norm."""
     largest, square = 0.0, 0.0
@@ -65,7 +64,7 @@ def residual(traction, slip, bound, rho, out):
     return largest, math.sqrt(square)
 
 
-@njit(cache=True, fastmath=FAST, nogil=True)
+@fast
 def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
     """Write the derivative of P_g at z = tau - rho s into `derivative` (3, ny, nx), order xx, xy, yy.
 
@@ -89,13 +88,13 @@ def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
                 derivative[1, i, j] = -factor * zx * zy
                 derivative[2, i, j] = factor * zx * zx
                 sx, sy = mean[i, j, 0], mean[i, j, 1]
-                speed = math.hypot(sx, sy)
+                speed = math.sqrt(sx * sx + sy * sy)
                 steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
             turn[0, i, j], turn[1, i, j] = steep * zx * sx, steep * zx * sy
             turn[2, i, j], turn[3, i, j] = steep * zy * sx, steep * zy * sy
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def find_slits(traction, slip, bound, rho, held):
     """Mark sliding elements in lateral gaps of one or two between sticking ones in `held`; return their number."""
     ny, nx = bound.shape
@@ -113,7 +112,7 @@ def find_slits(traction, slip, bound, rho, held):
     return count
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def hold(held, slip, rho, value, derivative, turn):
     """Set the residual and the derivative of the `held` elements as if they stuck."""
     for i in range(held.shape[0]):

@@ -14,12 +14,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from trackroller.contact.influence import Influence, convolve
 from trackroller.contact.kalker.columns import column_ranges, factors_of
 from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
+from trackroller.numerics.compiled import compiled
 
 # If many elements between sticking ones are wrongly taken as sliding, Newton's method corrects only one of them in each
 # step, from the leading edge on, with short steps. After SHORT steps of at most half length, a leap sets all of them to
@@ -77,7 +77,7 @@ class Room(NamedTuple):
     space: Space
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def room_for(ny, nx, krylov):
     """Return work space for patches of ny x nx elements, with a Krylov space of at most `krylov` vectors."""
     return Room(
@@ -110,7 +110,7 @@ class Work(NamedTuple):
     space: Space
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _state(law, work, traction, slip):
     """Compute bounds and residual at a traction and slip; return the residual's largest component and its norm."""
     if law.falls:
@@ -119,7 +119,7 @@ def _state(law, work, traction, slip):
     return residual(reals(traction), reals(slip), work.bound, law.rho, reals(work.value))
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _step(law, work, traction, slip, tolerance, leap, step, change):
     """Write Newton's step and the slip that it causes; return its products. A leap makes the slits stick."""
     moved, d = reals(slip), work.derivative
@@ -131,7 +131,7 @@ def _step(law, work, traction, slip, tolerance, leap, step, change):
     return products + 1
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _move(start, step, length, out):
     """Write start - length step into `out`."""
     for i in range(out.shape[0]):
@@ -139,7 +139,7 @@ def _move(start, step, length, out):
             out[i, j] = start[i, j] - length * step[i, j]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _search(law, work, at, norm, moves, new):
     """Halve the step until the residual's norm falls, at most four times; return residual, norm and step length.
 
@@ -155,7 +155,7 @@ def _search(law, work, at, norm, moves, new):
         length *= 0.5
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _iterate(law, work, at, tolerance, limit):
     """Iterate on the tractions and slips `at` (2, ny, nx); return residual, Newton steps and products."""
     new, moves, before = np.empty_like(at), np.empty_like(at), np.empty_like(at)
@@ -194,7 +194,7 @@ def _iterate(law, work, at, tolerance, limit):
     return largest, iteration, products
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def newton(problem, room, traction, tolerance, limit):
     """Solve the friction law on one patch, starting from `traction`.
 

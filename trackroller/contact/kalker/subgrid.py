@@ -12,7 +12,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+
+from trackroller.numerics.compiled import compiled
 
 PARTS = 3  # points along each side of an element
 RIM = 0.2  # of the largest bound: the least that slips are divided by
@@ -42,7 +43,7 @@ def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
     return out
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _shorten(z):
     """Shorten the vectors of a field (2, ny, nx) to at most length 1, in place."""
     for i in range(z.shape[1]):
@@ -132,7 +133,7 @@ def _between(z: np.ndarray, parts: int) -> np.ndarray:
     return fine
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _sum(traction, a, b, out):
     """Add up F_T, F_A and M_R of tractions (2, ny, nx) on one patch."""
     ny, nx = traction.shape[1:]

@@ -14,11 +14,11 @@ from functools import lru_cache
 from importlib import resources as files
 
 import numpy as np
-from numba import njit
 
 from trackroller.contact.common import Elastic, Resultants
 from trackroller.contact.protocol import Patch
 from trackroller.contact.table.coordinates import HALF_WAY, RATIOS, Dimensionless, normalise
+from trackroller.numerics.compiled import compiled
 from trackroller.numerics.knots import interval
 from trackroller.numerics.threads import share_rows
 
@@ -57,7 +57,7 @@ class TableSolution:
     known: np.ndarray
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _basis(knots, x, out):
     """Write the four nonzero cubic B-splines at x into `out`; return the index of the first one (de Boor)."""
     low = interval(x, knots, 3, knots.size - 4)
@@ -73,7 +73,7 @@ def _basis(knots, x, out):
     return low - 3
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _evaluate(first, last, knots, values, points, out):
     """Add rows first to last - 1 of the tensor product at points (n, 4) to `out` (n, fields)."""
     k0, k1, k2, k3 = knots

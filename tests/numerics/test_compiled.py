@@ -1,0 +1,45 @@
+"""Compiled functions state all options and avoid the functions of numba that take options from their first caller."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import trackroller
+
+PACKAGE = Path(trackroller.__file__).parent
+TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
+FAST = {"fast", "inner", "fast_formula"}
+SHARED = {"hypot", "pow"}  # numba compiles each once in a process
+
+
+def functions():
+    """Return the compiled functions with FAST arithmetic, with their files."""
+    return [
+        (path, node)
+        for path, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef) and FAST & {getattr(d, "id", "") for d in node.decorator_list}
+    ]
+
+
+def test_one_module_chooses_the_options_of_the_compiler():
+    compilers = {"njit", "jit", "vectorize", "guvectorize", "register_jitable", "overload"}
+    where = {
+        path.name
+        for path, tree in TREES.items()
+        for node in ast.walk(tree)
+        if (isinstance(node, ast.Name) and node.id in compilers)
+        or (isinstance(node, ast.Attribute) and node.attr in compilers)
+    }
+    assert where == {"compiled.py"}
+
+
+def test_fast_arithmetic_uses_no_function_that_numba_shares_among_callers():
+    found = functions()
+    assert len(found) > 20
+    for path, function in found:
+        for node in ast.walk(function):
+            power = isinstance(node, (ast.BinOp, ast.AugAssign)) and isinstance(node.op, ast.Pow)
+            shared = isinstance(node, ast.Attribute) and node.attr in SHARED
+            assert not power and not shared, f"{path.name}:{node.lineno} in {function.name}"

@@ -1,0 +1,32 @@
+"""Decorators that compile functions with every option stated, so that digits do not depend on the order of compilation.
+
+numba takes an option that a function leaves open from the function that calls it first, and keeps the result in its
+cache. The options of floating-point arithmetic would thus depend on which kernels the cache held before.
+
+numba's own functions for powers, `hypot` and complex numbers are compiled once in a process as well, with the options
+of their first caller. Functions with `FAST` arithmetic therefore use products and `sqrt` instead
+(tests/numerics/test_compiled.py).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import njit
+from numba.extending import register_jitable
+
+FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keeps NaN and inf
+_PLAIN: dict[str, Any] = {"error_model": "numpy", "fastmath": False}
+_FAST: dict[str, Any] = {"error_model": "numpy", "fastmath": FAST}
+_CACHED: dict[str, Any] = {"cache": True, "nogil": True, "forceinline": False}
+# of functions that only compiled functions call: always inlined, without the wrappers for callers in Python
+_INNER: dict[str, Any] = {"cache": True, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+compiled: Any = njit(**_PLAIN, **_CACHED)
+fast: Any = njit(**_FAST, **_CACHED)
+inner: Any = njit(**_FAST, **_INNER)
+# for functions that become a part of each caller, with the options of that caller
+woven: Any = njit(inline="always")
+# for functions that run in plain Python too: there they take arrays
+formula: Any = register_jitable(**_PLAIN, forceinline=True)
+fast_formula: Any = register_jitable(**_FAST, forceinline=True)
