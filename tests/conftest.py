@@ -7,6 +7,11 @@ import os
 import pytest
 from hypothesis import settings
 
+# `make test` has a process for each core; more threads would only wait for each other
+if "PYTEST_XDIST_WORKER" in os.environ:
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    os.environ.setdefault("NUMBA_NUM_THREADS", "1")
+
 # a busy machine must not fail a test: the benchmarks in validation/ measure what an example costs
 settings.register_profile("trackroller", deadline=None)
 settings.load_profile("trackroller")

@@ -100,6 +100,7 @@ def test_materials_are_listed_shown_and_added(tmp_path):
     assert "mine" in trackroller("materials", "list", cwd=tmp_path).stdout
 
 
+@pytest.mark.slow
 def test_dask_workers_give_the_same_numbers(tmp_path):
     (tmp_path / "tiny.yaml").write_text(STUDY)
     trackroller("run", "tiny.yaml", "-q", cwd=tmp_path)
