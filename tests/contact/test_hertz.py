@@ -73,4 +73,7 @@ def test_published_table_is_low_in_pressure_as_stated():
 
 def test_published_table_says_where_it_ends():
     """Outside 0.1 <= cos tau <= 0.9995 the table has nothing: NaN, not an extrapolation."""
-    assert np.isnan(published_shape(one, 1.01 * one, one).lateral[0])
+    cos_tau = np.array([0.0999, 0.1001, 0.9994, 0.9996])
+    found = published_shape(1 - cos_tau, 1 + cos_tau, np.ones(4))
+    for values in (found.lateral, found.rolling, found.pressure):
+        assert np.isnan(values).tolist() == [True, False, False, True]
