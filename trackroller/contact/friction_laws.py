@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, NoReturn
 import numpy as np
 
 from trackroller.errors import InputError, nearest
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_in
 
 KNOTS = 160  # of an exponential law; the error of the table is below 1e-4 of the drop in friction
 DEFAULTS: dict[str, dict[str, Any]] = {
@@ -103,21 +103,12 @@ def _refuse(part: str, value: object, allowed: str, remedy: str = "") -> NoRetur
     raise InputError(f"friction_law.{part}" if part else "friction_law", value, allowed, remedy)
 
 
-def _number(part: str, value: object, allowed: str, lower: float = -np.inf, upper: float = np.inf) -> float:
-    """Return a number between two bounds, which are allowed values themselves."""
-    try:
-        number = read_number(value)
-    except ValueError:
-        number = np.nan
-    if not lower <= number <= upper:
-        _refuse(part, value, allowed)
-    return number
-
-
 def _fall(speed: object, lowest: object) -> dict[str, float]:
+    least, most = np.nextafter(0.0, 1.0), np.finfo(float).max
+    share = "the share of friction left at high speed, in [0, 1]"
     return {
-        "speed": _number("speed", speed, "a slip speed > 0 in mm/s", np.nextafter(0.0, 1.0), np.finfo(float).max),
-        "lowest": _number("lowest", lowest, "the share of friction left at high speed, in [0, 1]", 0.0, 1.0),
+        "speed": number_in(speed, "friction_law.speed", "a slip speed > 0 in mm/s", least, most),
+        "lowest": number_in(lowest, "friction_law.lowest", share, 0.0, 1.0),
     }
 
 
@@ -208,7 +199,7 @@ def _list(part: str, values: object, words: str) -> np.ndarray:
     told = f"a list of numbers, {words}"
     if not isinstance(values, (list, tuple, np.ndarray)) or len(values) == 0:
         _refuse(part, values, told)
-    return np.array([_number(part, value, told) for value in values])  # type: ignore[attr-defined]
+    return np.array([number_in(value, f"friction_law.{part}", told) for value in values])  # type: ignore[attr-defined]
 
 
 def at_rest(law: Any) -> float | None:

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names, unknown_name
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_in
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
 KEYS = (*FORMS, "frame", "smooth", "edge", "width")
@@ -96,11 +96,8 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
 
 def _number(value: Any, field: str, positive: bool = False, finite: bool = True) -> float:
     words = ("a number > 0" if positive else "a number other than 0") + (" [mm]" if finite else " or inf [mm]")
-    try:
-        number = read_number(value)
-    except ValueError:
-        number = math.nan
-    if math.isnan(number) or number == 0.0 or (positive and number < 0) or (finite and math.isinf(number)):
+    number = number_in(value, field, words, 0.0 if positive else -math.inf)
+    if number == 0.0 or (finite and math.isinf(number)):
         raise InputError(field, value, words)
     return number
 

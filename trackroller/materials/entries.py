@@ -20,14 +20,6 @@ UNITS = {
 }
 
 
-def _scaled(number: Any, factor: float) -> Any:
-    """Return the number in the unit of the property; any other value unchanged, because a later check refuses it."""
-    try:
-        return number if isinstance(number, bool) else float(number) * factor
-    except (TypeError, ValueError):
-        return number
-
-
 class EntryParser:
     """Turn the entries of one file into values, materials and friction coefficients.
 
@@ -90,12 +82,10 @@ class EntryParser:
         placeholder = entry.get("placeholder", False)
         if not isinstance(placeholder, bool):
             raise InputError(f"{field}.placeholder", placeholder, "it must be true or false")
-        number = entry["value"]
-        if UNITS[prop.unit][unit] != 1.0:
-            number = _scaled(number, UNITS[prop.unit][unit])
+        number = check_number(prop, entry["value"], where, UNITS[prop.unit][unit])
         source = self.source(str(entry["source"])) if entry.get("source") else "not given"
         note = str(entry.get("note") or "")
-        return Value(check_number(prop, number, where), prop.unit, source, placeholder, note, self.origin)
+        return Value(number, prop.unit, source, placeholder, note, self.origin)
 
     def material(self, name: Any, entry: Any, known: Mapping[str, Material]) -> Material:
         """Return the material of an entry.

@@ -73,8 +73,8 @@ class Value:
     origin: str = ""
 
 
-def check_number(prop: Parameter, value: Any, where: str) -> float:
-    """Return a value as a float if it lies within its bounds.
+def check_number(prop: Parameter, value: Any, where: str, factor: float = 1.0) -> float:
+    """Return a value in the unit of its property if it lies within the bounds.
 
     Parameters
     ----------
@@ -84,6 +84,8 @@ def check_number(prop: Parameter, value: Any, where: str) -> float:
         The value as given.
     where : str
         Place of the value, for messages.
+    factor : float
+        Unit of the value over that of the property [1].
 
     Returns
     -------
@@ -99,9 +101,9 @@ def check_number(prop: Parameter, value: Any, where: str) -> float:
     if prop.name.startswith("scatter"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."
     try:
-        number = read_number(value)
+        number = read_number(value) * factor
     except ValueError:
-        raise InputError(f"{where}.{prop.name}", value, prop.allowed(), remedy) from None
+        number = math.nan
     if math.isnan(number) or not prop.accepts(number):
         raise InputError(f"{where}.{prop.name}", value, prop.allowed(), remedy)
     return number

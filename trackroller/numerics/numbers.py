@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.errors import InputError
+
 _TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)
 MAX_LENGTH = 400  # characters of a number
 
@@ -46,6 +48,37 @@ def read_number(value: Any) -> float:
         return float(value)
     except (TypeError, OverflowError) as exc:
         raise ValueError(str(exc)) from None
+
+
+def number_in(value: Any, field: str, allowed: str, lower: float = -math.inf, upper: float = math.inf) -> float:
+    """Return a number between two bounds, which are allowed values themselves.
+
+    Parameters
+    ----------
+    value : int, float or str
+        What the user wrote.
+    field, allowed : str
+        Name of the field, and what is allowed, for the message.
+    lower, upper : float
+        Bounds.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    InputError
+        If the value is no number or lies outside the bounds.
+    """
+    try:
+        number = read_number(value)
+    except ValueError:
+        number = math.nan
+    if not lower <= number <= upper:
+        raise InputError(field, value, allowed)
+    return number
 
 
 def all_equal(values: np.ndarray) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.contact import friction_laws, profiles
 from trackroller.errors import InputError
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_in
 from trackroller.numerics.rows import once_each
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.point_files import read_points
@@ -74,10 +74,7 @@ def number(name: str, value: Any) -> float:
         return math.nan
     if isinstance(value, float) and math.isnan(value):  # the caller checks whether the parameter may be left out
         return math.nan
-    try:
-        return read_number(value)
-    except ValueError:
-        raise InputError(name, value, parameter.allowed()) from None
+    return number_in(value, name, parameter.allowed())
 
 
 class Default(float):
