@@ -15,6 +15,7 @@ from trackroller.roller.equilibrium import corrected, solve_equilibrium
 from trackroller.roller.options import Options
 from trackroller.roller.stages import mechanics
 from trackroller.roller.stages.balance import balance
+from validation.extremes.scenes import mirrored, some
 
 QUICK = dataclasses.replace(PRESETS["standard"], elements=16)
 CASES = [
@@ -134,3 +135,34 @@ def test_results_converge_with_the_observed_orders():
         steps = [np.sqrt(np.mean((b[k] - a[k]) ** 2)) for a, b in itertools.pairwise(grids)]
         order = np.log2(steps[0] / steps[1])
         assert 1.7 < order < 4.0, (name, order)
+
+
+STEEL = dict(radial_force=-200.0, friction_coefficient=0.2, roller_profile_radius=-7.0, guide_curve_radius=220.0)
+
+
+def test_a_roller_outside_the_table_settles_as_its_mirror_image():
+    """In a close groove the table's derivatives are rough; a small correction alone does not end the balance."""
+    (groove,) = some(("close groove",))
+    case = groove.cases[groove.values.index(1e-4)]
+    one, two = (tr.solve(c, ("forces",), contact_model="kalker", accuracy="preview") for c in (case, mirrored(case)))
+    assert one.regime == 0 and one.converged == 1
+    np.testing.assert_allclose(one.normal_force.values, two.normal_force.values[::-1], rtol=2e-4)
+
+
+def test_a_correction_that_loses_the_balance_is_followed_by_the_elements():
+    """At 89.99 degrees the slip is ten times that of the table, and the first correction leaves no balance."""
+    steep = tr.Case(contact_angle=89.99, axial_force=343774.67, motor_force=0.0, friction_coefficient=3.49e-5)
+    found = tr.solve(steep, ("forces",), contact_model="kalker", accuracy="preview")
+    assert found.regime == 0 and found.converged == 1 and found.residual < 1e-7
+
+
+def test_braking_ends_at_the_complete_friction_of_the_law():
+    """Table and elements reach the complete friction within their error; a larger force means full slip, not failure."""
+    complete = 0.2 * 200.0 / np.cos(np.deg2rad(30.0))
+    shares = 1.0 - np.array([1e-5, 1e-6, 1e-9, -1e-9])
+    cases = [tr.Case(**STEEL, axial_force=30.0, motor_force=share * complete) for share in shares]
+    for accuracy in ("preview", QUICK):
+        found = tr.solve(cases, ("forces",), contact_model="kalker", accuracy=accuracy)
+        assert found.regime.values.tolist()[::3] == [0, 1] and found.regime.max() == 1
+        np.testing.assert_allclose(found.transmitted_force, -complete, rtol=3e-5)
+    assert tr.solve(cases, ("forces",), contact_model="sliding").regime.values.tolist() == [0, 0, 0, 1]

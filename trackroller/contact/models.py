@@ -23,8 +23,6 @@ from trackroller.contact.settings import Accuracy, Rolling
 from trackroller.contact.table.model import TableModel
 from trackroller.errors import check_names
 
-# Residual of the friction law over mu p_max where elements correct the table, and where they give tractions only
-CORRECTION_TOLERANCE, TRACTION_TOLERANCE = 1e-4, 1e-3
 LEAST_UNDER_LAW = 20  # elements across a patch that resolve steeply falling friction
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models
 MOST_SLENDER = 0.99 * LARGEST_RATIO  # axis ratio up to which FASTSIM has flexibilities
@@ -76,9 +74,7 @@ class KalkerModel(ContactModel):
         chosen = kalker.KalkerSettings(elements=elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip)
         self._law = KalkerLaw(elastic, chosen, given.travel_speed)
         if law.is_constant:  # the table behind the corrections holds constant friction only
-            tolerance = TRACTION_TOLERANCE if trusts_table else CORRECTION_TOLERANCE
-            rough = dataclasses.replace(chosen, tolerance=tolerance)
-            self.correction = Correction(elastic, rough, trusts_table)
+            self.correction = Correction(elastic, chosen, trusts_table)
 
     def law(self, ellipse, slip, friction, rows, fine):
         return self._law(ellipse, slip, friction, rows, fine)

@@ -352,6 +352,18 @@ def _borders() -> tuple[Scene, ...]:
             _border(1.0),
             _brake,
             pairs=True,
+            models=("sliding", "fastsim"),
+        ),
+        # table and elements reach the complete friction within their error
+        _series(
+            "slip limit, braking",
+            "motor force just below and above what friction can brake",
+            "share of limit",
+            "1",
+            _border(1.0, (1e-3, 1e-4, 1e-5)),
+            _brake,
+            pairs=True,
+            models=("kalker",),
         ),
         _searched(
             "slip limit, driving",

@@ -24,6 +24,11 @@ NEAR = 0.02  # if the normalised slip changed less than this, the iteration star
 LEAST_STEP = 1e-9  # least change of the normalised slip from which a derivative of the difference is taken
 STEEPEST = 3.0  # largest such derivative
 REACH = 2.0  # steps over which the derivative is trusted
+# Outside its range the table's derivatives are those at the end of the range, and a correction leaves a larger share
+# of its change for the next one. Changes there count this many times.
+OUTSIDE = 20.0
+# Residual of the friction law over mu p_max where elements correct the table, and where they give tractions only
+CORRECTION_TOLERANCE, TRACTION_TOLERANCE = 1e-4, 1e-3
 
 
 class Correction:
@@ -76,7 +81,8 @@ class Correction:
 
         Returns
         -------
-        Largest change of a force over mu F_N (or of M_R over mu F_N c) that the solution brought, (m,).
+        Largest change of a force over mu F_N (or of M_R over mu F_N c) that the solution brought, (m,); `OUTSIDE` times
+        the change outside the table's range.
         """
         change = np.zeros(len(rows))
         forces, place, held = self._table(patch, slip, friction, rows)
@@ -88,7 +94,7 @@ class Correction:
             exact = self._elements(patch.take(pick), slip.take(pick), friction[pick], own, place[pick])
             self._learn(exact - forces[pick], place[pick], own, side)
             change[pick] = np.max(np.abs(exact - before), axis=1)
-        return change
+        return np.where(held, change, OUTSIDE * change)
 
     def _learn(self, offset: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> None:
         """Store the differences `offset` (m, 3) at the places of the slip, and their derivatives if known."""
@@ -113,7 +119,8 @@ class Correction:
             if not pick.size:
                 continue
             own, slot = rows[pick], _slots(rows[pick], side[pick])
-            settings, start = dataclasses.replace(self.settings, extrapolate=forces), None
+            tolerance = CORRECTION_TOLERANCE if forces else TRACTION_TOLERANCE
+            settings, start = dataclasses.replace(self.settings, extrapolate=forces, tolerance=tolerance), None
             if started:
                 settings = dataclasses.replace(settings, extrapolate=False)
                 start = self.store.get(slot).traction

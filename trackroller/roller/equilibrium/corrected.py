@@ -10,7 +10,7 @@ import numpy as np
 from trackroller.contact.common import Resultants
 from trackroller.roller.equilibrium.newton import Bounds, digits_of_forces, newton_polish
 from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
-from trackroller.roller.equilibrium.solution import ROLLING, Equilibrium, solve_equilibrium
+from trackroller.roller.equilibrium.solution import FAILED, ROLLING, Equilibrium, solve_equilibrium
 
 ROUNDS = 6  # of correction at most
 # Largest change of a force over mu F_N by a correction after which the balance is final. The next correction would
@@ -39,10 +39,12 @@ def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Eq
     found : Equilibrium
         The equilibrium.
     rows : numpy.ndarray of int, shape (m,)
-        Rollers whose last correction was larger than `SETTLED`.
+        Rollers whose last correction was larger than `SETTLED`, which is their residual then, rollers that a correction has stopped rolling, and
+        rollers for which the cheap law has no balance.
     """
     found = solve_equilibrium(loads, law)
     rows = _rolling(found, loads, np.arange(loads.friction.size))
+    rolled = (found.regime == ROLLING) | (found.regime == FAILED)
     for _ in range(ROUNDS):
         if not rows.size:
             break
@@ -50,8 +52,12 @@ def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Eq
         moved = rows[~(change == 0.0)]
         if moved.size:
             found = balance_again(loads, law, moved, found)
-        rows = _rolling(found, loads, rows[~(change <= SETTLED)])
-    return found, rows
+        open_ = ~(change <= SETTLED)
+        found.residual[rows[open_]], found.converged[rows[open_]] = change[open_], False
+        rows = _rolling(found, loads, rows[open_])
+    # the corrections hold near the slip where they were made, so that they do not show a change of regime
+    lost = np.flatnonzero(rolled & (found.regime != ROLLING) & (loads.friction > 0.0))
+    return found, np.union1d(rows, lost)
 
 
 def _rolling(found: Equilibrium, loads: Loads, rows: np.ndarray) -> np.ndarray:

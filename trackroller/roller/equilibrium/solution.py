@@ -25,6 +25,7 @@ ROLLING, FULL_SLIP, LIFT_OFF, FAILED = (REGIMES.index(name) for name in ("rollin
 # jump between these states, and the balance may lie within such a jump.
 SOLVED, SOLVED_FALLING = 1e-6, 1e-2
 LEAST_FRICTION = 1e-100  # smaller friction coefficients count as zero; their forces would underflow
+NEARLY = 0.999  # share of the complete friction above which braking is compared with the contact law
 LIMIT_FRICTION = 1e-12  # friction coefficient that stands for the limit mu -> 0
 
 
@@ -172,6 +173,10 @@ def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, n
     # a locked roller has the complete friction along the track and no other, as in full slip
     complete = roller.friction * np.sum(roller.without_friction(), axis=0)
     beyond = roller.motor_force > complete
+    # a law by interpolation or by elements reaches the complete friction within its error only
+    locks = np.flatnonzero(~beyond & (roller.motor_force > NEARLY * complete))
+    brakes = Roller(roller.loads, roller.law, roller.rows[locks])
+    beyond[locks] = brakes.torque(_forces_at(brakes, whole.high[locks])) > 0
     drives = np.flatnonzero(roller.motor_force < 0)
     spins = Roller(roller.loads, roller.law, roller.rows[drives])
     torque = spins.torque(_forces_at(spins, whole.low[drives]))

@@ -17,6 +17,7 @@ def balance(scene: Scene) -> eq.Equilibrium:
     """Return the equilibrium of the cases of a scene, arrays (n,).
 
     A model that offers a corrected law is solved with it. Rollers that do not settle so are solved with the law itself.
+    Where the law itself finds no balance, the last corrected one is kept, with its last correction as residual.
     """
     correction = scene.model.correction
     if correction is None:
@@ -41,5 +42,6 @@ def balance(scene: Scene) -> eq.Equilibrium:
     if unsettled.size:
         correction.forget(unsettled)
         own = solve_some(scene.loads, scene.mirror.law(scene.law), unsettled)
-        found = merged(found, unsettled, own, np.arange(unsettled.size))
+        solved = np.flatnonzero((own.regime != eq.FAILED) | (found.regime[unsettled] != eq.ROLLING))
+        found = merged(found, unsettled[solved], own, solved)
     return found
