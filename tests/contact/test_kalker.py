@@ -214,7 +214,7 @@ def test_scaling_of_lengths_leaves_the_problem_the_same():
     ("creep", "friction", "order", "error"),
     [((1e-4, 0.0, 0.03), 0.1, 1.8, 4e-4), ((0.001, 0.0, 0.003), 0.3, 0.9, 1e-2)],
 )
-@pytest.mark.long
+@pytest.mark.slow
 def test_observed_order_of_convergence(creep, friction, order, error):
     """Lateral force: second order where all slides, first with stick; and its error on 40, extrapolated."""
     settings = [KalkerSettings(elements=n, extrapolate=False) for n in (20, 40, 80, 160)]

@@ -54,8 +54,10 @@ def study(place, factors, base=None, models=MODELS, outputs=OUTPUTS, **more):
 
 
 def shown(gathered, place):
-    """Return the captions of the figures by name, and the text of the report without pictures."""
-    infos = draw_all(gathered, place / "figures")
+    """Return the captions of all figures by name, each rendered and not saved, and the text of the report."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(style, "save", lambda figure, out_dir, name: figure.draw_without_rendering())
+        infos = draw_all(gathered, place / "figures")
     text = write_report(gathered, place / "figures", place / "report.html").read_text(encoding="utf-8")
     return {i.name: i for i in infos}, re.sub(r'src="data[^"]*"', "", text)
 
