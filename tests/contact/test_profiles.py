@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import xarray as xr
 from reference_cases import solve_sliding
 
 import trackroller as tr
@@ -315,14 +316,19 @@ def test_a_groove_worn_hollow_carries_in_two_patches():
 
 def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
     """However the list is cut, alone or beside others."""
-    from trackroller.study.caselists import CaseList
     from trackroller.study.solve import solve_cases
 
     guide = text({"points": circle_points(6.0, high=3.5)})
     columns = {"contact_angle": np.array([50.0, 30.0, 55.0]), "guide_profile": np.array([guide] * 3, object)}
     options = {"outputs": ["forces"], "normal": "halfspace", "accuracy": "preview"}
-    cases = CaseList("x", np.array(["a", "b", "c"], "S32"), columns, options)
+    cases = xr.Dataset(
+        {name: ("case", column) for name, column in columns.items()}, {"case": np.array(["a", "b", "c"], "S32")}
+    )
+    cases.attrs["options"] = json.dumps(options)
     for rows in (np.arange(3), np.array([0]), np.array([0, 2])):
-        reasons = solve_cases(cases.take(rows), None).reasons
+        found = solve_cases(cases.isel(case=rows), None)
+        reasons = {
+            case.decode(): why for case, why in zip(found["case"].values, found["reason"].values, strict=True) if why
+        }
         assert set(reasons) == {"abc"[i] for i in rows if i != 1}
         assert all("guide_profile" in why and "inclined" in why for why in reasons.values())

@@ -20,6 +20,7 @@ from trackroller.errors import InputError
 from trackroller.study import store
 from trackroller.study.config import parse_study
 from trackroller.study.files import WorkError, write_whole
+from trackroller.study.identity import chunk_name
 from trackroller.study.plan import identify, working_plan
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
@@ -204,8 +205,8 @@ def test_damaged_part_of_an_unfinished_chunk_is_found_named_and_solved_again(tmp
 
     with pytest.raises(Stopped):
         run_study(parse_study(data), tmp_path, solver=solver)
-    parts = sorted((tmp_path / "s" / "parts").glob("*.nc"), key=lambda path: len(store.read(path).cases))
-    assert [len(store.read(path).cases) for path in parts] == [64, 256]
+    parts = sorted((tmp_path / "s" / "parts").glob("*.nc"), key=lambda path: len(store.check(path)))
+    assert [len(store.check(path)) for path in parts] == [64, 256]
     damage(parts[0])
     _, ds, lines = run(data, tmp_path)
     assert sum(n - 1 for n in solved().values()) == 64, "the cases of the damaged part"
@@ -349,21 +350,20 @@ def test_really_full_disk_and_then_resume(tmp_path, solved):
 
 
 def test_block_survives_the_file_and_damage_never_does(tmp_path):
-    block = store.failure(np.array([b"a" * 32, b"b" * 32]), "reason")
-    store.write(tmp_path / "x.nc", block)
-    again = store.read(tmp_path / "x.nc")
-    assert again.reasons == block.reasons and (again.values == block.values).all()
-    whole = (tmp_path / "x.nc").read_bytes()
+    cases = np.array([b"a" * 32, b"b" * 32])
+    block, sound = store.failure(cases, "reason"), tmp_path / f"{chunk_name(cases)}.nc"
+    store.write(sound, block)
+    xr.testing.assert_equal(store.read(sound), block)
+    whole = sound.read_bytes()
+    damaged = tmp_path / "damaged" / sound.name
+    damaged.parent.mkdir()
     rng = np.random.default_rng(1)
     for place in rng.integers(0, len(whole), 40):
         data = bytearray(whole)
         data[place] ^= 1 << int(rng.integers(8))
-        (tmp_path / "y.nc").write_bytes(data)
-        try:
-            found = store.read(tmp_path / "y.nc")
-        except store.CorruptFile:
-            continue
-        assert (found.values == block.values).all() and found.reasons == block.reasons
+        damaged.write_bytes(data)
+        with pytest.raises(store.CorruptFile):
+            store.read(damaged)
 
 
 def test_numbers_of_a_case_do_not_depend_on_its_neighbours():
@@ -378,6 +378,27 @@ def test_numbers_of_a_case_do_not_depend_on_its_neighbours():
             part = solve_sliding(design.isel(case=slice(start, start + size)))
             for name in whole.data_vars:
                 np.testing.assert_array_equal(part[name].values, whole[name].values[start : start + size], err_msg=name)
+
+
+def test_grids_of_different_sizes_are_joined_and_gathered_with_missing_ends(tmp_path):
+    """Contact models, and patches that are solved on a grid, bring tractions on grids of their own sizes."""
+
+    def solver(design, database=None, **options):
+        size = 3 if options["spin_model"] == "edge" else 5
+        grid = np.broadcast_to(np.arange(size, dtype=float), (design.sizes["case"], size))
+        return fake_solver.solve(design).assign(pressure=(("case", "x"), grid, {"units": "MPa", "long_name": "p"}))
+
+    study = parse_study(DATA | {"spin_model": ["edge", "skewed"]})
+    with xr.open_dataset(run_study(study, tmp_path, solver=solver).folder.gathered) as ds:
+        assert ds.sizes["x"] == 5 and not ds["pressure"].sel(spin_model="skewed").isnull().any()
+        short = ds["pressure"].sel(spin_model="edge")
+        assert (short[..., :3] == [0, 1, 2]).all() and short[..., 3:].isnull().all()
+    blocks = [
+        solver(xr.Dataset({n: ("case", [float(i)]) for n in DATA["factors"]}), spin_model=model)
+        for i, model in enumerate(("edge", "skewed"))
+    ]
+    joined = store.join(store.from_results(block, np.array([b"a", b"b"][i : i + 1])) for i, block in enumerate(blocks))
+    assert joined.sizes == {"case": 2, "contact": 2, "x": 5} and int(joined["pressure"].isnull().sum()) == 2
 
 
 SAMPLED = {

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+import shlex
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from trackroller.errors import InputError
@@ -96,3 +98,21 @@ def is_default(name: str, value: Any) -> bool:
     if isinstance(default, float) and isinstance(value, (int, float)):
         return float(value) == float(default)
     return value == default
+
+
+def setting_text(value: Any) -> str | None:
+    """Write a value as `--set` reads it; None for a value that is not given."""
+    if isinstance(value, (list, tuple)):
+        return ",".join(map(str, value)) or None
+    if isinstance(value, Mapping):
+        return json.dumps(value)
+    if value is None or value == "" or (isinstance(value, float) and math.isnan(value)):
+        return None
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def solve_command(settings: Mapping[str, Any]) -> str:
+    """Return the command that solves a case with these parameters and options."""
+    texts = {key: text for key, value in settings.items() if (text := setting_text(value)) is not None}
+    words = [word for key, text in texts.items() for word in ("--set", f"{key}={text}")]
+    return shlex.join(["trackroller", "solve", *words])

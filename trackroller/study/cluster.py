@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import math
 import os
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.study import store
-from trackroller.study.caselists import CaseList
 from trackroller.study.cost import rate
 from trackroller.study.files import WorkError
 from trackroller.study.solve import Executor, solve_cases
@@ -60,18 +61,18 @@ def _client(scheduler: str) -> Any:
         raise InputError("--scheduler", scheduler, why, remedy) from None
 
 
-def _solve(client: Any, cases: CaseList, database: Any) -> Iterator[store.Block]:
+def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset]:
     """Yield the blocks of a list; halve a batch that kills its workers until the responsible case is alone."""
     from distributed import KilledWorker, as_completed  # optional and slow to import, as dask is
 
     def submit(index: np.ndarray) -> Any:
-        future = client.submit(solve_cases, cases.take(index), database, pure=False)
+        future = client.submit(solve_cases, cases.isel(case=index), database, pure=False)
         waiting[future.key] = index
         return future
 
     waiting: dict[str, np.ndarray] = {}
-    count = len(cases.cases)
-    size = max(8, min(2000, math.ceil(BATCH_SECONDS * rate(cases.options))))
+    count = cases.sizes["case"]
+    size = max(8, min(2000, math.ceil(BATCH_SECONDS * rate(json.loads(cases.attrs["options"])))))
     batches = np.array_split(np.arange(count), max(1, math.ceil(count / size))) if count else []
     queue = as_completed([submit(index) for index in batches])
     for future in queue:
@@ -83,7 +84,7 @@ def _solve(client: Any, cases: CaseList, database: Any) -> Iterator[store.Block]
                 for half in np.array_split(index, 2):
                     queue.add(submit(half))
             else:
-                yield store.failure(cases.cases[index], "killed its worker process")
+                yield store.failure(cases["case"].values[index], "killed its worker process")
         except (InputError, WorkError):
             raise
         except Exception as exc:

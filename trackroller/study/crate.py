@@ -14,7 +14,7 @@ import functools
 import json
 import mimetypes
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,7 +28,7 @@ from trackroller.study.config import load_study
 from trackroller.study.design.build import table_path
 from trackroller.study.files import sha256, write_text, write_whole
 from trackroller.study.provenance import versions
-from trackroller.study.repeat import largest_difference
+from trackroller.study.repeat import compare
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -92,9 +92,17 @@ def _files(root: Path, *names: str) -> Iterator[str]:
         yield from (p.relative_to(root).as_posix() for p in found if p.is_file() and not p.name.startswith("."))
 
 
+def _entry(place: str, kind: str | list[str], **more: Any) -> dict[str, Any]:
+    return {"@id": place, "@type": kind, **more}
+
+
+def _references(names: Iterable[str]) -> list[dict[str, str]]:
+    return [{"@id": name} for name in names]
+
+
 def _file(root: Path, name: str) -> dict[str, Any]:
     path = root / name
-    entry: dict[str, Any] = {"@id": name, "@type": "File", "sha256": sha256(path), "contentSize": path.stat().st_size}
+    entry = _entry(name, "File", sha256=sha256(path), contentSize=path.stat().st_size)
     kind = "application/yaml" if path.suffix == ".yaml" else mimetypes.guess_type(name, strict=False)[0]
     if kind is not None:
         entry["encodingFormat"] = kind
@@ -104,63 +112,39 @@ def _file(root: Path, name: str) -> dict[str, Any]:
     return entry
 
 
-def _study_entries(study: Study, inputs: list[str], results: list[str], ended: str) -> list[dict[str, Any]]:
-    """Return the entries of the metadata file and of the study with the list of its files."""
-    return [
-        {
-            "@id": METADATA,
-            "@type": "CreativeWork",
-            "about": {"@id": "./"},
-            "conformsTo": {"@id": "https://w3id.org/ro/crate/1.1"},
-        },
-        {
-            "@id": "./",
-            "@type": "Dataset",
-            "name": f"Study '{study.name}' of track rollers",
-            "description": study.config.description or f"Results of the study {study.name}",
-            "datePublished": ended,
-            "license": {"@id": LICENCE},
-            "conformsTo": [{"@id": name} for name in PROFILES],
-            "mainEntity": {"@id": STUDY_FILE},
-            "mentions": {"@id": "#run"},
-            "hasPart": [{"@id": name} for name in (*inputs, *results)],
-        },
-    ]
-
-
 def _graph(study: Study, root: Path) -> list[dict[str, Any]]:
+    """Return the entries of the metadata file, the study, its run, the programs, the licence and every file."""
     inputs, results = list(_files(root, INPUTS)), list(_files(root, *RESULTS))
-    found = versions()
-    programs = [
-        {"@id": f"#{name}", "@type": "SoftwareApplication", "name": name, "softwareVersion": version}
-        for name, version in found.items()
-    ]
-    newest = max((root / name).stat().st_mtime for name in results)
-    ended = str(np.datetime64(int(newest), "s")) + "Z"
+    found, work = versions(), "CreativeWork"
+    ended = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
     return [
-        *_study_entries(study, inputs, results, ended),
-        {
-            "@id": "#run",
-            "@type": "CreateAction",
-            "name": "solve, analyse and report the study",
-            "endTime": ended,
-            "instrument": {"@id": STUDY_FILE},
-            "object": [{"@id": name} for name in inputs],
-            "result": [{"@id": name} for name in results],
-            "softwareRequirements": [{"@id": entry["@id"]} for entry in programs],
-        },
-        {
-            "@id": "#study-language",
-            "@type": "ComputerLanguage",
-            "name": "trackroller study file",
-            "version": found["trackroller"],
-        },
-        {"@id": LICENCE, "@type": "CreativeWork", "name": "MIT License", "identifier": "MIT"},
-        *(
-            {"@id": name, "@type": "CreativeWork", "name": f"Workflow Run Crate profile {name[28:]}"}
-            for name in PROFILES
+        _entry(METADATA, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
+        _entry(
+            "./",
+            "Dataset",
+            name=f"Study '{study.name}' of track rollers",
+            description=study.config.description or f"Results of the study {study.name}",
+            datePublished=ended,
+            license={"@id": LICENCE},
+            conformsTo=_references(PROFILES),
+            mainEntity={"@id": STUDY_FILE},
+            mentions={"@id": "#run"},
+            hasPart=_references((*inputs, *results)),
         ),
-        *programs,
+        _entry(
+            "#run",
+            "CreateAction",
+            name="solve, analyse and report the study",
+            endTime=ended,
+            instrument={"@id": STUDY_FILE},
+            object=_references(inputs),
+            result=_references(results),
+            softwareRequirements=_references(f"#{name}" for name in found),
+        ),
+        _entry("#study-language", "ComputerLanguage", name="trackroller study file", version=found["trackroller"]),
+        _entry(LICENCE, work, name="MIT License", identifier="MIT"),
+        *(_entry(name, work, name=f"Workflow Run Crate profile {name[28:]}") for name in PROFILES),
+        *(_entry(f"#{name}", "SoftwareApplication", name=name, softwareVersion=v) for name, v in found.items()),
         *(_file(root, name) for name in (*inputs, *results)),
     ]
 
@@ -224,19 +208,6 @@ def study_of_crate(root: Path | str) -> Study:
 
 
 def compare_results(before: Path, after: Path) -> dict[str, float]:
-    """Return the largest relative difference of each variable of two `study.nc`.
-
-    0 is the same to the last bit; a variable that one of the files lacks differs without bound.
-    """
+    """Return the largest relative difference of each variable of two `study.nc`, see `compare`."""
     with xr.open_dataset(before) as one, xr.open_dataset(after) as two:
-        names = sorted({*map(str, one.variables), *map(str, two.variables)})
-        return {name: _difference(one, two, name) for name in names}
-
-
-def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> float:
-    if name not in one.variables or name not in two.variables or one[name].shape != two[name].shape:
-        return np.inf
-    a, b = one[name].values, two[name].values
-    if a.dtype.kind not in "fc":
-        return 0.0 if np.array_equal(a, b) else np.inf
-    return largest_difference(a, b)
+        return compare(one, two)

@@ -54,7 +54,7 @@ class StudyFolder:
 
     def case_list(self, chunk: str) -> Path:
         """Return the cases of a chunk."""
-        return self.root / "plan" / f"{chunk}.npz"
+        return self.root / "plan" / f"{chunk}.nc"
 
     def mark(self, chunk: str) -> Path:
         """Return the empty file by which the workflow knows that a chunk is solved. It may be deleted at any time."""

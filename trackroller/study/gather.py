@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
+from collections.abc import Hashable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,14 +18,14 @@ from trackroller.roller.dataset import file_attributes
 from trackroller.study import provenance, store
 from trackroller.study.design.factors import Factor, readable
 from trackroller.study.files import StudyFolder, Tell, WorkError, record_checksum, write_whole
-from trackroller.study.inventory import Inventory, take_inventory
-from trackroller.study.plan import Plan, identify
+from trackroller.study.inventory import Inventory
+from trackroller.study.plan import Plan, locate
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
 
-MOST_MEMORY = 300_000_000  # bytes of results in memory; more results go through a temporary file
-Variables = dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
+MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
+Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
 
 
 def write_design(study: Study, folder: StudyFolder) -> None:
@@ -58,85 +60,88 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
 
     Notes
     -----
-    The time is proportional to the number of results. Above `MOST_MEMORY` the results pass through a temporary
+    The time is proportional to the number of results. A result above `MOST_MEMORY` passes through a temporary
     file in the study's folder.
     """
     study, folder = plan.study, plan.folder
-    design = study.design()
-    cases = identify(study, design)
     if not folder.design.is_file():
         write_design(study, folder)
-    found = take_inventory(folder)
-    place = found.find(cases)
+    design, found, place = locate(study, folder)
+    count = len(place)
     if missing := int((place < 0).sum()):
         damaged = "".join(f" Corrupt: {why}." for why in found.corrupt.values())
-        raise WorkError(f"{missing} of {len(cases)} cases are not solved.{damaged} Start the run again.")
-    numbers, first = np.unique(found.file[place], return_index=True)
-    headers = [found.headers[i] for i in numbers[np.argsort(first)]]
+        raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
     grid = study.drawn.factors if study.drawn.method == "grid" else {}
-    sizes = dict(zip(grid, study.drawn.meta["shape"], strict=True)) if grid else {"case": len(cases)}
-    layout = store.merged_layout(header.layout for header in headers)
-    why = {case.encode(): reason for case, reason in found.reasons.items()}
-    reasons = np.array([why.get(case, "") for case in cases.tolist()], dtype=object)
+    sizes = dict(zip(grid, study.drawn.meta["shape"], strict=True)) if grid else {"case": count}
 
     def save(beside: Path) -> None:
-        with tempfile.TemporaryFile(dir=folder.root) as scratch:
-            results = _results(_collect(scratch, layout, found, place), layout, sizes, reasons)
-            coords = _labels(study, design, sizes, grid)
-            for header in headers:
-                for name, entry in header.coords.items():
-                    into = coords if entry["coordinate"] else results
-                    values = np.asarray(entry["values"])
-                    into.setdefault(name, _variable(entry["dims"], values, entry["attrs"], into is coords))
-            attrs = _attributes(study, design, headers)
-            xr.Dataset(results, coords, attrs).to_netcdf(beside, engine="netcdf4")
+        results, more, attrs = _collect(found, place, folder.root)
+        unstacked = {
+            name: _variable((*sizes, *v.dims[1:]), v.values.reshape(*sizes.values(), *v.shape[1:]), v.attrs)
+            for name, v in results.items()
+        }
+        coords = _labels(study, design, sizes, grid)
+        for name, v in more.items():
+            coords.setdefault(name, _variable(v.dims, v.values, v.attrs, coordinate=True))
+        told = _attributes(study, design, attrs)
+        xr.Dataset(unstacked, coords, told).to_netcdf(beside, engine="netcdf4")
 
     write_whole(folder.gathered, save)
     record_checksum(folder, folder.gathered)
     if tell is not None:
-        tell(f"gathered {len(cases)} cases into {folder.gathered}")
+        tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered
 
 
-def _attributes(study: Study, design: xr.Dataset, headers: list[store.Block]) -> dict[str, Any]:
+def _attributes(study: Study, design: xr.Dataset, attrs: dict[str, Any]) -> dict[str, Any]:
     """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
     names = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
-    attrs: dict[str, Any] = {}
-    for header in headers:
-        attrs = header.attrs | attrs
-    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in study.factors}
+    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in {*study.factors, "seconds"}}
     return kept | provenance.attributes(study, names)
 
 
-def _results(
-    values: np.ndarray, layout: dict[str, store.Layout], sizes: dict[str, int], reasons: np.ndarray
-) -> Variables:
-    """Return the results of the cases, shape (columns, n), as variables, and the reasons of the failed ones."""
-    variables, start = {}, 0
-    for name, entry in layout.items():
-        part = values[start : start + entry.size].T.reshape(*sizes.values(), *entry.shape)
-        variables[name] = _variable((*sizes, *entry.dims), part.astype(entry.dtype, copy=False), entry.attrs)
-        start += entry.size
-    attrs = {"long_name": "why a case failed or misses its tolerance"}
-    return variables | {"reason": _variable(tuple(sizes), reasons.reshape(*sizes.values()), attrs)}
-
-
-def _collect(scratch: Any, layout: dict[str, store.Layout], found: Inventory, place: np.ndarray) -> np.ndarray:
-    """Return the results of the cases, shape (columns, n); each file is read once."""
-    shape = (sum(entry.size for entry in layout.values()), len(place))
-    if 8 * shape[0] * shape[1] <= MOST_MEMORY:
-        values = np.empty(shape)
-    else:
-        os.posix_fallocate(scratch.fileno(), 0, 8 * shape[0] * shape[1])  # a full disk must not end in SIGBUS
-        values = np.memmap(scratch, dtype=float, mode="r+", shape=shape)
-    order = np.argsort(found.file[place], kind="stable")
-    numbers, start = np.unique(found.file[place][order], return_index=True)
+def _collect(
+    found: Inventory, place: np.ndarray, scratch: Path
+) -> tuple[dict[Hashable, xr.Variable], dict[Hashable, xr.Variable], dict[str, Any]]:
+    """Return the results of the cases (n, ...), the coordinates of their other axes, and the solver's attributes."""
+    results: dict[Hashable, xr.Variable] = {}
+    coords: dict[Hashable, xr.Variable] = {}
+    attrs: dict[str, Any] = {}
+    file, row = (found.states[name].values[place] for name in ("file", "row"))
+    order = np.argsort(file, kind="stable")
+    numbers, start = np.unique(file[order], return_index=True)
     for number, rows in zip(numbers, np.split(order, start[1:]), strict=True):
         try:
-            block = store.read_named(found.paths[number])
+            block = store.read(found.paths[number])
         except (store.CorruptFile, FileNotFoundError) as exc:
             raise WorkError(f"corrupt results: {exc}. Start again: only its cases are solved.") from None
-        values[:, rows] = store.aligned(block, layout)[found.row[place[rows]]].T
+        attrs = block.attrs | attrs
+        coords = {name: v.variable for name, v in block.coords.items() if name != "case"} | coords
+        for name, v in block.data_vars.items():
+            known = results.get(name, v[:0].variable)
+            shape = (len(place), *np.maximum(known.shape[1:], v.shape[1:]))  # grids of different sizes
+            if known.shape != shape:
+                room = _room(shape, v.dtype, scratch)
+                room[tuple(map(slice, known.shape))] = known.values
+                results[name] = xr.Variable(v.dims, room, known.attrs)
+            into: Any = (rows, *map(slice, v.shape[1:]))
+            results[name].values[into] = v.values[row[rows]]
+            results[name].attrs = results[name].attrs or v.attrs
+    return results, coords, attrs
+
+
+def _room(shape: tuple[int, ...], dtype: np.dtype, folder: Path) -> np.ndarray:
+    """Return an array of missing values: NaN, 0 or ''. A large one lies in a temporary file."""
+    size = math.prod(shape) * dtype.itemsize
+    if dtype.kind in "OUT":
+        return np.full(shape, "", dtype=object)
+    missing = np.nan if dtype.kind == "f" else 0
+    if size <= MOST_MEMORY:
+        return np.full(shape, missing, dtype)
+    with tempfile.TemporaryFile(dir=folder) as file:
+        os.posix_fallocate(file.fileno(), 0, size)  # a full disk must not end in SIGBUS
+        values: np.ndarray = np.memmap(file, dtype, "r+", shape=shape)
+    values[...] = missing
     return values
 
 
@@ -178,8 +183,8 @@ def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.n
 
 
 def _variable(
-    dims: tuple[str, ...], values: np.ndarray, attrs: dict[str, Any], coordinate: bool = False
-) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any], dict[str, Any]]:
+    dims: tuple[Hashable, ...], values: np.ndarray, attrs: dict[str, Any], coordinate: bool = False
+) -> tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]:
     """Return dimensions, values, attributes and encoding of a variable of the file; only results have a fill value."""
     encoding: dict[str, Any] = {"coordinates": None}  # one attribute of the file lists all of them
     encoding["_FillValue"] = np.nan if values.dtype.kind == "f" and not coordinate else None

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.parameters import OPTIONS
@@ -23,82 +24,53 @@ class Inventory:
 
     Attributes
     ----------
-    cases : numpy.ndarray of dtype S32, shape (m,)
-        Fingerprints, in ascending order.
-    file, row : numpy.ndarray of int, shape (m,)
-        Index into `paths` and row in that file.
-    regime : numpy.ndarray of int, shape (m,)
-        Code of `REGIMES`.
+    states : xarray.Dataset
+        `regime` (code of `REGIMES`), `reason` of a failure, `file` (index into `paths`) and `row` in that file, along
+        `case` in ascending order of the fingerprints; the attribute `seconds` is the time spent on solving [s].
     paths : list of pathlib.Path
         Sound files.
-    headers : list of store.Block
-        For each file its layout, coordinates and attributes; the blocks have no rows.
-    reasons : dict
-        Why a case failed or misses its tolerance, by fingerprint.
     corrupt : dict
         Damaged files, and what is wrong with each.
-    seconds : float
-        Time spent on solving [s].
     """
 
-    cases: np.ndarray
-    file: np.ndarray
-    row: np.ndarray
-    regime: np.ndarray
+    states: xr.Dataset
     paths: list[Path]
-    headers: list[store.Block]
-    reasons: dict[str, str] = field(default_factory=dict)
-    corrupt: dict[Path, str] = field(default_factory=dict)
-    seconds: float = 0.0
+    corrupt: dict[Path, str]
 
     def find(self, wanted: np.ndarray) -> np.ndarray:
-        """Return the index of each wanted case in `cases`, shape (n,); -1 marks a case that is not solved."""
-        place = np.searchsorted(self.cases, wanted)
-        return np.where(np.append(self.cases, b"")[place] == wanted, place, -1)
-
-    def failed(self, place: np.ndarray) -> np.ndarray:
-        """Return whether the cases with the indices `place` (see `find`) are solved and failed, shape (n,)."""
-        return np.append(self.regime, -1)[place] == store.FAILED
+        """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
+        cases = self.states["case"].values
+        place = np.searchsorted(cases, wanted)
+        return np.where(np.append(cases, b"")[place] == wanted, place, -1)
 
 
 def take_inventory(folder: StudyFolder) -> Inventory:
     """Read every file with solved cases and verify its checksum."""
-    fingerprints, whole = np.empty(0, dtype="S32"), np.empty(0, dtype=int)
-    found = Inventory(fingerprints, whole, whole, whole, paths=[], headers=[])
-    cases, regimes = [], []
-    for path, block in store.read_sound(folder.solved_files(), found.corrupt):
-        cases.append(block.cases)
-        regimes.append(block.columns("regime")[:, 0].astype(int))
-        found.paths.append(path)
-        found.headers.append(block.take(np.empty(0, dtype=int)))
-        found.reasons |= block.reasons
-        found.seconds += block.seconds
-    if not cases:
-        return found
-    for each in (cases, regimes, found.paths, found.headers):
-        each.reverse()  # a complete chunk counts before a part of it
-    count = [len(part) for part in cases]
-    found.cases, first = np.unique(np.concatenate(cases), return_index=True)
-    found.file = np.repeat(np.arange(len(count)), count)[first]
-    found.row = np.concatenate([np.arange(n) for n in count])[first]
-    found.regime = np.concatenate(regimes)[first]
-    return found
+    corrupt: dict[Path, str] = {}
+    sound = list(store.read_sound(folder.solved_files(), corrupt, store.read_state))
+    sound.reverse()  # a complete chunk counts before a part of it
+    none = store.failure(np.empty(0, dtype="S32"), "")[["regime", "reason"]]
+    states = [none, *(state for _, state in sound)]
+    numbered = [
+        state.assign(file=("case", np.full(state.sizes["case"], i - 1)), row=("case", np.arange(state.sizes["case"])))
+        for i, state in enumerate(states)
+    ]
+    every = store.join(numbered)
+    _, first = np.unique(every["case"].values, return_index=True)
+    return Inventory(every.isel(case=first), [path for path, _ in sound], corrupt)
 
 
 def forget_failed(folder: StudyFolder, found: Inventory) -> int:
     """Remove the failed cases from the files, so that the next run solves them; return their number."""
-    count = 0
-    for number in np.unique(found.file[found.regime == store.FAILED]):
+    failed = found.states["file"].values[found.states["regime"].values == store.FAILED]
+    for number in np.unique(failed):
         path = found.paths[number]
-        block = store.read_named(path)
-        good = np.flatnonzero(~block.failed)
-        count += len(block.cases) - len(good)
-        kept = path
-        if len(good):
-            kept = store.write_part(folder, path.stem.partition("-")[0], block.take(good))
-        if kept != path or not len(good):
+        block = store.read(path)
+        good = block.isel(case=(block["regime"] != store.FAILED).values)
+        kept = store.write_part(folder, path.stem.partition("-")[0], good) if good.sizes["case"] else None
+        if kept != path:
             path.unlink(missing_ok=True)
-    return count
+    return len(failed)
 
 
 def check_default_model(study: Study, folder: StudyFolder) -> None:

@@ -21,9 +21,10 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
+from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import to_table
-from trackroller.study.caselists import CaseList, load_list, write_list
+from trackroller.study import store
 from trackroller.study.config import check_name
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import build, case_columns, table_path
@@ -34,6 +35,7 @@ from trackroller.study.files import (
     Tell,
     WorkError,
     matches_checksum,
+    sha256,
     sweep,
     try_lock,
     wait_for_lock,
@@ -42,7 +44,6 @@ from trackroller.study.files import (
 from trackroller.study.identity import chunk_name, fingerprints
 from trackroller.study.inventory import Inventory, check_default_model, forget_failed, take_inventory
 from trackroller.study.sources import solver_digest
-from trackroller.study.store import remove_corrupt
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -118,6 +119,12 @@ def identify(study: Study, design: xr.Dataset) -> np.ndarray:
     return fingerprints(table, *options, group=group)
 
 
+def locate(study: Study, folder: StudyFolder) -> tuple[xr.Dataset, Inventory, np.ndarray]:
+    """Return a study's design, its solved cases, and the index of each case of the design there; -1 if not solved."""
+    design, found = build(study), take_inventory(folder)
+    return design, found, found.find(identify(study, design))
+
+
 def chunk_size(study: Study, cases: int) -> int:
     """Return the number of cases of a chunk: some seconds of solving, and at least two chunks for two processors."""
     if study.config.chunk_size:
@@ -130,16 +137,11 @@ def chunk_size(study: Study, cases: int) -> int:
 
 def plan_key(study: Study) -> str:
     """Return the hash of everything that a plan depends on, found without drawing the design."""
-    digest = hashlib.sha256(f"{solver_digest()}\n{study.merged()}".encode())
-    names = sorted(study.materials.names())
-    for name in names:
-        digest.update(repr(study.materials.material(name)).encode())
-    for pair in ((a, b) for a in names for b in names):
-        with contextlib.suppress(ValueError):
-            digest.update(repr(study.materials.friction(*pair)).encode())
+    friction = sorted((sorted(pair), levels) for pair, levels in study.materials.friction_table.items())
+    told = [solver_digest(), study.merged(), sorted(study.materials.materials.items()), friction]
     if study.config.table is not None:
-        digest.update(Path(table_path(study)).read_bytes())
-    return digest.hexdigest()
+        told.append(sha256(Path(table_path(study))))
+    return hashlib.sha256(repr(told).encode()).hexdigest()
 
 
 @contextlib.contextmanager
@@ -220,7 +222,7 @@ def _repair_and_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed
             tell(f"{path} is truncated or was altered (its checksum differs): it is made anew")
             path.unlink()
     found = take_inventory(folder)
-    remove_corrupt(found.corrupt, tell)
+    store.remove_corrupt(found.corrupt, tell)
     sweep(folder)
     if rerun_failed:
         tell(f"{forget_failed(folder, found)} failed cases are solved again")
@@ -240,9 +242,9 @@ def _is_complete(plan: Plan, found: Inventory, tell: Tell) -> bool:
     sound = set(plan.uses) <= {path.name for path in found.paths}
     for name in plan.chunks:
         try:
-            load_list(plan.folder, name)
-        except WorkError as exc:
-            tell(str(exc))
+            store.check(plan.folder.case_list(name))
+        except (store.CorruptFile, FileNotFoundError) as exc:
+            tell(f"corrupt or missing case list, its cases are planned anew: {exc}")
             sound = False
     return sound
 
@@ -258,22 +260,24 @@ def _new_plan(study: Study, folder: StudyFolder, found: Inventory, tell: Tell) -
     place = found.find(wanted)
     missing = np.sort(first[place < 0])
     size = chunk_size(study, len(missing))
-    columns = {name: design[name].values for name in case_columns(design)}
+    fields = design[list(case_columns(design))].drop_attrs().drop_vars(list(design.coords))
+    # a value that all cases share is written once
+    fields = fields.map(lambda column: column[0] if all_equal(column.values) else column).assign_coords(case=cases)
     chunks: dict[str, int] = {}
     for number, told in enumerate(options):
         rows = missing[group[missing] == number]
         for part in np.array_split(rows, max(1, math.ceil(len(rows) / size))):
             if len(part):
                 name = chunk_name(cases[part])
-                write_list(folder, CaseList(name, cases[part], {k: v[part] for k, v in columns.items()}, told))
+                store.write(folder.case_list(name), fields.isel(case=part).assign_attrs(options=json.dumps(told)))
                 chunks[name] = len(part)
-    uses = sorted(found.paths[i].name for i in np.unique(found.file[place[place >= 0]]))
+    uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
     folder.design.unlink(missing_ok=True)
     write_text(folder.study_file, study.merged(whole_paths=True))
     data: dict[str, Any] = {"key": plan_key(study), "solver_digest": solver_digest(), "study": study.name}
     data |= {"size": len(cases), "distinct": len(wanted), "chunks": chunks, "uses": uses}
     write_text(folder.plan_file, json.dumps(data))
-    for path in (*folder.root.glob("plan/*.npz"), *folder.root.glob("plan/*.solved")):
-        if path.stem not in chunks:
+    for path in folder.lock.parent.iterdir():  # *.npz: lists of earlier versions of the program
+        if path.suffix in (".nc", ".npz", ".solved") and path.stem not in chunks:
             path.unlink(missing_ok=True)
     return Plan(study, folder, chunks, len(cases), len(wanted), tuple(uses))

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import dataclasses
-import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.parameters import PARAMETERS
+from trackroller.roller.record import solve_command
 from trackroller.study import store
-from trackroller.study.design.build import build, case_columns
+from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import with_history
 from trackroller.study.files import WorkError
-from trackroller.study.inventory import take_inventory
-from trackroller.study.plan import case_options, identify, study_folder
+from trackroller.study.plan import case_options, locate, study_folder
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -48,13 +47,7 @@ class Repeat:
 
     def command(self) -> str:
         """Return a command that solves the case without the study."""
-        words = ["trackroller", "solve"]
-        for key, value in (self.case | self.options).items():
-            if isinstance(value, (list, tuple)):
-                value = ",".join(value) or None
-            if value is not None and not (isinstance(value, float) and np.isnan(value)):
-                words += ["--set", f"{key}={value!r}" if isinstance(value, float) else f"{key}={value}"]
-        return " ".join(shlex.quote(word) for word in words)
+        return solve_command(self.case | self.options)
 
 
 def repeat_case(study: Study, number: int, results: Path | str = "results") -> Repeat:
@@ -85,27 +78,38 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
 
     folder = study_folder(study.name, results)
     study = with_history(study, folder)
-    design = build(study)
-    if not 0 <= number < design.sizes["case"]:
-        raise InputError("case", number, f"a case number from 0 to {design.sizes['case'] - 1}")
-    cases = identify(study, design)
-    options, group = case_options(study, design)
-    found = take_inventory(folder)
-    place = found.find(cases[[number]])[0]
-    if place < 0:
+    design, found, place = locate(study, folder)
+    if not 0 <= number < len(place):
+        raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
+    if place[number] < 0:
         raise WorkError("this case is not solved yet: run the study first.")
-    before = store.read_named(found.paths[found.file[place]]).take(found.row[[place]])
+    options, group = case_options(study, design)
+    state = found.states.isel(case=place[[number]])
+    before = store.read(found.paths[state["file"].item()]).isel(case=state["row"].values)
     row = design.drop_vars(list(design.coords)).isel(case=[number])
-    again = store.from_dataset(solve(row, database=study.materials, **options[group[number]]), cases[[number]])
-    after = dataclasses.replace(before, values=store.aligned(again, before.layout))
-    differences = {name: largest_difference(before.columns(name), after.columns(name)) for name in before.layout}
+    solved = solve(row, database=study.materials, **options[group[number]])
+    again = store.from_results(solved, state["case"].values)
+    differences = compare(before, store.join([before.isel(case=[]), again]))  # a failed case lacks results of others
     case = {name: row[name].values[0] for name in case_columns(row)}
     case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
     return Repeat(case, dict(options[group[number]]), differences)
 
 
-def largest_difference(old: np.ndarray, new: np.ndarray) -> float:
-    """Return the largest relative difference of two arrays of one shape; NaN in one of them alone counts as inf."""
+def compare(one: xr.Dataset, two: xr.Dataset) -> dict[str, float]:
+    """Return the largest relative difference of each variable of two data sets.
+
+    0 is the same to the last bit; a variable that one of them lacks differs without bound.
+    """
+    return {str(name): _difference(one, two, str(name)) for name in sorted({*one.variables, *two.variables}, key=str)}
+
+
+def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> float:
+    """Return the largest relative difference of a variable; NaN in one data set alone counts as inf."""
+    if name not in one.variables or name not in two.variables or one[name].shape != two[name].shape:
+        return np.inf
+    old, new = one[name].values, two[name].values
+    if old.dtype.kind not in "fc":
+        return 0.0 if np.array_equal(old, new) else np.inf
     same = (old == new) | (np.isnan(old) & np.isnan(new))
     if same.all():
         return 0.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import time
 from collections.abc import Callable, Iterator
@@ -9,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.errors import InputError, ShapeError
 from trackroller.roller.case import to_table
 from trackroller.study import store
-from trackroller.study.caselists import CaseList, list_is_gone, load_list
 from trackroller.study.files import StudyFolder, Tell, WorkError, locked
 from trackroller.study.identity import fingerprints
 
@@ -21,19 +22,26 @@ log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # a killed process loses at most the block that it works on
 SMALLEST_BLOCK, LARGEST_BLOCK = 16, 8192
 Solver = Callable[..., Any]
-Executor = Callable[[CaseList, Any], Iterator[store.Block]]  # solves the cases of a list, block by block
+Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases of a list, block by block
 
 
-def solve_cases(cases: CaseList, database: Any, solver: Solver | None = None) -> store.Block:
-    """Solve the cases of a list and return their results as one block.
+def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
+    """Return the cases of a chunk with all fields along `case`; raise `store.CorruptFile` if the list is damaged."""
+    cases = store.read(folder.case_list(name))
+    return cases.map(lambda column: column if column.dims else column.broadcast_like(cases["case"]))
 
-    If the solver raises, the list is halved until the responsible case is alone. That case becomes a row with
+
+def solve_cases(cases: xr.Dataset, database: Any, solver: Solver | None = None) -> xr.Dataset:
+    """Solve cases and return their results as one block.
+
+    If the solver raises, the cases are halved until the responsible case is alone. That case becomes a row with
     regime failed and the exception as its reason.
 
     Parameters
     ----------
-    cases : CaseList
-        The n cases.
+    cases : xarray.Dataset
+        Case fields along `case`, whose coordinate holds the fingerprints. The attribute `options` (JSON) has the
+        keyword arguments of `solve`.
     database : MaterialDatabase or None
         The materials; None takes the built-in ones and the user's.
     solver : callable, optional
@@ -41,8 +49,8 @@ def solve_cases(cases: CaseList, database: Any, solver: Solver | None = None) ->
 
     Returns
     -------
-    store.Block
-        Results of the n cases.
+    xarray.Dataset
+        Results of the cases, with the `seconds` that solving took as attribute.
 
     Raises
     ------
@@ -54,26 +62,27 @@ def solve_cases(cases: CaseList, database: Any, solver: Solver | None = None) ->
 
         solver = solve
     started = time.perf_counter()
-    blocks: list[store.Block] = []
+    options = json.loads(cases.attrs["options"])
+    blocks: list[xr.Dataset] = []
     pending = [cases]
     while pending:
         part = pending.pop()
+        names = part["case"].values
         try:
-            block = store.from_dataset(solver(part.design(), database=database, **part.options), part.cases)
-            if part.options.get("normal") == "halfspace" and len(part.cases) > 1:
-                for i in np.flatnonzero(block.failed):  # among others, the solver does not say which shapes are wrong
-                    block.reasons |= solve_cases(part.take(np.array([i])), database, solver).reasons
+            block = store.from_results(solver(part, database=database, **options), names)
+            if options.get("normal") == "halfspace" and len(names) > 1:
+                for i in np.flatnonzero(block["regime"] == store.FAILED):
+                    # among others, the solver does not say which shapes are wrong
+                    block["reason"][i] = solve_cases(part.isel(case=[i]), database, solver)["reason"].values[0]
             blocks.append(block)
         except Exception as exc:
             if isinstance(exc, (InputError, WorkError)) and not isinstance(exc, ShapeError):
                 raise
-            if len(part.cases) > 1:
-                pending += [part.take(rows) for rows in np.array_split(np.arange(len(part.cases)), 2)[::-1]]
+            if len(names) > 1:
+                pending += [part.isel(case=rows) for rows in np.array_split(np.arange(len(names)), 2)[::-1]]
             else:
-                blocks.append(store.failure(part.cases, _reason(exc)))
-    block = store.concatenate(blocks)
-    block.seconds = time.perf_counter() - started
-    return block
+                blocks.append(store.failure(names, _reason(exc)))
+    return store.join(blocks).assign_attrs(seconds=time.perf_counter() - started)
 
 
 def _reason(exc: Exception) -> str:
@@ -81,13 +90,12 @@ def _reason(exc: Exception) -> str:
     return text[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {text}"[:200]
 
 
-def solve_here(cases: CaseList, database: Any, solver: Solver | None = None) -> Iterator[store.Block]:
+def solve_here(cases: xr.Dataset, database: Any, solver: Solver | None = None) -> Iterator[xr.Dataset]:
     """Solve cases in this process, in blocks of about `BLOCK_SECONDS`."""
     start, size = 0, 64
-    while start < len(cases.cases):
-        rows = np.arange(start, min(start + size, len(cases.cases)))
+    while start < cases.sizes["case"]:
         begun = time.perf_counter()
-        yield solve_cases(cases.take(rows), database, solver)
+        yield solve_cases(cases.isel(case=slice(start, start + size)), database, solver)
         start += size
         spent = max(time.perf_counter() - begun, 1e-3)
         size = min(max(int(size * min(4.0, BLOCK_SECONDS / spent)), SMALLEST_BLOCK), LARGEST_BLOCK)
@@ -136,13 +144,13 @@ def solve_chunk(
             if folder.chunk(name).is_file():
                 folder.mark(name).touch()
                 return f"chunk {name}: already solved"
-            cases = load_list(folder, name)
-            _check_identity(cases, database)
+            cases = load_cases(folder, name)
+            _check_identity(name, cases, database)
             corrupt: dict[Path, str] = {}
             blocks = [block for _, block in store.read_sound(folder.parts(name), corrupt)]
             store.remove_corrupt(corrupt, tell)
-            finished = np.concatenate([np.empty(0, dtype="S32"), *(block.cases for block in blocks)])
-            missing = cases.take(np.flatnonzero(~np.isin(cases.cases, finished)))
+            finished = np.concatenate([np.empty(0, dtype="S32"), *(block["case"].values for block in blocks)])
+            missing = cases.isel(case=~np.isin(cases["case"].values, finished))
             if progress is not None:
                 progress(len(finished))
             started = time.perf_counter()
@@ -150,35 +158,32 @@ def solve_chunk(
                 store.write_part(folder, name, block)
                 blocks.append(block)
                 if progress is not None:
-                    progress(len(block.cases))
+                    progress(block.sizes["case"])
             spent = time.perf_counter() - started
-            return _summary(_complete(folder, cases, blocks), name, len(missing.cases), spent)
+            chunk = store.join(blocks).sel(case=cases["case"].values)
+            store.write(folder.chunk(name), chunk)
+            folder.mark(name).touch()
+            for path in folder.parts(name):
+                path.unlink(missing_ok=True)
+            return _summary(chunk, name, missing.sizes["case"], spent)
     except FileNotFoundError:
-        raise list_is_gone(folder, name) from None
+        why = "is missing: the study was edited and planned anew by another process"
+        raise WorkError(f"{folder.case_list(name)} {why}. Start again: every finished case is kept.") from None
+    except store.CorruptFile as exc:
+        raise WorkError(f"corrupt case list: {exc}. Start again: its cases are planned anew.") from None
 
 
-def _summary(chunk: store.Block, name: str, count: int, spent: float) -> str:
+def _summary(chunk: xr.Dataset, name: str, count: int, spent: float) -> str:
     speed = f", {count / spent:.0f} cases/s" if spent > 0 and count else ""
-    now = f"{count} solved now in {spent:.1f} s{speed}"
-    return f"chunk {name}: {len(chunk.cases)} cases, {now}, {int(chunk.failed.sum())} failed"
+    failed = int((chunk["regime"] == store.FAILED).sum())
+    return f"chunk {name}: {chunk.sizes['case']} cases, {count} solved now in {spent:.1f} s{speed}, {failed} failed"
 
 
-def _check_identity(cases: CaseList, database: Any) -> None:
+def _check_identity(name: str, cases: xr.Dataset, database: Any) -> None:
     """Raise `WorkError` unless the materials and the solver are those of the plan."""
-    if (fingerprints(to_table(cases.design(), database), cases.options) != cases.cases).any():
+    found = fingerprints(to_table(cases, database), json.loads(cases.attrs["options"]))
+    if (found != cases["case"].values).any():
         raise WorkError(
-            f"chunk {cases.name}: the materials or the solver changed after the study was planned. "
+            f"chunk {name}: the materials or the solver changed after the study was planned. "
             "Start the run again: it plans anew."
         )
-
-
-def _complete(folder: StudyFolder, cases: CaseList, blocks: list[store.Block]) -> store.Block:
-    """Write the blocks of a chunk in the order of its list, and remove the parts."""
-    block = store.concatenate(blocks)
-    ascending = np.argsort(block.cases, kind="stable")
-    block = block.take(ascending[np.searchsorted(block.cases[ascending], cases.cases)])
-    store.write(folder.chunk(cases.name), block)
-    folder.mark(cases.name).touch()
-    for path in folder.parts(cases.name):
-        path.unlink(missing_ok=True)
-    return block

@@ -14,11 +14,10 @@ from trackroller.materials.yaml_file import read_mapping
 from trackroller.parameters import REGIMES
 from trackroller.study.config import load_study, parse_study
 from trackroller.study.cost import study_rate
-from trackroller.study.design.build import build
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
-from trackroller.study.inventory import check_default_model, take_inventory
-from trackroller.study.plan import identify, study_folder
+from trackroller.study.inventory import check_default_model
+from trackroller.study.plan import locate, study_folder
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -113,20 +112,19 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     folder = study_folder(study.name, results)
     check_default_model(study, folder)
     study = with_history(study, folder)
-    cases = identify(study, build(study))
-    found = take_inventory(folder)
-    place = found.find(cases)
-    regime = found.regime[place[place >= 0]]
-    failed = np.flatnonzero(found.failed(place))
-    measured = found.seconds > 0
+    _, found, place = locate(study, folder)
+    solved = np.flatnonzero(place >= 0)
+    states = found.states.isel(case=place[solved])
+    bad = states["regime"].values == REGIMES.index("failed")
+    failed, seconds = solved[bad], found.states.attrs["seconds"]
     status = Status(
-        total=len(cases),
-        done=int((place >= 0).sum()),
+        total=len(place),
+        done=len(solved),
         failed=len(failed),
-        regimes={name: int((regime == code).sum()) for code, name in enumerate(REGIMES)},
-        by_reason=dict(Counter(found.reasons.get(cases[i].decode(), "unknown") for i in failed).most_common()),
-        speed=len(found.cases) / found.seconds if measured else study_rate(study),
-        measured=measured,
+        regimes={name: int((states["regime"] == code).sum()) for code, name in enumerate(REGIMES)},
+        by_reason=dict(Counter(states["reason"].values[bad].tolist()).most_common()),
+        speed=found.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
+        measured=seconds > 0,
         gathered=folder.gathered.is_file(),
         corrupt=list(found.corrupt.values()),
     )

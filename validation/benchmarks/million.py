@@ -24,11 +24,10 @@ import numpy as np
 import yaml
 
 from trackroller.study import store
-from trackroller.study.caselists import load_list
 from trackroller.study.config import load_study
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.plan import working_plan
-from trackroller.study.solve import solve_cases
+from trackroller.study.solve import load_cases, solve_cases
 from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -69,12 +68,11 @@ def hand_out() -> None:
         pass
     solved = None
     for name in made.chunks:
-        cases = load_list(made.folder, name)
+        cases = load_cases(made.folder, name)
         if solved is None:
-            solved = solve_cases(cases.take(np.arange(min(2048, len(cases.cases)))), made.study.materials)
-        block = solved.take(np.arange(len(cases.cases)) % len(solved.cases))
-        block.cases = cases.cases
-        store.write(made.folder.chunk(name), block)
+            solved = solve_cases(cases.isel(case=slice(2048)), made.study.materials)
+        block = solved.isel(case=np.arange(cases.sizes["case"]) % solved.sizes["case"])
+        store.write(made.folder.chunk(name), block.assign_coords(case=cases["case"]))
 
 
 def measured(words: list[str], place: Path) -> tuple[float, float, float]:

@@ -51,11 +51,11 @@ if os.environ.get("SURVIVE_LOG"):
         with open(os.environ["SURVIVE_LOG"], "ab", buffering=0) as stream:
             stream.write(b"".join(mark + case + b"\\n" for case in cases.tolist()))
     def batch(cases, *more, inner=solve.solve_cases, **named):
-        told(b"S", cases.cases)
+        told(b"S", cases["case"].values)
         return inner(cases, *more, **named)
     def part(folder, name, block, inner=store.write_part):
         path = inner(folder, name, block)
-        told(b"W", block.cases)
+        told(b"W", block["case"].values)
         return path
     solve.solve_cases, store.write_part = batch, part
 """
@@ -118,7 +118,7 @@ def finished(place: Path) -> set[bytes]:
     found: set[bytes] = set()
     for path in StudyFolder(results(place)).solved_files():
         try:
-            found |= set(store.read(path).cases.tolist())
+            found |= set(store.check(path).tolist())
         except FileNotFoundError:  # a process that is still alive has moved it
             continue
     return found

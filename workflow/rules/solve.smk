@@ -1,5 +1,5 @@
 # Write the design, solve the cases in chunks, gather the results into one file. Planning writes the case lists
-# plan/*.npz.
+# plan/*.nc.
 # The output of the rule solve is an empty mark: Snakemake deletes the outputs of a job that it repeats, and the solved
 # cases in chunks/ must survive that.
 localrules:
@@ -24,7 +24,7 @@ rule design:
 
 rule solve:
     input:
-        f"{RESULTS}/plan/{{chunk}}.npz",
+        f"{RESULTS}/plan/{{chunk}}.nc",
     output:
         f"{RESULTS}/plan/{{chunk}}.solved",
     log:

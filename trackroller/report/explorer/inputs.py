@@ -13,6 +13,7 @@ from trackroller.report.columns import study_dims
 from trackroller.report.explorer.rows import Column, coded
 from trackroller.report.numbers import plain
 from trackroller.report.view import StudyView
+from trackroller.roller.record import setting_text
 from trackroller.study.outputs import flat
 
 
@@ -37,7 +38,7 @@ def solve_inputs(ds: xr.Dataset, view: StudyView, known: dict[str, Column]) -> t
             if name not in known:
                 more.append(_input(name, flat(ds, name, tuple(dims))))
             settings.append([key, [name]])
-        elif (text := _text(_fixed(ds, view, name))) is not None and key != "shortcuts":
+        elif (text := setting_text(_fixed(ds, view, name))) is not None and key != "shortcuts":
             settings.append([key, text])
     return settings, more
 
@@ -55,17 +56,6 @@ def _fixed(ds: xr.Dataset, view: StudyView, name: str) -> Any:
     if name in OPTIONS:
         return view.study.get(name, ds.attrs.get(name))
     return view.study.get("base", {}).get(name, getattr(PARAMETERS.get(name), "default", None))
-
-
-def _text(value: Any) -> str | None:
-    """Write a value as `--set` reads it; None for a value that is not given."""
-    if isinstance(value, (list, tuple)):
-        return ",".join(map(str, value)) or None
-    if isinstance(value, dict):
-        return json.dumps(value)
-    if value is None or value == "" or (isinstance(value, float) and np.isnan(value)):
-        return None
-    return repr(value) if isinstance(value, float) else str(value)
 
 
 def strengths(ds: xr.Dataset) -> dict[str, list[float]]:

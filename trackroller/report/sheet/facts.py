@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -19,7 +17,7 @@ from trackroller.report.numbers import life, number, plain, rounded, unit_text
 from trackroller.report.view import BODIES
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.limits import Limits, limits
-from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of
+from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of, solve_command
 from trackroller.study.provenance import versions
 
 if TYPE_CHECKING:
@@ -138,15 +136,10 @@ def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str
 
 def command_of(ds: xr.Dataset) -> str:
     """Return the command that solves the case of a result again."""
-    words = ["trackroller", "solve"]
-    for name, value in inputs_of(ds).items():
-        if value is not None and not is_default(name, value):
-            text = json.dumps(value) if isinstance(value, Mapping) else str(value).removesuffix(".0")
-            words += ["--set", f"{name}={text}"]
-    for name in ("contact_model", "spin_model", "accuracy", "normal", "life_rule"):
-        if ds.attrs.get(name):
-            words += ["--set", f"{name}={ds.attrs[name]}"]
-    return " ".join(shlex.quote(word) for word in words)
+    given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
+    plain = {n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0") for n, v in given.items()}
+    named = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")
+    return solve_command(plain | {name: ds.attrs.get(name) for name in named})
 
 
 def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Material]) -> ContactFacts:
