@@ -18,16 +18,17 @@ _LEVELS = ("preview", "standard", "reference")
 _FORCES = {
     "sliding": (7e-4, 8e-4, 3.4e-3),
     "fastsim": (0.016, 0.04, 0.125),
-    "kalker": (2.5e-3, 0.01, 0.08),
+    "kalker": (2.5e-3, 0.01, 0.08),  # at preview with the table
     "kalker_table": (2.5e-3, 5e-3, 0.05),
-}  # kalker at preview uses the table
+    "halfspace": (0.9, 0.8, 6.0),  # patches solved on a grid, any contact model
+}
 _PEAKS = {
     "sliding": (1.4e-3, 1.8e-3, 8.5e-3),
     "fastsim": (2.5e-3, 7e-3, 0.013),
     "kalker": (3e-3, 4e-3, 0.15),
     "kalker_table": (3e-3, 0.01, 0.2),
+    "halfspace": (0.1, 0.25, 1.0),
 }
-_SOLVED_FORCES, _SOLVED_PEAKS = (0.9, 0.8, 6.0), (0.1, 0.25, 1.0)  # patches solved on a grid, any contact model
 _TRACTIONS, _SUBSURFACE = 1e-3, 0.1
 _BYTES = {
     "forces": 200,
@@ -43,18 +44,16 @@ _BYTES = {
 def rate(options: Mapping[str, Any]) -> float:
     """Return the expected cases a second on one core for keyword arguments of `solve`."""
     accuracy = options.get("accuracy", "standard")
-    if isinstance(accuracy, str):
-        level = _LEVELS.index(accuracy) if accuracy in _LEVELS else 1
+    if accuracy in _LEVELS:
+        level = _LEVELS.index(accuracy)
     else:
         level = 1 if accuracy >= 1e-3 else 2
-    groups, model = (
-        set(options.get("outputs", ("forces",))),
-        options.get("contact_model", OPTIONS["contact_model"].default),
-    )
-    solved = options.get("normal") == "halfspace"
-    seconds = (_SOLVED_FORCES if solved else _FORCES[model])[level]
+    groups = set(options.get("outputs", ("forces",)))
+    model = options.get("contact_model", OPTIONS["contact_model"].default)
+    model = "halfspace" if options.get("normal") == "halfspace" else model
+    seconds = _FORCES[model][level]
     if groups & {"peak_stress", "life", "subsurface"}:  # one search serves all
-        seconds += (_SOLVED_PEAKS if solved else _PEAKS[model])[level]
+        seconds += _PEAKS[model][level]
     seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
     return 1.0 / seconds
 

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.damage.fatigue import PROBABILITIES
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.materials.yaml_file import parse_mapping, read_text
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
@@ -120,9 +120,7 @@ class Spectrum:
         InputError
             If an entry is wrong; the error names block, field and value.
         """
-        for key in values:
-            if key not in FILE_FIELDS:
-                raise unknown_name("spectrum: key", str(key), FILE_FIELDS)
+        check_names("spectrum: key", values, FILE_FIELDS)
         blocks = values.get("blocks")
         if isinstance(blocks, str):
             blocks = _table(find_beside(blocks, "blocks"))
@@ -185,17 +183,10 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
     name = str(entry.get("name") or f"block {number}")
     where = f"block '{name}'"
-    for key in entry:
-        if key in BLOCK_FIELDS:
-            continue
-        if key in FIELDS:
-            raise InputError(
-                f"{where}.{key}",
-                entry[key],
-                "a load, because the roller is the same in all blocks of a spectrum",
-                "Give this field under `base`.",
-            )
-        raise unknown_name(f"{where}: field", str(key), BLOCK_FIELDS)
+    for key in (key for key in entry if key in FIELDS and key not in BLOCK_FIELDS):
+        allowed = "a load, because the roller is the same in all blocks of a spectrum"
+        raise InputError(f"{where}.{key}", entry[key], allowed, "Give this field under `base`.")
+    check_names(f"{where}: field", entry, BLOCK_FIELDS)
     if "distance" not in entry:
         raise InputError(f"{where}.distance", None, "the distance travelled per shift in m", "Add it to the block.")
     overrollings = entry.get("guide_overrollings")

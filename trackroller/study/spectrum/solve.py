@@ -148,7 +148,14 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
             meta = _attrs(unit, f"{words} {to}", f"L_{name[0].upper() if name == 'shifts' else name[0]},{index}")
             variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
     variables |= _loads(spectrum, database)
-    found = _labelled(spectrum, variables, solved, _scattered(spectrum, stress, cycles, bodies, rule), rule)
+    if any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
+        levels = spectrum.failure_probabilities
+        sums = [damage_per_shift(stress, cycles, bodies, rule, p)[1].sum(axis=0) for p in levels]
+        lives = miner.repetitions_to_failure(np.stack(sums), spectrum.critical_damage)
+        meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
+        known = {"probability": ("probability", list(levels), {"units": "1", "long_name": "failure probability"})}
+        variables["life_shifts_at_probability"] = xr.DataArray(lives, known, ("probability", *_CB), attrs=meta)
+    found = _labelled(spectrum, variables, solved, rule)
     roller = {name: value for name, value in plain_inputs(case).items() if name not in LOAD_FIELDS}
     return found.assign_attrs(roller=json.dumps(roller), materials=json.dumps(material_values(case, database)))
 
@@ -168,37 +175,12 @@ def _attrs(units: str, long_name: str, symbol: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name, "symbol": symbol}
 
 
-def _scattered(
-    spectrum: Spectrum, stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str
-) -> np.ndarray | None:
-    """Return shifts to failure at each failure probability, (probability, contact, body); None without scatter."""
-    if not any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
-        return None
-    lives = [
-        miner.repetitions_to_failure(
-            damage_per_shift(stress, cycles, bodies, rule, p)[1].sum(axis=0), spectrum.critical_damage
-        )
-        for p in spectrum.failure_probabilities
-    ]
-    return np.stack(lives)
-
-
-def _labelled(
-    spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset, scattered: np.ndarray | None, rule: str
-) -> xr.Dataset:
-    coords: dict[str, Any] = {
+def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset, rule: str) -> xr.Dataset:
+    coords = {
         "block": ("block", [b.name for b in spectrum.blocks], {"long_name": "block of the spectrum"}),
         "contact": solved["contact"],
         "body": solved["body"],
     }
-    if scattered is not None:
-        coords["probability"] = (
-            "probability",
-            list(spectrum.failure_probabilities),
-            {"units": "1", "long_name": "failure probability"},
-        )
-        meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
-        variables["life_shifts_at_probability"] = (("probability", *_CB), scattered, meta)
     for name in ("regime", "converged", "validity", "validity_body"):
         if name in solved:
             dims = ("block", "body")[: solved[name].ndim]
