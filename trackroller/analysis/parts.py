@@ -83,21 +83,26 @@ def of_groups(
     names = list(design.factors)
     places = [tuple(names.index(name) for name in members) for members in groups.values()]
     if design.method == "grid":
-        table = y.reshape(design.meta["shape"])
-        part = table[np.ix_(*complete_part(table))]
-        rest = [tuple(j for j in range(len(names)) if j not in group) for group in places]
-        first, total = ([variance_share(part, group) for group in which] for which in (places, rest))
-        return {"group_S1": np.array(first), "group_ST": 1 - np.array(total)}
+        first, total, _ = _grid_indices(y.reshape(design.meta["shape"]), places)
+        return {"group_S1": first, "group_ST": total}
     second, columns = bool(design.meta["second_order"]), len(names)
     sets = [as_set(group) for group in places]
     if exchanged := design.meta.get("groups"):
         columns = len(exchanged)
         sets = [1 << exchanged.index(name) for name in groups]
-    block = y.reshape(-1, 2 * columns + 2 if second else columns + 2)
+    block = y.reshape(int(design.meta["base_samples"]), -1)
     block = block[np.isfinite(block).all(axis=1)]
     whole = (1 << columns) - 1
     drawn = closed_indices(block, columns, second, [*sets, *(whole ^ one for one in sets)], seed, resamples)
     return with_bounds("group_S1", drawn[:, : len(sets)]) | with_bounds("group_ST", 1 - drawn[:, len(sets) :])
+
+
+def _grid_indices(table: np.ndarray, groups: Sequence[tuple[int, ...]]) -> tuple[np.ndarray, np.ndarray, int]:
+    """Return first-order and total indices of groups of a grid's axes, and the number of cells behind them."""
+    part = table[np.ix_(*complete_part(table))]
+    rest = [tuple(j for j in range(table.ndim) if j not in group) for group in groups]
+    first, others = (np.array([variance_share(part, axes) for axes in which]) for which in (groups, rest))
+    return first, 1 - others, part.size
 
 
 def within_levels(
@@ -139,12 +144,9 @@ def _grid_level(
 ) -> Estimates:
     shape = tuple(size for j, size in enumerate(design.meta["shape"]) if j != place)
     table = y[inside].reshape(shape)  # the other factors keep their order
-    part = table[np.ix_(*complete_part(table))]
-    axes = range(len(shape))
-    first = np.array([variance_share(part, (j,)) for j in axes])
-    total = 1 - np.array([variance_share(part, tuple(i for i in axes if i != j)) for j in axes])
+    first, total, cells = _grid_indices(table, [(j,) for j in range(len(shape))])
     none = np.full(len(shape) + 1, np.nan)
-    out: Estimates = {"conditional_rows": np.array(part.size)}
+    out: Estimates = {"conditional_rows": np.array(cells)}
     for name, values in (("conditional_S1", first), ("conditional_ST", total)):
         out |= {name: _spread(values, place), f"{name}_low": none, f"{name}_high": none}
     return out
@@ -160,19 +162,18 @@ def _saltelli_level(
     """
     count = len(design.factors)
     second = bool(design.meta["second_order"])
-    step = 2 * count + 2 if second else count + 2
-    block, inside = y.reshape(-1, step), inside.reshape(-1, step)
+    block, inside = (values.reshape(int(design.meta["base_samples"]), -1) for values in (y, inside))
     others = np.delete(np.arange(count), place)
     if second:
         of_a, of_b = np.flatnonzero(inside[:, 0]), np.flatnonzero(inside[:, -1])
         rows = [
             block[of_a][:, np.r_[0, 1 + others, 1 + count + place]],
-            block[of_b][:, np.r_[step - 1, 1 + count + others, 1 + place]],
+            block[of_b][:, np.r_[-1, 1 + count + others, 1 + place]],
         ]
         cluster = np.concatenate([of_a, of_b])
     else:
         cluster = np.flatnonzero(inside[:, 0] & inside[:, -1])
-        rows = [block[cluster][:, np.r_[0, 1 + others, step - 1]]]
+        rows = [block[cluster][:, np.r_[0, 1 + others, -1]]]
     part = np.concatenate(rows)
     good = np.isfinite(part).all(axis=1)
     part, cluster = part[good], cluster[good]

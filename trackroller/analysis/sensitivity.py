@@ -65,18 +65,19 @@ class Found(NamedTuple):
 def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     groups, second = design.meta.get("groups"), bool(design.meta["second_order"])
     count = len(groups or design.factors)
-    step = 2 * count + 2 if second else count + 2
+    blocks = int(design.meta["base_samples"])
+    block = y.reshape(blocks, -1)
     # rows of A and B only: their mixtures repeat coordinates, so they are not independent rows
-    row = np.arange(len(y)) % step
-    own = np.where((row == 0) | (row == step - 1), y, np.nan)
-    measures = ("first", *how.measures) if groups else how.measures  # single factors have no other index
-    given = given_data(own, design.places, design.ordered, how.seed, tuple(dict.fromkeys(measures)), how.resamples)
+    own = np.full_like(block, np.nan)
+    own[:, [0, -1]] = block[:, [0, -1]]
+    # single factors have no other index beside those of groups
+    measures = tuple(dict.fromkeys(("first", *how.measures) if groups else how.measures))
+    given = given_data(own.ravel(), design.places, design.ordered, how.seed, measures, how.resamples)
     if groups:
-        whole = int(np.isfinite(y.reshape(-1, step)).all(axis=1).sum())
-        return Found(given, whole, len(y) // step)
+        return Found(given, int(np.isfinite(block).all(axis=1).sum()), blocks)
     out = sobol(y, count, second, how.seed, how.resamples)
-    at = convergence.sizes(int(design.meta["base_samples"]))
-    lean = y.reshape(-1, step)[:, np.r_[0 : count + 1, step - 1]]  # the course needs no second order
+    at = convergence.sizes(blocks)
+    lean = block[:, np.r_[0 : count + 1, -1]]  # the course needs no second order
 
     def part(blocks: int) -> indices.Estimates:
         return sobol(lean[:blocks].ravel(), count, False, how.seed, how.resamples)

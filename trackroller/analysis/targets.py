@@ -131,8 +131,7 @@ def _of_rows(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list
     """Return the levels of the factors, and the probabilities over all rows and at each level."""
     rows = np.arange(design.size)
     if design.method == "saltelli":  # rows of A and B; their mixtures repeat coordinates
-        step = design.size // int(design.meta["base_samples"])
-        rows = rows[(rows % step == 0) | (rows % step == step - 1)]
+        rows = rows.reshape(int(design.meta["base_samples"]), -1)[:, [0, -1]].ravel()
     levels = [level for name, f in design.factors.items() for level in _levels(f, design.columns[name][rows])]
     hits = hits[rows]
     strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
@@ -184,9 +183,9 @@ def _coordinates(
         "target_units": ("target", np.array(units, dtype=str)),
         "target_min": ("target", np.array([limit.get("min", np.nan) for limit in limits], dtype=float)),
         "target_max": ("target", np.array([limit.get("max", np.nan) for limit in limits], dtype=float)),
-        "level_factor": ("target_level", np.array([level.factor for level in levels], dtype=str)),
-        "level_low": ("target_level", np.array([level.low for level in levels], dtype=float)),
-        "level_high": ("target_level", np.array([level.high for level in levels], dtype=float)),
-        "level_text": ("target_level", np.array([level.text for level in levels], dtype=str)),
+        **{
+            f"level_{key}": ("target_level", np.array([getattr(level, key) for level in levels], dtype=kind))
+            for key, kind in (("factor", str), ("low", float), ("high", float), ("text", str))
+        },
         "level_rows": ("target_level", np.array([level.rows.sum() for level in levels], dtype=int)),
     }
