@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ndtri
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.materials.sn_curve import curve_exponent
 from trackroller.parameters import LIFE_RULES
 
@@ -180,8 +180,7 @@ def _at_probability(
     curve: SNCurve, rule: str, probability: ArrayLike, *scatter: float | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the knee (sigma_D, N_k) at the failure probability, and the exponent k of a curve."""
-    if rule not in LIFE_RULES:
-        raise unknown_name("life_rule", rule, LIFE_RULES)
+    check_names("life_rule", [rule], LIFE_RULES)
     k = woehler_exponent(curve)
     limit, knee = np.asarray(curve.fatigue_limit, dtype=float), np.asarray(curve.n_k, dtype=float)
     if np.any(np.asarray(probability) != 0.5):

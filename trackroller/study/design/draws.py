@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.materials.yaml_file import read_text
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
@@ -154,8 +154,7 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         raise InputError(
             "factors", list(free), allowed, "Give one factor a distribution such as {normal: [0.1, 0.02]}."
         )
-    if settings["inner"] not in ("lhs", "sobol"):
-        raise unknown_name("design option inner", settings["inner"], ("lhs", "sobol"))
+    check_names("design option inner", [settings["inner"]], ("lhs", "sobol"))
     drawn, sample, more = _random(settings["inner"], inner, n, seed, settings)
     points, index, meta = _grid(outer, 0, 0, {}) if outer else ({}, np.zeros((1, 0)), {"shape": ()})
     count = len(index)

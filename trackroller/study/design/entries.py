@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
-from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.errors import InputError, check_names, nearest, unknown_name
 from trackroller.numerics import expressions
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS
@@ -88,8 +88,7 @@ def base_value(key: Any, value: Any) -> Any:
     ------
     InputError : unknown field, or a value outside its bounds
     """
-    if key not in (*CASE_FIELDS, "material_pair"):
-        raise unknown_name("base", str(key), (*CASE_FIELDS, "material_pair"))
+    check_names("base", [key], (*CASE_FIELDS, "material_pair"))
     return _value(key, value, f"base.{key}")
 
 

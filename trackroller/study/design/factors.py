@@ -29,7 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names
 from trackroller.numerics import expressions
 
 DISTRIBUTIONS = {"uniform": 2, "loguniform": 2, "normal": 2, "truncnormal": 4, "triangular": 3}
@@ -121,10 +121,11 @@ class Factor:
         if self.kind == "loguniform":
             low, high = self.numbers
             return low * (high / low) ** unit
-        if self.kind == "triangular":
-            return _triangular(unit, *self.numbers)
-        from scipy.stats import norm, truncnorm  # heavy, and grids of values do not need it
+        from scipy.stats import norm, triang, truncnorm  # heavy, and grids of values do not need it
 
+        if self.kind == "triangular":
+            low, mode, high = self.numbers
+            return triang.ppf(unit, (mode - low) / (high - low), low, high - low)
         mean, deviation, *ends = self.numbers
         if self.kind == "normal":
             cut = max(tail, 1e-9)
@@ -191,9 +192,7 @@ def parse(name: str, spec: Any) -> Factor:
     scatter = spec.get("scatter")
     if not (scatter is None or isinstance(scatter, bool)):
         raise InputError(f"{field}.scatter", scatter, "true or false")
-    for key in spec:
-        if key not in (*KINDS, "scatter", "weights"):
-            raise unknown_name(f"{field} key", key, (*KINDS, "scatter", "weights"))
+    check_names(f"{field} key", spec, (*KINDS, "scatter", "weights"))
     keys = [key for key in spec if key in KINDS]
     if len(keys) != 1:
         raise InputError(field, dict(spec), f"exactly one of {', '.join(KINDS)}")
@@ -268,10 +267,3 @@ def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
     if len({repr(v) for v in levels}) < len(levels):
         raise InputError(where, value, "each value once", "Remove the repeated value.")
     return tuple(levels)
-
-
-def _triangular(unit: np.ndarray, low: float, mode: float, high: float) -> np.ndarray:
-    share = (mode - low) / (high - low)
-    rising = low + np.sqrt(unit * (high - low) * (mode - low))
-    falling = high - np.sqrt((1 - unit) * (high - low) * (high - mode))
-    return np.where(unit < share, rising, falling)

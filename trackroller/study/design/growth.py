@@ -5,10 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import TYPE_CHECKING
 
-from trackroller.errors import InputError
-from trackroller.materials.yaml_file import parse_yaml
 from trackroller.study.design.grown_lhs import check_sizes
-from trackroller.study.design.sampling import current_name
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -30,17 +27,15 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
     The study with `grown_from`, if it is a Latin hypercube whose factors, rank correlations, seed and design are
     unchanged. Otherwise the study as it is.
     """
-    config, old = study.config, folder.earlier()
+    config = study.config
     lhs = config.design == "lhs" or (config.design == "inner_outer" and config.inner in (None, "lhs"))
-    if not lhs or config.grown_from or not old:
-        return study
-    now = parse_yaml(study.merged(), "study")
-    old["design"] = current_name(str(old.get("design")))
-    if any((old.get(key) or None) != (now.get(key) or None) for key in SAME):
+    if not lhs or config.grown_from:
         return study
     try:
-        sizes = [*old.get("grown_from", ()), int(old["samples"])]
-        earlier = check_sizes([s for s in sizes if s < config.samples], config.samples)
-    except (InputError, KeyError, TypeError, ValueError):
+        old = type(config).model_validate(folder.earlier())
+        earlier = check_sizes([s for s in (*(old.grown_from or ()), old.samples) if s < config.samples], config.samples)
+    except ValueError:
         return study
-    return dataclasses.replace(study, config=config.model_copy(update={"grown_from": earlier})) if earlier else study
+    if not earlier or any(getattr(old, key) != getattr(config, key) for key in SAME):
+        return study
+    return dataclasses.replace(study, config=config.model_copy(update={"grown_from": earlier}))

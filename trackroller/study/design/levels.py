@@ -18,19 +18,17 @@ EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
 
 
 def short(name: str, value: Any) -> str:
-    """Return a short text for a text level of a factor.
+    """Return a short text for a level of a factor whose values are mappings.
 
     Parameters
     ----------
-    name : name of the factor
-    value : its value: a text (for a mapping its canonical JSON, or '') or a mapping
+    name : name of the factor, one of `MAPPING_FIELDS`
+    value : a mapping, or its canonical JSON, or ''
 
     Returns
     -------
-    A description of a mapping, such as 'linear to 0.3 at 50 mm/s'; any other text as it is.
+    A description of the mapping, such as 'linear to 0.3 at 50 mm/s'.
     """
-    if name not in MAPPING_FIELDS:
-        return str(value)
     try:
         told = value if isinstance(value, Mapping) else json.loads(str(value) or "{}")
         return _law(told) if name == "friction_law" else _profile(told)

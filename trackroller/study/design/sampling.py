@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.numerics import expressions
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design.draws import DRAW, MAX_ROWS, table
@@ -180,8 +180,7 @@ def sample(
 
 
 def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    if method not in METHODS:
-        raise unknown_name("design", method, METHODS)
+    check_names("design", [method], METHODS)
     settings: dict[str, Any] = {**OPTIONS.get(method, {})}
     for key, value in options.items():
         if key not in settings:
