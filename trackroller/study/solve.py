@@ -161,7 +161,7 @@ def solve_chunk(
                     progress(block.sizes["case"])
             spent = time.perf_counter() - started
             chunk = store.join(blocks).sel(case=cases["case"].values)
-            store.write(folder.chunk(name), chunk)
+            store.write(folder.chunk(name), chunk, packed=True)
             folder.mark(name).touch()
             for path in folder.parts(name):
                 path.unlink(missing_ok=True)

@@ -72,7 +72,7 @@ def hand_out() -> None:
         if solved is None:
             solved = solve_cases(cases.isel(case=slice(2048)), made.study.materials)
         block = solved.isel(case=np.arange(cases.sizes["case"]) % solved.sizes["case"])
-        store.write(made.folder.chunk(name), block.assign_coords(case=cases["case"]))
+        store.write(made.folder.chunk(name), block.assign_coords(case=cases["case"]), packed=True)
 
 
 def measured(words: list[str], place: Path) -> tuple[float, float, float]:
