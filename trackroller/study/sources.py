@@ -155,31 +155,19 @@ def _split(source: str, docstring: str = "") -> tuple[str, list[str]]:
 
 @cache
 def _closure(modules: tuple[str, ...]) -> tuple[Path, ...]:
+    for name in modules:
+        if _file_of(name) is None:
+            raise ModuleNotFoundError(f"no module {name!r} in {PACKAGE.parent}", name=name)
     roots = {PACKAGE.name, *(name.partition(".")[0] for name in modules)}
     found: set[Path] = set()
-    pending = []
-    for name in modules:
-        path = _file_of(name)
-        if path is None:
-            raise ModuleNotFoundError(f"no module {name!r} in {PACKAGE.parent}", name=name)
-        pending.append((name, path))
-    seen = set()
+    pending, seen = list(modules), {PACKAGE.name}
     while pending:
-        name, path = pending.pop()
-        if name in seen:
-            continue
+        name = pending.pop()
+        path = _file_of(name) if name not in seen and name.partition(".")[0] in roots else None
         seen.add(name)
-        parts = name.split(".")
-        for above in (".".join(parts[:i]) for i in range(1, len(parts))):
-            init = _file_of(above)
-            if above != PACKAGE.name and init is not None:
-                pending.append((above, init))
-        found.add(path)
-        for other in _names(path, name):
-            target = _file_of(other) if other.partition(".")[0] in roots else None
-            if target is not None and other != PACKAGE.name:
-                pending.append((other, target))
-        found.update(_data_of(path))
+        if path is not None:
+            found |= {path, *_data_of(path)}
+            pending += [name.rpartition(".")[0], *_names(path, name)]  # the package above counts as well
     return tuple(sorted(found))
 
 

@@ -8,6 +8,7 @@ are random pairs of different values, and in response-surface designs they are c
 
 from __future__ import annotations
 
+import graphlib
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -211,24 +212,23 @@ def _derived(
     parsed: Mapping[str, Factor], columns: Mapping[str, np.ndarray], base: dict[str, Any], rows: int
 ) -> dict[str, np.ndarray]:
     """Evaluate the expressions, each after the expressions that it needs."""
-    pending = {name: f.text for name, f in parsed.items() if f.kind == "expression"}
+    texts = {name: f.text for name, f in parsed.items() if f.kind == "expression"}
     defaults = {name: p.default for name, p in PARAMETERS.items()}
-    known: dict[str, Any] = {**defaults, **base, **columns}
-    for name in pending:
-        known.pop(name, None)
+    known = {name: value for name, value in {**defaults, **base, **columns}.items() if name not in texts}
+    needs = graphlib.TopologicalSorter({name: expressions.names(text) & {*texts} for name, text in texts.items()})
     out: dict[str, np.ndarray] = {}
-    while pending:
-        ready = [n for n, text in pending.items() if not expressions.names(text) & set(pending)]
-        if not ready:
-            name, text = next(iter(pending.items()))
-            allowed = "expressions must not need each other in a circle: " + ", ".join(pending)
-            raise InputError(f"factors.{name}.expression", text, allowed)
-        for name in ready:
-            value = expressions.evaluate(pending.pop(name), known, f"factors.{name}.expression")
-            known[name] = out[name] = np.broadcast_to(value, (rows,)).copy()
-            if bad := int(np.isnan(out[name]).sum()):
-                allowed = f"it is not a number in {bad} of {rows} rows"
-                raise InputError(f"factors.{name}.expression", parsed[name].text, allowed)
+    try:
+        order = list(needs.static_order())
+    except graphlib.CycleError as exc:
+        name, *circle = exc.args[1]
+        allowed = "expressions must not need each other in a circle: " + ", ".join(circle)
+        raise InputError(f"factors.{name}.expression", texts[name], allowed) from None
+    for name in order:
+        value = expressions.evaluate(texts[name], known, f"factors.{name}.expression")
+        known[name] = out[name] = np.broadcast_to(value, (rows,)).copy()
+        if bad := int(np.isnan(out[name]).sum()):
+            allowed = f"it is not a number in {bad} of {rows} rows"
+            raise InputError(f"factors.{name}.expression", texts[name], allowed)
     return out
 
 
