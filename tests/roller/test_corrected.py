@@ -157,7 +157,7 @@ def test_a_correction_that_loses_the_balance_is_followed_by_the_elements():
 
 
 def test_braking_ends_at_the_complete_friction_of_the_law():
-    """Table and elements reach the complete friction within their error; a larger force means full slip, not failure."""
+    """Table and elements reach the complete friction within their error; beyond it the roller slips."""
     complete = 0.2 * 200.0 / np.cos(np.deg2rad(30.0))
     shares = 1.0 - np.array([1e-5, 1e-6, 1e-9, -1e-9])
     cases = [tr.Case(**STEEL, axial_force=30.0, motor_force=share * complete) for share in shares]

@@ -39,8 +39,8 @@ def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Eq
     found : Equilibrium
         The equilibrium.
     rows : numpy.ndarray of int, shape (m,)
-        Rollers whose last correction was larger than `SETTLED`, which is their residual then, rollers that a correction has stopped rolling, and
-        rollers for which the cheap law has no balance.
+        Rollers whose last correction was larger than `SETTLED`, which is their residual then; rollers that a
+        correction has stopped rolling; and rollers for which the cheap law has no balance.
     """
     found = solve_equilibrium(loads, law)
     rows = _rolling(found, loads, np.arange(loads.friction.size))
