@@ -129,11 +129,11 @@ def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
     assert explorer(sampled_study(40))["sampled"] == ""
 
 
-def test_the_pareto_set_is_found_in_the_order_of_the_data_set():
-    """The study file names its factors in another order than the data set has dimensions."""
+def test_the_pareto_set_marks_the_rows_of_the_data_set():
+    """Gathered dimensions stand in the order of the study file, here not that of the alphabet."""
     ds = grid_study({"velocity": [1.0, 2.0], "friction_coefficient": [0.1, 0.2, 0.3], "axial_force": [0.0, 30.0]})
     goals = {"roller_life_hours": "max", "friction_coefficient": "max"}
-    ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"pareto": goals})
+    ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"pareto": goals}, sort_keys=False)
     rows = np.flatnonzero(pareto_rows(ds, 12))
     front = pareto(ds, goals)
     lives = front["roller_life_hours"].values[front["optimal"].values == 1]
