@@ -21,7 +21,7 @@ from trackroller.numerics.rows import Rows
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
-RIDGE_WORTH, LITTLE_FRICTION = 0.6, 0.05  # stress at the surface over the largest, and friction, that ridges need
+RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
 
 

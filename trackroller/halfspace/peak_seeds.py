@@ -36,7 +36,7 @@ SCAN = _scan_points(
 # For tractions with adhesion: in random designs the peaks lie below the centre, or on the surface far from the rim.
 SCAN_ADHESION = _scan_points(((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3, ((0.6, 5),)), *_DEEP))
 
-MOST_ON_RIDGE = 192  # points on the line where sliding begins
+MOST_ON_RIDGE = 128  # points on the line where sliding begins
 STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
 NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
 

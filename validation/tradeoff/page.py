@@ -20,6 +20,7 @@ from trackroller.roller.accuracy import (
     read_ladders,
     rounded_up,
 )
+from trackroller.roller.stages.ellipse_stresses import REFINED_ERROR
 from trackroller.study.files import write_whole
 from validation.pages import Block, page_html
 from validation.tradeoff.errors import QUANTITIES
@@ -176,6 +177,10 @@ def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
         f"`{name}` allows {peak:g} of the peak and {force:g} of the forces, with {ELEMENTS[name]} elements in `kalker` "
         f"and {GRID_ELEMENTS[name]} in `fastsim`"
         for name, (peak, force) in PROMISES.items()
+    )
+    promises += (
+        f". At `standard` and `reference`, `kalker` solves a patch on twice the elements where its peak may err by "
+        f"more than {100 * REFINED_ERROR:g} %"
     )
     heads = (
         "preset",
