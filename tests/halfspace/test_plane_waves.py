@@ -4,13 +4,12 @@ import numba
 import numpy as np
 import pytest
 
-from trackroller.halfspace import ellipse_kernels
-from trackroller.halfspace.ellipse import NO_FIELD
+from trackroller.halfspace import ellipse_kernels, ellipse_rays
 from trackroller.halfspace.ellipse_kernels import PATCH, PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU, Place
 from trackroller.halfspace.kernels import point_kernel
 from validation.derivations.plane_waves import plane_wave_stress
 
-sum_waves, sum_rays = ellipse_kernels.sum_waves, ellipse_kernels.sum_rays
+sum_waves, sum_rays = ellipse_kernels.sum_waves, ellipse_rays.sum_rays
 
 
 @numba.njit()
@@ -20,7 +19,7 @@ def wave(patch, place, work, out):
 
 @numba.njit()
 def ray(patch, place, rule, work, out):
-    sum_rays(patch, NO_FIELD, place, 1, rule, work, out)
+    sum_rays(patch, None, place, 1, rule, work, np.empty(1, np.int32), out)
 
 
 def scratch(**values):
@@ -75,8 +74,8 @@ def test_chord_kernel_is_the_point_kernel():
             out = np.zeros((4, 6))
             d = np.array([-1.0, 0.0]) if direction == 0 else np.array([0.0, -1.0])
             patch["k0"] = 1e9  # slip far along -x: its direction is (+1, 0), subtracted below
-            work = scratch(C=1.0, SPAN=r, NEAR=-1.0, FAR=2 * r, LENGTH=1.0, WEIGHT=r)
-            ray(patch, Place(0.0, 0.0, z, 1.0 + d[0], d[1]), np.ones((2, 1)), work, out)
+            work = scratch(C=1.0, SPAN=2 * r, BEHIND=1.0, LENGTH=1.0, WEIGHT=r)
+            ray(patch, Place(0.0, 0.0, z, 1.0 + d[0], d[1]), np.array([[0.5], [1.0]]), work, out)
             out /= 2 * np.pi * r * r * np.sqrt(r * (r + 1))  # the weight of the node
             kernel_order = [ORDER[name] for name in ("ss", "tt", "zz", "st", "tz", "zs")]
             np.testing.assert_allclose(out[SHEAR][kernel_order], a, rtol=1e-9, atol=1e-10)

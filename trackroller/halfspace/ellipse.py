@@ -29,14 +29,13 @@ from trackroller.halfspace.ellipse_kernels import (
     MOST_POINTS,
     PATCH,
     SCRATCH,
+    STRIDE,
     Place,
-    chord_angles,
     direction,
-    rays_of_chords,
-    sum_rays,
     sum_waves,
     wave_angles,
 )
+from trackroller.halfspace.ellipse_rays import chord_angles, rays_of_chords, rounded_rays, sum_rays
 from trackroller.halfspace.influence import add_load
 from trackroller.halfspace.kernels import point_kernel
 from trackroller.halfspace.rigid_slip import pole_lateral, pole_line, pole_rolling
@@ -92,8 +91,9 @@ def _add_hertzian(at, rule, directions, out):
 
 @fast
 def _add_other_directions(at, rule, directions, out):
-    """Add the friction less that in its direction at the point."""
-    work = np.empty(SCRATCH)
+    """Add the friction less that in its direction at the point; under traction fields in their precision."""
+    work, single, places = np.empty(SCRATCH), np.empty(SCRATCH, FIELD), np.empty(STRIDE, np.int32)
+    gridded = at.fields.shape[2] > 1
     for i in range(len(at.points)):
         row = at.rows[i]
         patch, x, y, z = at.patches[row], at.points[i, 0], at.points[i, 1], at.points[i, 2]
@@ -101,7 +101,11 @@ def _add_other_directions(at, rule, directions, out):
             px, py = x / patch.a, y / patch.b
             count = rays_of_chords(patch, px, py, chord_angles(patch, px, py, rule, work), work)
             place = Place(x, y, z, directions[i, 0], directions[i, 1])
-            sum_rays(patch, at.fields[row], place, count, rule, work, out[i])
+            if gridded:
+                rounded_rays(patch, count, work, single)
+                sum_rays(patch, at.fields[row], place, count, rule, single, places, out[i])
+            else:
+                sum_rays(patch, None, place, count, rule, work, places, out[i])
 
 
 @fast

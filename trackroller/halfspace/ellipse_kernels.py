@@ -2,7 +2,7 @@
 
 The loops over waves and rays run in vector registers. Their angles and weights therefore stand in rows of a scratch
 array. The formulas are inlined into these loops: a call for each wave or ray would cost more than its arithmetic (see
-`vectors.inner`).
+`numerics.compiled.inner`).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from trackroller.halfspace.influence import PRESSURE, PRESSURE_NU, SHEAR, SHEAR_
 from trackroller.halfspace.rigid_slip import lateral_slip, pole_offset, rolling_slip_without_division
 from trackroller.halfspace.vectors import angle, exp, log, sine_cosine
 from trackroller.numerics.compiled import inner
+from trackroller.numerics.lanes import bilinear
 
 XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
 
@@ -38,8 +39,8 @@ class Place(NamedTuple):
 
 # Rows of the scratch array: angle and weight of waves and chords, then the numbers of each ray.
 STRIDE = 4104  # numbers in a row; rows of a power of two would compete for the same lines of the cache
-ANGLE, WEIGHT, C, S, START, SPAN, NEAR, FAR, LENGTH = (row * STRIDE for row in range(9))
-SCRATCH = 9 * STRIDE
+ANGLE, WEIGHT, C, S, START, SPAN, BEHIND, LENGTH, FIELD_X, FIELD_Y = (row * STRIDE for row in range(10))
+SCRATCH = 10 * STRIDE
 MOST_POINTS = 1024  # points of a rule; a row holds four rays for each point
 
 
@@ -52,17 +53,25 @@ def slip_at(patch, x, y):
 
 
 @inner
-def interpolated(field, u, v):
-    """Return the shares (x, y) of the traction bound at (u, v) in [-1, 1]^2, bilinear between element centres."""
-    ny, nx = field.shape[1], field.shape[2]
-    s = min(max(0.5 * (u + 1.0) * nx - 0.5, 0.0), nx - 1.000001)
-    t = min(max(0.5 * (v + 1.0) * ny - 0.5, 0.0), ny - 1.000001)
-    i, j = int(s), int(t)
-    s, t = s - i, t - j
-    w00, w01, w10, w11 = (1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t
-    f_x = w00 * field[0, j, i] + w01 * field[0, j, i + 1] + w10 * field[0, j + 1, i] + w11 * field[0, j + 1, i + 1]
-    f_y = w00 * field[1, j, i] + w01 * field[1, j, i + 1] + w10 * field[1, j + 1, i] + w11 * field[1, j + 1, i + 1]
-    return f_x, f_y
+def grid_place(x, half, count):
+    """Return where x lies on a grid over [-half, half], in elements from the centre of the first one on."""
+    return 0.5 * count * (x / half + 1.0) - 0.5
+
+
+@inner
+def cell_of(place, count, real):
+    """Return the element centre before a place on the grid and the share of the way to the next one, as `real`."""
+    place = min(max(real(place), real(0.0)), real(count - 1))
+    before = min(real(np.int32(place)), real(count - 2))
+    return before, place - before
+
+
+@inner
+def interpolated(field, x, y):
+    """Return the shares (x, y) of the traction bound at a place x, y on the grid, bilinear between element centres."""
+    ny, nx, real = field.shape[1], field.shape[2], field.dtype.type
+    (i, s), (j, t) = cell_of(x, nx, real), cell_of(y, ny, real)
+    return bilinear(field.reshape(-1), int(j) * nx + int(i), nx, ny * nx, s, t)
 
 
 @inner
@@ -71,7 +80,7 @@ def direction(patch, field, x, y):
     if patch.fixed != 0.0:  # full slip along y_C
         return 0.0, patch.fixed
     if field.shape[1] > 1:
-        return interpolated(field, x / patch.a, y / patch.b)
+        return interpolated(field, grid_place(x, patch.a, field.shape[2]), grid_place(y, patch.b, field.shape[1]))
     v_x, v_y = slip_at(patch, x, y)
     speed = math.sqrt(v_x * v_x + v_y * v_y)
     if speed == 0.0:
@@ -105,7 +114,7 @@ def spread_angles(work, at, start, end, turn, scale, rule):
 
 
 @inner
-def _add(out, row, xx, yy, zz, xy, yz, zx):
+def add_stress(out, row, xx, yy, zz, xy, yz, zx):
     """Add six components to one row of the stress parts `out` (4, 6)."""
     out[row, XX] += xx
     out[row, YY] += yy
@@ -179,10 +188,10 @@ def sum_waves(patch, place, count, work, out):
         m_xx += ss * f
         m_yy += cc * f
         m_xy -= cs * f
-    _add(out, PRESSURE, p_xx, p_yy, p_zz, p_xy, p_yz, p_zx)
-    _add(out, PRESSURE_NU, -2.0 * n_xx, -2.0 * n_yy, 0.0, -2.0 * n_xy, 0.0, 0.0)
-    _add(out, SHEAR, mu * s_xx, mu * s_yy, mu * s_zz, mu * s_xy, mu * s_yz, mu * s_zx)
-    _add(out, SHEAR_NU, -2.0 * mu * m_xx, -2.0 * mu * m_yy, 0.0, -2.0 * mu * m_xy, 0.0, 0.0)
+    add_stress(out, PRESSURE, p_xx, p_yy, p_zz, p_xy, p_yz, p_zx)
+    add_stress(out, PRESSURE_NU, -2.0 * n_xx, -2.0 * n_yy, 0.0, -2.0 * n_xy, 0.0, 0.0)
+    add_stress(out, SHEAR, mu * s_xx, mu * s_yy, mu * s_zz, mu * s_xy, mu * s_yz, mu * s_zx)
+    add_stress(out, SHEAR_NU, -2.0 * mu * m_xx, -2.0 * mu * m_yy, 0.0, -2.0 * mu * m_xy, 0.0, 0.0)
 
 
 @inner
@@ -201,108 +210,5 @@ def wave_angles(patch, px, py, rule, work):
     for piece in range(3):
         start = first if piece == 0 else (low if piece == 1 else high)
         end = low if piece == 0 else (high if piece == 1 else first + math.pi)
-        count = spread_angles(work, count, start, end, turn, min(a, b) / max(a, b), rule)
-    return count
-
-
-@inner
-def rays_of_chords(patch, px, py, count, work):
-    """Turn `count` chords through the point into rays from it and return their number.
-
-    A point inside the patch has rays to both sides; from a point outside only one side meets the patch.
-    """
-    a, b = patch.a, patch.b
-    outside = px * px + py * py > 1.0
-    scale = patch.friction * a * b / (2.0 * math.pi)
-    second = 0 if outside else count
-    for k in range(count):
-        sine, cosine = sine_cosine(work[ANGLE + k])
-        along = px * cosine + py * sine
-        root = math.sqrt(max(along * along + 1.0 - px * px - py * py, 0.0))
-        # a side without length (point on the edge) would divide by zero
-        start = -along - root if outside else 0.0
-        far = root - along if outside else max(root - along, 1e-13)
-        near = -along - root if outside else min(-along - root, -1e-13)
-        ex, ey = a * cosine, b * sine
-        length = math.sqrt(ex * ex + ey * ey)
-        c, s = ex / length, ey / length
-        weight = work[WEIGHT + k] * scale
-        work[LENGTH + second + k], work[LENGTH + k] = length, length
-        work[C + second + k], work[C + k] = -c, c
-        work[S + second + k], work[S + k] = -s, s
-        work[START + second + k], work[START + k] = 0.0, start
-        work[SPAN + second + k], work[SPAN + k] = -near, far - start
-        work[NEAR + second + k], work[NEAR + k] = -far, near
-        work[FAR + second + k], work[FAR + k] = -near, far
-        work[WEIGHT + second + k], work[WEIGHT + k] = -near * weight, (far - start) * weight
-    return count + second
-
-
-@inner
-def sum_rays(patch, field, place, count, rule, work, out):
-    """Add the stresses of the friction along `count` rays less those of friction in the direction at the point."""
-    x, y, z, d_x, d_y = place.x, place.y, place.z, place.d_x, place.d_y
-    gridded = field.shape[1] > 1
-    xx = yy = xy = zz = yz = zx = n_xx = n_yy = n_xy = 0.0
-    for i in range(rule.shape[1]):
-        for k in range(count):
-            tau = work[START + k] + work[SPAN + k] * rule[0, i]
-            c, s = work[C + k], work[S + k]
-            r = tau * work[LENGTH + k]
-            rho_2 = r * r + z * z
-            rho = math.sqrt(rho_2)
-            deep = rho + z
-            if gridded:
-                f_x, f_y = interpolated(field, (x + c * r) / patch.a, (y + s * r) / patch.b)
-                inv = 1.0 / (rho * deep)
-            else:
-                v_x, v_y = slip_at(patch, x + c * r, y + s * r)
-                speed = math.sqrt(v_x * v_x + v_y * v_y + 1e-300)
-                inv_all = 1.0 / (speed * rho * deep)  # one division for three
-                inv = speed * inv_all
-                inv_all *= -rho * deep
-                f_x, f_y = v_x * inv_all, v_y * inv_all
-            f_x, f_y = f_x - d_x, f_y - d_y
-            inside = max((work[FAR + k] - tau) * (tau - work[NEAR + k]), 0.0)
-            weight = rule[1, i] * work[WEIGHT + k] * tau * math.sqrt(inside)
-            q_e, q_t = weight * (f_x * c + f_y * s), weight * (f_y * c - f_x * s)
-            wz, inv = inv * rho, inv * deep
-            inv_2 = inv * inv
-            swing = r * wz * wz * inv
-            flat = r * inv_2 * inv
-            ratio = r * r * swing * inv_2
-            axial = 3.0 * q_e * flat * inv_2
-            e = axial * r * r
-            e_nu = q_e * (3.0 * swing - flat - ratio - 2.0 * ratio * wz * rho)
-            t_nu = q_e * (swing - flat)
-            et = q_t * swing
-            cc, ss, cs = c * c, s * s, c * s
-            xx += cc * e
-            yy += ss * e
-            xy += cs * e
-            zz += axial * z * z
-            yz -= s * axial * r * z
-            zx -= c * axial * r * z
-            n_xx += cc * e_nu + ss * t_nu - 2.0 * cs * et
-            n_yy += ss * e_nu + cc * t_nu + 2.0 * cs * et
-            n_xy += cs * (e_nu - t_nu) + (cc - ss) * et
-    _add(out, SHEAR, xx + n_xx, yy + n_yy, zz, xy + n_xy, yz, zx)
-    _add(out, SHEAR_NU, -2.0 * n_xx, -2.0 * n_yy, 0.0, -2.0 * n_xy, 0.0, 0.0)
-
-
-@inner
-def chord_angles(patch, px, py, rule, work):
-    """Write angles and weights of chords through the point (px a, py b); return their number."""
-    a, b = patch.a, patch.b
-    r2 = px * px + py * py
-    half = math.asin(1.0 / math.sqrt(r2)) if r2 > 1.0 else 0.5 * math.pi  # outside: the cone that meets the patch
-    first = math.atan2(py, px) + math.pi - half
-    last = first + 2.0 * half
-    center = 0.5 * math.pi if a >= b else 0.0  # angle near which the ray turns fast
-    turn = center + math.pi * math.ceil((first - center) / math.pi)
-    middle = min(turn, last)
-    count = np.int64(0)  # a literal would compile `spread_angles` twice
-    for piece in range(2):
-        start, end = (first if piece == 0 else middle), (middle if piece == 0 else last)
         count = spread_angles(work, count, start, end, turn, min(a, b) / max(a, b), rule)
     return count

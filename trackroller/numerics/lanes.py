@@ -69,3 +69,42 @@ def subtract_multiple(typingctx, out, start, source, first, factors, at, count):
         return context.get_dummy_value()
 
     return signature, generate
+
+
+@intrinsic
+def bilinear(typingctx, fields, first, row, plane, s, t):
+    """Return two fields between four neighbours, at the shares s, t of the way to the next column and row.
+
+    `first` is the place of the first neighbour in `fields` (m,), `row` and `plane` are the distances to the next row
+    and to the second field; s, t are of the type of the fields. Both fields and two columns share a vector.
+    """
+    number = fields.dtype
+    signature = types.UniTuple(number, 2)(fields, types.intp, types.intp, types.intp, number, number)
+
+    def generate(context, builder, signature, given):
+        data = context.make_array(fields)(context, builder, given[0]).data
+        scalar, index = context.get_value_type(number), ir.IntType(32)
+
+        def picked(one, other, *places):
+            mask = ir.Constant(ir.VectorType(index, len(places)), [ir.Constant(index, place) for place in places])
+            return builder.shuffle_vector(one, other, mask)
+
+        def pair(place):
+            pointer = builder.bitcast(builder.gep(data, [place]), ir.VectorType(scalar, 2).as_pointer())
+            return builder.load(pointer, align=_size(fields))
+
+        def four(place):
+            return picked(pair(place), pair(builder.add(place, given[3])), 0, 1, 2, 3)
+
+        def mixed(one, other, share):
+            spread = builder.insert_element(ir.Constant(one.type, ir.Undefined), share, ir.Constant(index, 0))
+            spread = picked(spread, spread, *[0] * one.type.count)
+            change = builder.fmul(spread, builder.fsub(other, one), flags=("contract",))
+            return builder.fadd(one, change, flags=("contract",))
+
+        line = mixed(four(given[1]), four(builder.add(given[1], given[2])), given[5])
+        point = mixed(picked(line, line, 0, 2), picked(line, line, 1, 3), given[4])
+        values = [builder.extract_element(point, ir.Constant(index, k)) for k in range(2)]
+        return context.make_tuple(builder, signature.return_type, values)
+
+    return signature, generate
