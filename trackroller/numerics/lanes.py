@@ -19,7 +19,7 @@ LANES = 4  # numbers beside each other: more of them would leave the fastest cac
 
 
 def _vectors(context, builder, signature, given, number):
-    """Return a function that gives the pointer to vector i of an array; its start follows the array."""
+    """Return a function that gives the pointer to vector i of argument `number`; the next argument is its start."""
     array, start = given[number], given[number + 1]
     data = context.make_array(signature.args[number])(context, builder, array).data
     vector = ir.VectorType(context.get_value_type(signature.args[number].dtype), LANES)

@@ -34,7 +34,7 @@ from validation.benchmarks.peak_coverage import random_case
 
 RUNS = ("sliding:standard", "fastsim:standard", "kalker:preview", "kalker:standard")
 SPEED = 100.0  # mm/s, characteristic of every law; the velocity sets the slip over it
-STEPS = 16  # of the velocity from nothing to the given
+STEPS = 16  # steps in which the velocity grows from nothing to its value
 APART = 0.02  # balances whose w differ by more count as two
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 

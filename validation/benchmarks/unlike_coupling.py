@@ -71,7 +71,10 @@ def rounds(patch: Patch, friction: float, creep: float, spin: float) -> list[dic
 
 
 def measure(elements: int = 60, roller: str = "PA6", guide: str = "1.7225-normalised") -> dict[str, Any]:
-    """Return results of both rounds and the changes, over mu F_N (pressure: over itself), for three creepages."""
+    """Return the results of one-way and of two-way coupling and the change between them, for three creepages.
+
+    Forces are over mu F_N; changes of pressure are relative.
+    """
     patch = Patch(elements, roller, guide)
     found = {}
     for name, slips in SLIPS.items():

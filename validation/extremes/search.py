@@ -9,7 +9,7 @@ import numpy as np
 from trackroller.roller.solver import solve
 from validation.extremes.scenes import Scene
 
-POINTS, ROUNDS = 16, 5  # of the search for a border: 15^-5 of the span
+POINTS, ROUNDS = 16, 5  # of the search for a border, which ends at 15^-5 of the span
 STEPS = 30  # of the search for a place of the pole
 
 

@@ -76,6 +76,14 @@ def _interval(p, last):
 
 
 @compiled
+def _before(p, k):
+    """Return the last loaded interval of the pressures p (N,) up to the element k; it ends at -1 if there is none."""
+    while k >= 0 and p[k] <= 0.0:
+        k -= 1
+    return _interval(p, k) if k >= 0 else Interval(-1, -1, 0.0, 0.0)
+
+
+@compiled
 def _pressure(p, interval, t):
     """Return the pressure at the place t of an interval, up to a factor that is the same for the whole interval."""
     first, last, low, high = interval
@@ -112,19 +120,15 @@ def _sum(total, p, loaded, i, strip, middles, bounds, law):
 
     `middles` and `bounds` have one entry for each step; they are overwritten.
     """
-    steps, k = bounds.size, p.size - 1
-    while k >= 0:
-        if p[k] <= 0.0:
-            k -= 1
-            continue
-        interval = _interval(p, k)
-        k = interval.first - 1
+    steps, interval = bounds.size, _before(p, p.size - 1)
+    while interval.last >= 0:
         scale, length = loaded.friction[i] * _scale(p, interval, steps), (interval.high - interval.low) / steps
         edge, h = (interval.high + 0.5) * loaded.hy[i] - loaded.half[i], length * loaded.hy[i]
         for j in range(steps):
             middles[j] = edge - (j + 0.5) * h
             bounds[j] = scale * _pressure(p, interval, interval.high - (j + 1) * length) if j < steps - 1 else 0.0
         total = march(total, strip, edge, h, loaded.hx[i] * h, middles, bounds, law)
+        interval = _before(p, interval.first - 1)
     return total
 
 
@@ -132,13 +136,8 @@ def _sum(total, p, loaded, i, strip, middles, bounds, law):
 def _field(p, loaded, i, strip, law, shear, slip):
     """Write traction over its bound and slip (2, N) at the centres of the loaded elements of one strip of patch i."""
     hy, half, middles, bounds = loaded.hy[i], loaded.half[i], np.empty(SUBSTEPS), np.empty(SUBSTEPS)
-    k = p.size - 1
-    while k >= 0:
-        if p[k] <= 0.0:
-            k -= 1
-            continue
-        interval = _interval(p, k)
-        k = interval.first - 1
+    interval = _before(p, p.size - 1)
+    while interval.last >= 0:
         scale, t = loaded.friction[i] * _scale(p, interval, 8 * p.size), interval.high
         state = enter(strip, (t + 0.5) * hy - half, law)
         for j in range(interval.last, interval.first - 1, -1):
@@ -153,6 +152,7 @@ def _field(p, loaded, i, strip, law, shear, slip):
             shear[0, j] = state.shear_x / g if g > 0.0 else 0.0
             shear[1, j] = state.shear_y / g if g > 0.0 else 0.0
             slip[0, j], slip[1, j] = state.slip_x, state.slip_y
+        interval = _before(p, interval.first - 1)
 
 
 @compiled
@@ -184,10 +184,7 @@ def strip_chords(pressure, chords):
     for i in range(pressure.shape[0]):
         for j in range(pressure.shape[2]):
             p = pressure[i, :, j].copy()
-            k = p.size - 1
-            while k >= 0:
-                if p[k] > 0.0:
-                    interval = _interval(p, k)
-                    chords[i, j] += interval.high - interval.low
-                    k = interval.first
-                k -= 1
+            interval = _before(p, p.size - 1)
+            while interval.last >= 0:
+                chords[i, j] += interval.high - interval.low
+                interval = _before(p, interval.first - 1)

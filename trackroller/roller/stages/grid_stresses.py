@@ -37,7 +37,7 @@ class GridStresses(PatchStresses):
         return _load(surface_tractions(self.results), int(np.count_nonzero(self.results.good[:flat])))
 
     def bounds(self, wanted: np.ndarray) -> np.ndarray:
-        """Return the largest of a few points of each patch, (m, 2) [MPa]."""
+        """Return the largest stress at a few points below each patch, (m, 2) [MPa]."""
         out = []
         for flat in np.flatnonzero(wanted).tolist():
             load = self.load(flat)
