@@ -55,7 +55,7 @@ def random_study(seed: int) -> xr.Dataset:
     study = {"name": "random", "design": kind, "factors": {k: {} for k in columns}}
     if limits := _constraints(columns, results, np.random.default_rng([seed, 1])):
         study["constraints"] = limits
-    ds.attrs["study"] = yaml.safe_dump(study)
+    ds.attrs["study"] = yaml.safe_dump(study, sort_keys=False)  # factors in the order of the dimensions
     return ds
 
 
