@@ -261,11 +261,15 @@ def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]
         elements = settings.elements if ladder == "kalker" else settings.on_grids
         own = {ladder: {"elements": elements}, "peak": own["peak"]}
     total: dict[str, Levels] = {}
+    unknown: set[str] = set()
     for ladder, wanted in own.items():
         found = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
-        for name, levels in (found.errors if found else {}).items():
+        if found is None:
+            unknown.update(rungs[ladder][0].errors)
+            continue
+        for name, levels in found.errors.items():
             total[name] = _sum(total[name], levels) if name in total else levels
-    return total
+    return {name: levels for name, levels in total.items() if name not in unknown}
 
 
 def table_errors() -> Levels:
