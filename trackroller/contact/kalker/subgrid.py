@@ -106,7 +106,7 @@ class Fields(NamedTuple):
 
 def shares(fields: Fields, parts: int = PARTS) -> np.ndarray:
     """Return the traction over mu p at rest on `parts` times the elements, (n, 2, parts m, parts m)."""
-    return _between(fields.before_law(), parts) * fields.finer_factor(parts)
+    return _between(fields.before_law(), fields, parts)
 
 
 def both_shares(fields: Fields) -> tuple[np.ndarray, np.ndarray]:
@@ -115,7 +115,7 @@ def both_shares(fields: Fields) -> tuple[np.ndarray, np.ndarray]:
     if factor.shape[1:] != (1, 1):
         factor = _of_four(factor)
     twice = fields._replace(height=_of_four(fields.height), factor=factor)
-    return _between(z, PARTS) * fields.finer_factor(PARTS), _between(_of_four(z), PARTS) * twice.finer_factor(PARTS)
+    return _between(z, fields, PARTS), _between(_of_four(z), twice, PARTS)
 
 
 def _of_four(field: np.ndarray) -> np.ndarray:
@@ -124,12 +124,13 @@ def _of_four(field: np.ndarray) -> np.ndarray:
     return field.reshape(*field.shape[:-2], m, 2, m, 2).mean(axis=(-3, -1))
 
 
-def _between(z: np.ndarray, parts: int) -> np.ndarray:
-    """Interpolate z (n, 2, m, m) to `parts` times the elements and apply the law of friction."""
+def _between(z: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
+    """Interpolate z (n, 2, m, m) to `parts` times the elements and apply the law of friction of the fields."""
     matrix = _spline(z.shape[-1], parts)
     fine = np.matmul(np.matmul(matrix, z), matrix.T)
     for field in fine:
         _shorten(field)
+    fine *= fields.finer_factor(parts)
     return fine
 
 
