@@ -48,13 +48,6 @@ def as_table(ds):
     return ds.assign_attrs(study=yaml.safe_dump(told))
 
 
-def in_order(ds):
-    """Return the results with the factors of the study file in the order of the dimensions, as `gather` writes them."""
-    told = yaml.safe_load(ds.attrs["study"])
-    told["factors"] = {name: told["factors"][name] for name in ds.dims if name in told["factors"]}
-    return ds.assign_attrs(study=yaml.safe_dump(told, sort_keys=False))
-
-
 def failed(ds):
     """Return the study with no solution in any case."""
     ds = ds.copy(deep=True)
@@ -85,7 +78,7 @@ def written(ds, folder, name):
 
 @pytest.fixture(scope="module")
 def grid():
-    return in_order(grid_study(FACTORS))
+    return grid_study(FACTORS)
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,12 @@ from validation.extremes.random_cases import random_extremes
 from validation.extremes.scenes import scenes, thinned
 
 
-@pytest.mark.parametrize("scene", scenes(), ids=lambda s: s.name)
+def marked(scene):
+    """Mark the scene slow that takes as long as all others."""
+    return pytest.param(scene, id=scene.name, marks=[pytest.mark.slow] * (scene.name == "spin pole on the edge"))
+
+
+@pytest.mark.parametrize("scene", map(marked, scenes()))
 def test_claims_on_a_scene_hold(scene):
     broken = [f for f in examine(scene, "sliding", "preview")[1] if not f.holds]
     assert not broken
