@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.report.enough import samples
+from trackroller.report.summary import samples
 from trackroller.study.config import parse_study
 
 PI = np.pi

@@ -10,7 +10,7 @@ from trackroller.analysis.parts import of_groups, within_levels
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
-from trackroller.report import parts, summary
+from trackroller.report import decisions, summary
 from trackroller.report.view import StudyView
 from trackroller.study.config import parse_study
 from trackroller.study.design.saltelli import as_set, pairs_sharing, serves
@@ -188,7 +188,7 @@ def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
     sens.to_netcdf(tmp_path / "sensitivity.nc")
     assert sens["group"].values.tolist() == ["load", "friction_coefficient", "roller_material"]
     assert ("ST" in sens) == (exchange == "factors") and np.isfinite(sens["take_times"]).all()
-    table = parts.tables(sens)[0]
+    table = decisions.part_tables(sens)[0]
     assert [row[1] for row in table.rows] == ["Load", "Friction coefficient", "Roller material"]
     text = " ".join(s.text for head, said in summary.in_short(StudyView.of(ds), sens, []) for s in said)
     assert "By groups, roller material accounts for" in text and "load" in text
@@ -201,10 +201,10 @@ def test_levels_reach_analysis_table_and_summary():
         ds = solved(FILE | {"design": design, "samples": 256, "analysis": analysis})
         sens = analyse_dataset(ds)
         assert sens["conditional_S1"].sel(level="POM", factor="friction_coefficient").item() > 0.7
-        said = parts.levels(sens, "roller_life_hours")
+        said = decisions.levels(sens, "roller_life_hours")
         assert said.values["lead"]["POM"] == "friction_coefficient"
         assert said.values["lead"]["PA6"] in ("axial_force", "radial_force")
-        assert [row[1] for row in parts.tables(sens)[0].rows] == ["PA6", "POM"]
+        assert [row[1] for row in decisions.part_tables(sens)[0].rows] == ["PA6", "POM"]
 
 
 def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):

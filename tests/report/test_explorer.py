@@ -18,10 +18,9 @@ from typer.testing import CliRunner
 from trackroller.analysis.pareto import pareto
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.report.explorer.inputs import solve_inputs
 from trackroller.report.explorer.pack import pack
 from trackroller.report.explorer.page import compared, explorer, pareto_rows, secured, write_explorer
-from trackroller.report.explorer.rows import STATES, Column, collect, flag_text
+from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.view import StudyView
 

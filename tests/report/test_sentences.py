@@ -14,7 +14,7 @@ from trackroller.report.choices import pareto
 from trackroller.report.decisions import robust_tables
 from trackroller.report.effects import effect_of
 from trackroller.report.findings import best_design, occurrence, ranked, valid_designs
-from trackroller.report.known_errors import friction_error, full_sliding
+from trackroller.report.flags import friction_error, full_sliding
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.page import contents
 from trackroller.report.tables import validity_table

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from random_studies import FLAGS, random_study
 
-from trackroller.report import findings, known_errors
+from trackroller.report import findings, flags
 from trackroller.report.effects import effect_of
 from trackroller.report.view import StudyView
 
@@ -304,14 +304,14 @@ def check_others(raw, view):
             assert strong.values["below"] == (raw.rolling & (stress < 120)).sum()
             assert strong.values["above"] == (raw.rolling & (stress > 240)).sum()
             said.append(strong)
-    residual, error = raw.get("energy_residual"), known_errors.friction_error(view)
+    residual, error = raw.get("energy_residual"), flags.friction_error(view)
     known = None if residual is None else residual[raw.rolling & np.isfinite(residual)]
     assert (error is not None) == (known is not None and known.size > 0 and np.median(known) > 0.05)
     if error:
         middle, most = first(rf"by {NUMBER} % in the median and {NUMBER} % at most", error.text)
         assert close(middle, 100 * np.median(known)) and close(most, 100 * known.max())
         said.append(error)
-    for sentence in known_errors.accuracy(view):
+    for sentence in flags.accuracy(view):
         if sentence.kind == "singular":
             assert sentence.values["count"] == (raw.flags["split_pole"] & raw.rolling).sum()
         else:

@@ -11,11 +11,11 @@ from scipy.stats import spearmanr
 
 from trackroller.analysis.pareto import pareto_mask
 from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.report import choices, parts
+from trackroller.report import choices, decisions
 from trackroller.report import sentences as words
 from trackroller.report.effects import effect_of
-from trackroller.report.enough import samples
 from trackroller.report.numbers import level_text
+from trackroller.report.summary import samples
 from trackroller.report.view import StudyView
 from trackroller.study.config import parse_study
 
@@ -174,7 +174,7 @@ def test_every_sentence_on_groups_and_levels_is_true(method):
     for _ in range(60):
         sens = with_parts(rng, analysis(rng, method))
         for output in map(str, sens["output"].values):
-            said = {s.kind: s for s in parts.sentences(sens, output)}
+            said = {s.kind: s for s in decisions.part_sentences(sens, output)}
             found += len(said)
             check_groups(sens.sel(output=output), said.get("groups"))
             check_levels(sens.sel(output=output), said.get("levels"))

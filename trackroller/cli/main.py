@@ -76,7 +76,7 @@ def plan(
     no_shortcuts: NoShortcuts = False,
 ) -> None:
     """Print the number of cases and chunks, the expected time and disk space; solve nothing."""
-    from trackroller.cli.plan import print_plan
+    from trackroller.cli.study import print_plan
 
     print_plan(target, results, explain, settings or [], no_shortcuts)
 

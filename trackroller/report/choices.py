@@ -7,8 +7,9 @@ import math
 import numpy as np
 import xarray as xr
 
+from trackroller.parameters import PARAMETERS
 from trackroller.report.claims import Sentence, estimate
-from trackroller.report.numbers import count, listing, long_name, quantity, rounded, setting, share
+from trackroller.report.numbers import capital, count, listing, long_name, quantity, rounded, setting, share, with_unit
 from trackroller.report.view import StudyView
 
 
@@ -58,6 +59,13 @@ def pareto(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
 def goal_words(front: xr.Dataset, name: str) -> str:
     """Name a goal or a factor of a Pareto set."""
     return str(front[name].attrs.get("long_name") or long_name(name))
+
+
+def heading(front: xr.Dataset, name: str) -> str:
+    """Return the words and the unit of a goal or factor of a Pareto set, as the head of a column."""
+    units = str(front[name].attrs.get("units", "")) or (PARAMETERS[name].unit if name in PARAMETERS else "")
+    text = capital(goal_words(front, name))
+    return with_unit(text, units) if units and units not in ("1", "-") else text
 
 
 def _goal_value(front: xr.Dataset, name: str, value: float) -> str:

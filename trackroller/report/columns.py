@@ -39,7 +39,7 @@ PLAIN_RESULTS = (
     "energy_residual",
     "contact_model_used",
 )
-SURFACE_SHARE = 0.01  # a peak above 1 % of the smaller semi-axis counts as lying at the surface
+SURFACE_SHARE = 0.01  # of the smaller semi-axis: a peak above this depth counts as lying at the surface
 
 
 def study_dims(ds: xr.Dataset) -> list[str]:
@@ -73,12 +73,24 @@ def case_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
     columns = input_columns(ds, dims) | _columns(ds, dims, PLAIN_RESULTS)
     for name in (n for n in CONTACT_RESULTS if n in ds and "contact" in ds[n].dims):
         columns |= {f"{name}_{i}": values for i, values in enumerate(column(name).T, 1)}
-    needed = {n: {"contact", "body"} for n in BODY_RESULTS} | {"validity_body": {"body"}}
-    needed |= {n: {"contact"} for n in ("semi_axis_lateral", "semi_axis_rolling")}
+    if {"peak_stress", "peak_z"} <= set(ds):
+        ds = ds.assign(at_surface=at_surface(ds))
+    needed = {n: {"contact", "body"} for n in (*BODY_RESULTS, "at_surface")} | {"validity_body": {"body"}}
     found = {n: column(n) for n, inner in needed.items() if n in ds and inner <= set(ds[n].dims)}
     for name, table in _of_bodies(found).items():
         columns |= {f"{name}_{body}": values for body, values in zip(ds["body"].values, table.T, strict=True)}
     return columns
+
+
+def at_surface(ds: xr.Dataset) -> xr.DataArray:
+    """Say of each contact and body whether the peak stress lies at the surface (1) or below it (0), NaN if unknown.
+
+    A peak counts as one at the surface down to 1 % of the smaller semi-axis, or to 1 µm if the semi-axes are unknown.
+    """
+    limit: Any = 1e-3
+    if {"semi_axis_lateral", "semi_axis_rolling"} <= set(ds):
+        limit = SURFACE_SHARE * np.minimum(ds["semi_axis_lateral"], ds["semi_axis_rolling"])
+    return (ds["peak_z"] <= limit).astype(float).where(ds["peak_z"].notnull()).transpose(*ds["peak_z"].dims)
 
 
 def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -86,20 +98,14 @@ def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
     Parameters
     ----------
-    found : results by name, shape (n, contacts, bodies), (n, contacts) or (n, bodies)
+    found : results by name, shape (n, contacts, bodies) or (n, bodies)
     """
     told = {"validity": found["validity_body"]} if "validity_body" in found else {}
     if "peak_stress" in found:
         peak = found["peak_stress"]
         worse = np.argmax(np.where(np.isnan(peak), -np.inf, peak), axis=1)[:, None]
-        at = {n: np.take_along_axis(v, worse, axis=1)[:, 0] for n, v in found.items() if v.shape == peak.shape}
-        told |= {n: at[n] for n in ("peak_stress", "error_estimate") if n in at}
-        if "peak_z" in at:
-            limit: Any = 1e-3  # mm, when the study has no semi-axes
-            if {"semi_axis_lateral", "semi_axis_rolling"} <= set(found):
-                smaller = np.minimum(found["semi_axis_lateral"], found["semi_axis_rolling"])
-                limit = SURFACE_SHARE * np.take_along_axis(smaller, worse[:, 0], axis=1)
-            told["at_surface"] = np.where(np.isnan(at["peak_z"]), np.nan, at["peak_z"] <= limit)
+        for name in (n for n in ("peak_stress", "error_estimate", "at_surface") if n in found):
+            told[name] = np.take_along_axis(found[name], worse, axis=1)[:, 0]
     if "life_cycles" in found:
         told["life_cycles"] = np.fmin.reduce(found["life_cycles"], axis=1)
     return told

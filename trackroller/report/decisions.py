@@ -1,4 +1,4 @@
-"""What the report offers for a decision: Pareto set, design points where conditions scatter, all indices."""
+"""Tables for a decision: indices of factors and groups, design points, and the Pareto set."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.labels import factor_name
 from trackroller.damage.fatigue import DECADES
-from trackroller.parameters import PARAMETERS
 from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.aims import MAX_POINTS
 from trackroller.report.claims import Sentence, estimate
-from trackroller.report.known_errors import FRICTION_OUTPUTS
-from trackroller.report.numbers import capital, listing, rounded, unit_text, with_unit
+from trackroller.report.flags import FRICTION_OUTPUTS
+from trackroller.report.numbers import capital, count, level_text, listing, percent, rounded, unit_text
+from trackroller.report.sentences import HALF, INDEX_WORDS, index_text, of_output
 from trackroller.report.tables import Table, factor_cell
 from trackroller.report.view import StudyView
 from trackroller.study.goals import statistic
@@ -22,20 +23,6 @@ from trackroller.study.outputs import read_study, settings
 
 MAX_DESIGNS = 12  # rows of the table of the Pareto set
 OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
-MEASURES = (
-    ("S1", "Sobol index, first order"),
-    ("ST", "Sobol index, total"),
-    ("main_share", "share of variance, first order"),
-    ("mu_star", "mean absolute effect μ*"),
-    ("sigma", "spread of effects σ"),
-    ("effect", "change over the range"),
-    ("curvature", "curvature of the fit"),
-    ("first", "share of variance, given data"),
-    ("fit_alone", "share of variance, fitted polynomial"),
-    ("delta", "delta"),
-    ("pawn", "PAWN"),
-    ("prcc", "partial rank correlation"),
-)
 
 
 def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
@@ -43,14 +30,12 @@ def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
     index, rows = words.headline(sens), []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
-        ranks = [
-            f"{r.name} {words.index_text(part.sel(factor=r.factor), index)}" for r in words.order(sens, output)[:4]
-        ]
+        ranks = [f"{r.name} {index_text(part.sel(factor=r.factor), index)}" for r in words.order(sens, output)[:4]]
         mark = " *" if error and output in FRICTION_OUTPUTS else ""
-        rows.append([capital(words.of_output(sens, output)) + mark, "; ".join(ranks) or "–", str(part["note"].item())])
-    heads = ["Output", f"Factors that matter most ({words.INDEX_WORDS[index]})", "Computed from"]
+        rows.append([capital(of_output(sens, output)) + mark, "; ".join(ranks) or "–", str(part["note"].item())])
+    heads = ["Output", f"Factors that matter most ({INDEX_WORDS[index]})", "Computed from"]
     told = str(sens.attrs.get("treatment", ""))
-    note = f"{words.HALF}. The method needs {sens.attrs.get('needs', 'nothing')}. {capital(told)}."
+    note = f"{HALF}. The method needs {sens.attrs.get('needs', 'nothing')}. {capital(told)}."
     if any(row[0].endswith("*") for row in rows) and error:
         note += f" * {error.text}"
     return Table("indices", "What decides each output", heads, rows, note)
@@ -59,19 +44,20 @@ def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
 def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Table:
     """List every index of every factor on one output; those within chance stand in brackets."""
     part = sens.sel(output=output)
-    shown = [(key, text) for key, text in MEASURES if key in part and np.isfinite(part[key]).any()]
+    known = [key for key in INDEX_WORDS if key in part and np.isfinite(part[key]).any()]
     rows = []
     for rank in words.order(sens, output):
         one, cells = part.sel(factor=rank.factor), []
-        for key, _ in shown:
+        for key in known:
             noise = float(one.get(f"{key}_noise", np.nan))
-            text = words.index_text(one, key)
+            text = index_text(one, key)
             cells.append(f"({text})" if float(one[key]) <= noise else text)
         rows.append([capital(rank.name), *cells])
-    title = f"All measures: {words.of_output(sens, output)}"
-    note = f"{words.HALF}; an index in brackets is no larger than chance gives a factor without influence."
+    title = f"All measures: {of_output(sens, output)}"
+    note = f"{HALF}; an index in brackets is no larger than chance gives a factor without influence."
     note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
-    return Table(f"measures_{output}", title, ["Factor", *(text for _, text in shown)], rows, note)
+    heads = ["Factor", *(capital(INDEX_WORDS[key]) for key in known)]
+    return Table(f"measures_{output}", title, heads, rows, note)
 
 
 def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
@@ -146,7 +132,7 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     columns = [[factor_cell(n, v) for v in values] for n, values in zip(names, cells, strict=True)]
     rows: list[list[Any]] = [list(row) for row in zip(front["row"].values[shown].tolist(), *columns, strict=True)]
     kind = str(front.attrs.get("kind", "design"))
-    heads = [capital(kind), *(heading(front, n) + arrows.get(n, "") for n in names)]
+    heads = [capital(kind), *(choices.heading(front, n) + arrows.get(n, "") for n in names)]
     if kind == "design":
         heads = ["Case", *heads[1:], "Model"]
         rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
@@ -159,8 +145,94 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
 
 
-def heading(front: xr.Dataset, name: str) -> str:
-    """Return the words and the unit of a goal or factor of a Pareto set, as the head of a column."""
-    units = str(front[name].attrs.get("units", "")) or (PARAMETERS[name].unit if name in PARAMETERS else "")
-    text = capital(choices.goal_words(front, name))
-    return with_unit(text, units) if units and units not in ("1", "-") else text
+def part_sentences(sens: xr.Dataset, output: str) -> list[Sentence]:
+    """Return the sentences on the groups and on the levels for one output, as far as the analysis has them."""
+    found = (groups(sens, output), levels(sens, output))
+    return [said for said in found if said is not None]
+
+
+def groups(sens: xr.Dataset, output: str) -> Sentence | None:
+    """State the total index of each group of factors, the largest first."""
+    if "group_ST" not in sens:
+        return None
+    part = sens.sel(output=output)
+    value, low, high = estimate(part, "group_ST")
+    if not np.isfinite(value).all():
+        return None
+    order = np.argsort(-value, kind="stable")
+    names = part["group_name"].values
+    told = [f"{names[i]} {percent(value[i], low[i], high[i])}" for i in order]
+    what = f"of the variance of {of_output(sens, output)} ({INDEX_WORDS['ST']})"
+    text = f"By groups, {names[order[0]]} accounts for {percent(value[order[0]], low[order[0]], high[order[0]])} {what}"
+    text += f", {listing(told[1:])}." if told[1:] else "."
+    ranks = [(str(part["group"].values[i]), float(value[i]), float(low[i]), float(high[i])) for i in order]
+    return Sentence("groups", text, {"output": output, "ranks": ranks})
+
+
+def levels(sens: xr.Dataset, output: str) -> Sentence | None:
+    """Name the factor with the largest first-order index within each level of a category."""
+    if "conditional_S1" not in sens:
+        return None
+    part, told, lead = sens.sel(output=output), [], {}
+    for level in part["level"].values:
+        value, low, high = estimate(part.sel(level=level), "conditional_S1")
+        if not np.isfinite(value).any():
+            continue
+        best = int(np.nanargmax(value))
+        lead[str(level)] = str(part["factor"].values[best])
+        words = level_text(str(sens["level"].attrs["factor"]), level)
+        told.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {words}")
+    if not told:
+        return None
+    what = f"{INDEX_WORDS['S1']} of the variance of {of_output(sens, output)}"
+    text = f"By {category(sens)}, the largest {what} is: {'; '.join(told)}."
+    return Sentence("levels", text, {"output": output, "lead": lead})
+
+
+def category(sens: xr.Dataset) -> str:
+    """Name the factor whose levels the conditional indices stand for."""
+    return factor_name(str(sens["level"].attrs["factor"]))
+
+
+def part_tables(sens: xr.Dataset) -> list[Table]:
+    """List the indices of groups and those within the levels of a category, for every output."""
+    found = []
+    if "group_ST" in sens:
+        rows = []
+        for output in _with_index(sens, "group_ST"):
+            part = sens.sel(output=output)
+            for group in part["group"].values:
+                one = part.sel(group=group)
+                cells = [index_text(one, name) for name in ("group_S1", "group_ST")]
+                told = [capital(str(one["group_name"].item())), str(one["group_members"].item())]
+                rows.append([capital(of_output(sens, output)), *told, *cells])
+        heads = ["Output", "Group", "Factors", "First-order index", "Total index"]
+        note = f"{HALF}. The first-order index of a group holds the interactions inside the group."
+        found.append(Table("groups", "What groups of factors decide", heads, rows, note))
+    if "conditional_S1" in sens:
+        found.append(_level_table(sens))
+    return found
+
+
+def _level_table(sens: xr.Dataset) -> Table:
+    """List the factors by their index within each level, the largest first."""
+    name = "conditional_ST" if "conditional_ST" in sens else "conditional_S1"
+    rows = []
+    for output in _with_index(sens, name):
+        for level in sens["level"].values:
+            part = sens.sel(output=output, level=level)
+            value = part[name].values
+            order = [i for i in np.argsort(-np.nan_to_num(value, nan=-1.0), kind="stable") if np.isfinite(value[i])]
+            told = [f"{part['factor_name'].values[i]} {index_text(part.isel(factor=int(i)), name)}" for i in order[:4]]
+            size = count(int(part["conditional_rows"]))
+            words = level_text(str(sens["level"].attrs["factor"]), level)
+            rows.append([capital(of_output(sens, output)), words, "; ".join(told) or "–", size])
+    index = INDEX_WORDS["ST" if name.endswith("ST") else "S1"]
+    unit = {"saltelli": "Blocks", "grid": "Cells"}.get(str(sens.attrs.get("method")), "Rows")
+    heads = ["Output", capital(category(sens)), f"Factors that matter most ({index})", unit]
+    note = f"{HALF}. The variance is that among the cases of one level."
+    return Table("levels", f"What decides within each {category(sens)}", heads, rows, note)
+
+
+def _with_index(sens: xr.Dataset, name: str) -> list[str]:
+    return [str(o) for o in sens["output"].values if np.isfinite(sens[name].sel(output=o)).any()]

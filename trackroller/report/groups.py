@@ -41,15 +41,15 @@ class Groups:
         return len(self.texts)
 
 
-def classes(view: StudyView, name: str, rows: np.ndarray, most: int) -> tuple[np.ndarray, list[Any]]:
-    """Sort rows into the factor's own levels, or into `most` classes of equally many rows.
+def classes(view: StudyView, name: str, rows: np.ndarray, most: int | None) -> tuple[np.ndarray, list[Any]]:
+    """Sort rows into the factor's own levels, or into `most` classes of equally many rows where it has many levels.
 
     Returns
     -------
     Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or its ends (low, high).
     """
     values, levels = view.table[name].to_numpy()[rows], view.levels(name)
-    if not view.numeric(name) or len(levels) <= MOST_LEVELS:
+    if most is None or not view.numeric(name) or len(levels) <= MOST_LEVELS:
         place = {v: i for i, v in enumerate(levels)}
         return np.array([place.get(v, 0) for v in values], dtype=int), list(levels)
     edges = np.unique(np.quantile(values, np.linspace(0, 1, most + 1), method="nearest"))

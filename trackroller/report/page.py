@@ -14,15 +14,15 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.analysis.pareto import study_pareto
-from trackroller.report import choices, parts
+from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.aims import target_tables
 from trackroller.report.comparison import report_section
-from trackroller.report.decisions import index_table, measure_table, pareto_table, robust_tables
+from trackroller.report.decisions import index_table, measure_table, pareto_table, part_tables, robust_tables
 from trackroller.report.explorer.page import explorer, secured
+from trackroller.report.flags import friction_error
 from trackroller.report.html import data_uri, render
 from trackroller.report.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
-from trackroller.report.known_errors import friction_error
 from trackroller.report.numbers import capital, count, long_name, percent, rounded
 from trackroller.report.summary import in_short
 from trackroller.report.tables import Table, best_table, cell, reason_table, regime_table, validity_table
@@ -130,7 +130,7 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
         decide += _guarded(list, robust_tables, sens, error)
         said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
-        why = [index_table(sens, error), *parts.tables(sens)]
+        why = [index_table(sens, error), *part_tables(sens)]
         index, names = words.headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
         known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
         why += [measure_table(sens, name, error) for name in known[:1]]  # a life if there is one

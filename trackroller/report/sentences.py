@@ -10,27 +10,25 @@ import xarray as xr
 
 from trackroller.analysis.convergence import advice
 from trackroller.report.claims import Sentence, estimate
-from trackroller.report.numbers import (
-    capital,
-    count,
-    listing,
-    percent,
-    plus_minus,
-    rounded,
-    unit_text,
-)
+from trackroller.report.numbers import capital, count, listing, percent, plus_minus, rounded, unit_text
 
 HALF = "± is half the 95 % interval"
 SMALL = 0.02  # share of variance below which a factor is called negligible
 SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
 HEADLINES = {"saltelli": "ST", "morris": "mu_star", "grid": "main_share"}
-INDEX_WORDS = {
-    "ST": "total index",
+INDEX_WORDS = {  # in the order of the table of all measures
     "S1": "first-order index",
-    "first": "first-order index from given data",
+    "ST": "total index",
     "main_share": "first-order index",
     "mu_star": "mean absolute effect",
+    "sigma": "spread of effects σ",
     "effect": "change over the range",
+    "curvature": "curvature of the fit",
+    "first": "first-order index from given data",
+    "fit_alone": "first-order index by a fitted polynomial",
+    "delta": "delta",
+    "pawn": "PAWN",
+    "prcc": "partial rank correlation",
 }
 
 
@@ -78,6 +76,12 @@ def of_output(sens: xr.Dataset, output: str) -> str:
     part = sens.sel(output=output)
     text = str(part["output_name"].item())
     return f"log {text}" if str(part["scale"].item()) == "log10" else text
+
+
+def effect_unit(sens: xr.Dataset, output: str) -> str:
+    """Name the unit of an effect: decades on the logarithmic scale."""
+    part = sens.sel(output=output)
+    return "decades" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
 
 
 def _times(sens: xr.Dataset, output: str) -> float:
@@ -138,9 +142,8 @@ def _share_words(ranks: list[Rank], what: str, index: str) -> str:
 
 
 def _range_words(sens: xr.Dataset, output: str, ranks: list[Rank]) -> str:
-    part, index, first = sens.sel(output=output), headline(sens), ranks[0]
-    unit = "decades" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
-    unit = "" if unit == "–" else f" {unit}"
+    index, first = headline(sens), ranks[0]
+    unit = f" {effect_unit(sens, output)}".replace(" –", "")
     what = of_output(sens, output)
     text = f"Over its whole range {first.name} changes {what} most, by {plus_minus(first.value, first.low, first.high)}"
     text += f"{unit}{' on average' if index == 'mu_star' else ''}"

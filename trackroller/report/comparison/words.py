@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.report.comparison.errors import GOOD, errors, measured
-from trackroller.report.comparison.pairs import designs, pairs
+from trackroller.report.comparison.pairs import GOOD, designs, errors, measured, pairs
 from trackroller.report.groups import DRIVE, Groups, drives, groups, span
 from trackroller.report.numbers import capital, long_name, percent
 from trackroller.report.tables import Table

@@ -18,10 +18,9 @@ import xarray as xr
 from trackroller.analysis.pareto import default_objectives, study_pareto
 from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS
-from trackroller.report.decisions import heading
-from trackroller.report.explorer.inputs import solve_inputs, strengths
+from trackroller.report.choices import heading
 from trackroller.report.explorer.pack import pack, plain_level
-from trackroller.report.explorer.rows import STATES, Column, collect
+from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count

@@ -1,7 +1,8 @@
-"""The cases of a study as typed columns: factors, outputs, regimes and flags in words, and figures of each contact."""
+"""The cases of a study as typed columns: factors, results, states, and the inputs that solve a case again."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,13 +11,14 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.columns import BODY_RESULTS, CONTACT_RESULTS, study_dims
 from trackroller.report.flags import words_of
-from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, unit_text
+from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, plain, unit_text
 from trackroller.report.view import BODIES, StudyView
+from trackroller.roller.record import setting_text
 from trackroller.study import goals
-from trackroller.study.outputs import Output, default_names, outputs, read_study
+from trackroller.study.outputs import Output, default_names, flat, outputs, read_study
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
@@ -181,3 +183,54 @@ def flag_text(mask: int, flags: Sequence[str]) -> str:
     """Write the validity flags of a bit mask in words, 'none' without a flag."""
     said = [words_of(flag) for i, flag in enumerate(flags) if mask & (1 << i)]
     return "; ".join(said) or "none"
+
+
+def solve_inputs(ds: xr.Dataset, view: StudyView, known: dict[str, Column]) -> tuple[list[list[Any]], list[Column]]:
+    """Return what `trackroller solve --set` needs to repeat a case.
+
+    Parameters
+    ----------
+    ds : gathered study
+    view : the same study as a table
+    known : columns that the explorer has already, by name
+
+    Returns
+    -------
+    settings : key, and the text that is the same in all cases or the name of a column in a list of one
+    columns : further columns that the settings name
+    """
+    dims, settings, more = study_dims(ds), [], []
+    for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
+        name = f"{key}_value" if f"{key}_value" in ds.variables else key
+        if name in ds.variables and set(ds[name].dims) & set(dims):
+            if name not in known:
+                more.append(_input(name, flat(ds, name, tuple(dims))))
+            settings.append([key, [name]])
+        elif (text := setting_text(_fixed(ds, view, name))) is not None and key != "shortcuts":
+            settings.append([key, text])
+    return settings, more
+
+
+def _input(name: str, values: np.ndarray) -> Column:
+    if values.dtype.kind in "fiu":
+        return Column(name, plain(name), "", "input", values.astype(float))
+    return coded(name, plain(name), "input", values.astype(str))
+
+
+def _fixed(ds: xr.Dataset, view: StudyView, name: str) -> Any:
+    """Return a setting that is the same in all cases, None if it is not given."""
+    if name in ds.variables and not ds[name].ndim:
+        return ds[name].item()
+    if name in OPTIONS:
+        return view.study.get(name, ds.attrs.get(name))
+    return view.study.get("base", {}).get(name, getattr(PARAMETERS.get(name), "default", None))
+
+
+def strengths(ds: xr.Dataset) -> dict[str, list[float]]:
+    """Return tensile strength and fatigue limit [MPa] of each material of the study, by name."""
+    materials = json.loads(ds.attrs.get("materials") or "{}")
+    return {
+        str(name): [values["tensile_strength"], values["tensile_strength"] * values["fatigue_strength_ratio"]]
+        for name, values in materials.items()
+        if {"tensile_strength", "fatigue_strength_ratio"} <= set(values)
+    }

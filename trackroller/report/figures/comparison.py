@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.report.comparison.errors import GOOD, errors, measured
-from trackroller.report.comparison.pairs import designs, pairs
+from trackroller.report.comparison.pairs import GOOD, designs, errors, measured, pairs
 from trackroller.report.comparison.words import gap, short, telling_factors
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison_panels import LETTERS, Frame, frame, label_axis, line, panels, rolling

@@ -15,6 +15,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.ticker import MaxNLocator
 
 from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
+from trackroller.report.columns import at_surface
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, widths
 from trackroller.report.figures.contact_patch import case_name, case_text
@@ -27,7 +28,6 @@ PLANES = (
 )
 TRACTIONS = ("pressure", "shear_lateral", "shear_rolling")
 AROUND = 0.25  # of the grid of the tractions: so far the surface is shown beyond each end of it
-SURFACE = 1e-3  # depth [mm] down to which a peak counts as one at the surface
 SLENDER = 2.5  # patches longer than this are not drawn to one scale
 ROW_MM, SHARE_MM = 36.0, 125.0  # height of a row; width that the panels of a row share
 
@@ -157,10 +157,10 @@ def _surface(axes: Axes, patch: Patch, part: xr.Dataset, found: tuple, drawn: tu
 def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     if not all(n in part for n in ("peak_stress", "peak_x", "peak_y", "peak_z")):
         return
-    x, y, value, depth = (float(part[n]) for n in (*(f"peak_{axis}" for axis in plane), "peak_stress", "peak_z"))
+    x, y, value = (float(part[n]) for n in (*(f"peak_{axis}" for axis in plane), "peak_stress"))
     if not np.isfinite(x + y + value):
         return
-    below = plane[1] == "y" and depth >= SURFACE
+    below = plane[1] == "y" and at_surface(part) == 0
     look: dict[str, Any] = {"marker": "o" if below else "x", "markerfacecolor": "none", "clip_on": False}
     axes.plot(x, y, color="white", markersize=7, markeredgewidth=2.6, zorder=5, **look)
     axes.plot(x, y, color="black", markersize=6, markeredgewidth=1.3, zorder=6, **look)
@@ -187,7 +187,8 @@ def _sentence(part: xr.Dataset, bodies: list[str]) -> str:
         return "The peak was not computed."
     said = []
     for body in bodies:
-        value, depth = float(part["peak_stress"].sel(body=body)), float(part["peak_z"].sel(body=body))
-        where = "at the surface" if depth < SURFACE else f"{rounded(depth, 2)} mm deep"
+        own = part.sel(body=body)
+        value, depth = float(own["peak_stress"]), float(own["peak_z"])
+        where = "at the surface" if at_surface(own) == 1 else f"{rounded(depth, 2)} mm deep"
         said.append(f"{value:.0f} MPa {where} in the {body}")
     return f"The peak is {' and '.join(said)}."

@@ -10,10 +10,10 @@ import pandas as pd
 from trackroller.report.claims import leading_factor
 from trackroller.report.effects import effect_of
 from trackroller.report.figures import style
-from trackroller.report.figures.panels import Entries, drive_entries, drive_of, legend, marks, running
+from trackroller.report.figures.panels import Entries, legend, running
 from trackroller.report.findings import lift_off, surface
 from trackroller.report.groups import coloured
-from trackroller.report.numbers import factor_label, listing, number, quantity, symbol, with_unit
+from trackroller.report.numbers import factor_label, level_text, listing, number, quantity, symbol, with_unit
 from trackroller.report.view import BODIES, StudyView
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
@@ -126,9 +126,10 @@ def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any
     if not grid:
         return running(axes, part["_fit"].to_numpy(), part[y].to_numpy(), look)
     axes.plot(part["_fit"], part[y], color=look["color"], linestyle=look["linestyle"], zorder=2)
-    flag = part.get(f"at_surface_{body}")
-    at_surface = np.ones(len(part), dtype=bool) if flag is None else (flag == 1).to_numpy()
-    return marks(axes, part, "_fit", y, {**look, "s": 15}, at_surface)
+    flag = part.get(f"at_surface_{body}", pd.Series(1.0, part.index))
+    faces = [look["color"] if lies == 1 else "white" for lies in flag]
+    shown = {"s": 15, "marker": look["marker"], "linewidth": 0.8, "zorder": 3}
+    return axes.scatter(part["_fit"], part[y], color=faces, edgecolor=look["color"], **shown)
 
 
 def forces_against_axial(view: StudyView) -> style.Drawn:
@@ -142,34 +143,36 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
     kinds = [k for k in FORCES if f"{k[0]}_1" in view.table and (view.has(f"{k[0]}_1") or view.has(f"{k[0]}_2"))]
     if not kinds:
         return None
-    drives = drive_of(view.levels("motor_force") if "motor_force" in view.factors else None)
+    levels = view.levels("motor_force") if "motor_force" in view.factors else []
+    drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]  # else one line for all
     shown = (*view.behind(x), *(["motor_force"] if drives != [None] else []))
     rows, held = view.hold(shown)
     told = held if view.grid else MEDIANS
     figure = style.new_figure(74)
     panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
-    colours = style.palette(3)
-    looks = [{"color": colours[c], "marker": "os"[c], "s": (10, 20)[c]} for c in (0, 1)]
+    looks = [{"color": colour, "marker": mark} for colour, mark in zip(style.palette(2), "os", strict=True)]
+    looks = [look | {"markersize": size} for look, size in zip(looks, (3, 4.5), strict=True)] if view.grid else looks
+    looks[1] |= {"markerfacecolor": "white"} if view.grid else {}
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
         for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
             part = (rows if level is None else rows[rows["motor_force"] == level]).sort_values(x)
-            y, look = f"{name}_{contact}", looks[contact - 1]
-            if not view.grid:
-                line = {"color": look["color"], "marker": look["marker"], "linestyle": style.LINES[j % 6]}
-                running(axes, part[x].to_numpy(dtype=float), part[y].to_numpy(dtype=float), line)
-                continue
-            axes.plot(part[x], part[y], color=look["color"], linestyle=style.LINES[j % 6], zorder=2)
-            marks(axes, part, x, y, look, contact == 1)
+            at, force = (part[n].to_numpy(dtype=float) for n in (x, f"{name}_{contact}"))
+            look = looks[contact - 1] | {"linestyle": style.LINES[j % 6]}
+            if view.grid:
+                axes.plot(at, force, **look)
+            else:
+                running(axes, at, force, look)
         axes.set_ylabel(with_unit(f"{words} {letter}", "N"))
         axes.set_xlabel(factor_label(x))
         axes.margins(y=0.1)
     if view.grid:
         _shade_lift_off(panels, rows, x)
-    faces = [{"markerfacecolor": colours[0]}, {"markerfacecolor": "none" if view.grid else colours[1]}]
-    entries: Entries = [
-        (f"contact {c + 1}", {"color": colours[c], "marker": "os"[c], "linestyle": "none", **faces[c]}) for c in (0, 1)
+    entries: Entries = [(f"contact {c + 1}", looks[c] | {"linestyle": "none"}) for c in (0, 1)]
+    dashes = [{"color": "0.2", "linestyle": style.LINES[j % 6]} for j in range(len(drives))]
+    told_drives = [
+        (level_text("motor_force", d), look) for d, look in zip(drives, dashes, strict=True) if d is not None
     ]
-    legend(figure, entries + (drive_entries(drives) if drives != [None] else []), 5)
+    legend(figure, entries + told_drives, 5)
     style.head(figure, "Forces of both contacts against axial force", told)
     each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
     caption = f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}."

@@ -1,4 +1,4 @@
-"""Life over the two factors that decide it, with the regimes hatched and labelled."""
+"""Maps over two factors: life with the regimes hatched and labelled, and the regimes themselves."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
-from matplotlib.patches import Rectangle
+from matplotlib.patches import Patch, Rectangle
 
 from trackroller.parameters import REGIME_LABELS
+from trackroller.report.claims import explained
 from trackroller.report.figures import style
-from trackroller.report.findings import extremes
+from trackroller.report.findings import extremes, occurrence
 from trackroller.report.groups import BINS, classes
 from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
 from trackroller.report.view import StudyView
 
+FEWEST = 5  # a sample with fewer cases outside the most frequent regime has no map
 MAX_TICKS = 9
 MOST_WRITTEN = 72  # cells of a map with its values written in
 Pair = tuple[str, str]
@@ -64,49 +66,18 @@ def _life_pair(view: StudyView) -> Pair | None:
     """Return the pair of numeric factors with several levels and the largest effect on life."""
     names = [f for f in view.factors if view.numeric(f) and len(view.levels(f)) > 1]
     column = view.life[0] if view.life else ""
-    swing = {f: _swing(view, f, column) for f in names}
+    share = explained(view, column, np.ones(len(view.table), dtype=bool), tuple(names))
 
     def worth(pair: Pair) -> tuple[float, ...]:
         rows, _ = view.hold(pair)
         several = float(sum(len(view.levels(f)) > 2 for f in pair))
-        return (
-            float(np.isfinite(rows[column]).any()),
-            several,
-            sum(swing[f] for f in pair),
-        )
+        return float(np.isfinite(rows[column]).any()), several, sum(share.get(f, 0.0) for f in pair)
 
     pairs = list(itertools.combinations(names, 2))
     if not pairs:
         return None
     x, y = max(pairs, key=worth)
     return (x, y) if len(view.levels(x)) >= len(view.levels(y)) else (y, x)
-
-
-def _swing(view: StudyView, name: str, column: str) -> float:
-    """Return the largest difference of the mean log life between levels, by which the drawn factor is chosen."""
-    life = view.column(column)
-    good = np.isfinite(life) & (life > 0)
-    if not good.any():
-        return 0.0
-    index, ends = classes(view, name, good, 5)
-    logs = np.log10(life[good])
-    return float(np.ptp([logs[index == k].mean() for k in range(len(ends)) if (index == k).any()]))
-
-
-def places(view: StudyView, name: str, inside: np.ndarray) -> tuple[np.ndarray, list[Any]]:
-    """Return the column or row of cells in which each chosen case lies, and the level or the ends of each.
-
-    A grid has a cell for each level; in a sample a factor of many levels has `BINS` classes.
-
-    Parameters
-    ----------
-    inside : the chosen cases, shape (n,) bool
-    """
-    if not view.grid:
-        return classes(view, name, inside, BINS)
-    levels = view.levels(name)
-    index = {level: i for i, level in enumerate(levels)}
-    return view.table[name][inside].map(index).to_numpy(), levels
 
 
 def cell_name(name: str, end: Any) -> str:
@@ -130,7 +101,7 @@ def _norm(life: np.ndarray) -> LogNorm:
 
 def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
     inside = np.isin(np.arange(len(view.table)), rows.index)
-    found = [places(view, name, inside) for name in pair]
+    found = [classes(view, name, inside, None if view.grid else BINS) for name in pair]
     keys, shape = [index for index, _ in found], (len(found[1][1]), len(found[0][1]))
     life = _table(rows[column], keys, shape)
     axes.set_facecolor("0.75")  # cells without a life
@@ -194,3 +165,69 @@ def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
         "bbox": box,
     }
     axes.text(middle[1], middle[0], REGIME_LABELS[code], **label).set_in_layout(False)
+
+
+def regime_map(view: StudyView) -> style.Drawn:
+    """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most.
+
+    It answers: where may the roller not be used? Return None if all cases roll, or nearly all cases of a sample.
+    """
+    if "regime" not in view.table or len(view.factors) < 2:
+        return None
+    most = np.unique(view.regime, return_counts=True)[1].max()
+    if len(view.table) - most < (1 if view.grid else FEWEST):
+        return None
+    ranked = sorted(view.factors, key=lambda f: -_regime_spread(view, f))
+    pair: Pair = (ranked[0], ranked[1])
+    pair = pair if len(view.levels(pair[0])) >= len(view.levels(pair[1])) else (pair[1], pair[0])
+    if not view.numeric(pair[0]):  # a factor with long names goes on the vertical axis, where its names have room
+        pair = (pair[1], pair[0])
+    figure = style.new_figure(76)
+    axes = figure.subplots()
+    note = _regime_shares(axes, view, pair)
+    axes.set_xlabel(factor_label(pair[0]))
+    axes.set_ylabel(factor_label(pair[1]))
+    axes.grid(False)
+    style.head(figure, "Regimes: rolling, full slip, lift-off", note)
+    said = [occurrence(view, view.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
+    caption = f"Regime of the cases over {long_name(pair[0])} and {long_name(pair[1])}. {note}"
+    return figure, style.FigureInfo("regime_map", caption.strip(), " ".join(s.text for s in said if s))
+
+
+def _regime_spread(view: StudyView, name: str) -> float:
+    """Return how much the share of a regime changes over the levels of a factor; it decides which factor is drawn."""
+    index, ends = classes(view, name, np.ones(len(view.table), dtype=bool), BINS)
+    spread = 0.0
+    for code in (1, 2, 3):
+        shares = [float((view.regime[index == k] == code).mean()) for k in range(len(ends)) if (index == k).any()]
+        spread = max(spread, max(shares) - min(shares))
+    return spread
+
+
+def _regime_shares(axes: Axes, view: StudyView, pair: Pair) -> str:
+    """Draw cells over both factors, each divided from left to right by the share of the regimes."""
+    every = np.ones(len(view.table), dtype=bool)
+    keys, ends = zip(*(classes(view, f, every, BINS) for f in pair), strict=True)
+    texts = [[cell_name(f, end) for end in part] for f, part in zip(pair, ends, strict=True)]
+    both = zip(style.REGIME_COLOURS, style.REGIME_HATCHES, strict=True)
+    looks: list[dict[str, Any]] = [{"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both]
+    gaps = [0.04 if len(t) <= 12 else 0.0 for t in texts]
+    width, thin = 1 - 2 * gaps[0], 0.3 if all(gaps) else 0.0
+    for i, j in np.ndindex(len(texts[0]), len(texts[1])):
+        here, left = view.regime[(keys[0] == i) & (keys[1] == j)], i + gaps[0]
+        for code in range(4) if here.size else ():
+            part = width * float((here == code).mean())
+            if part > 0:
+                axes.add_patch(Rectangle((left, j + gaps[1]), part, 1 - 2 * gaps[1], linewidth=thin, **looks[code]))
+            left += part
+    axes.set_xlim(0, len(texts[0]))
+    axes.set_ylim(0, len(texts[1]))
+    for axis, labels in ((axes.xaxis, texts[0]), (axes.yaxis, texts[1])):
+        set_ticks(axis, labels)
+    axes.tick_params(length=0)
+    if sum(map(len, texts[0])) > 100:
+        axes.tick_params(axis="x", rotation=35)
+    handles = [Patch(label=REGIME_LABELS[c], **looks[c]) for c in range(4) if (view.regime == c).any()]
+    axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
+    others = len(view.factors) > 2
+    return "Each cell is divided by the share of its cases in each regime, over all other factors." if others else ""

@@ -1,4 +1,4 @@
-"""Parts that the figures of a study share: capped lives, marks, legends."""
+"""Parts that the figures of a study share: capped lives, legends, medians with bands."""
 
 from __future__ import annotations
 
@@ -8,16 +8,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from trackroller.report.figures import style
 from trackroller.report.groups import Groups
-from trackroller.report.numbers import level_text
 
 CLASSES, FEWEST = 8, 5  # most classes of a sample along an axis, and fewest rows of a class
 Entries = list[tuple[str, dict[str, Any]]]
@@ -61,36 +58,10 @@ def mark_unlimited(axes: Axes, height: float | None) -> None:
     )
 
 
-def marks(axes: Axes, rows: pd.DataFrame, x: str, y: str, look: dict[str, Any], filled: Any) -> None:
-    """Draw marks, filled where `filled` (n,) says so and hollow elsewhere.
-
-    Parameters
-    ----------
-    look : `color`, `marker` and `s`, the area of a mark [pt^2]
-    """
-    filled = np.broadcast_to(np.asarray(filled, dtype=bool), len(rows))
-    colour = look["color"]
-    for chosen, face in ((filled, colour), (~filled, "white")):
-        part = rows[chosen]
-        shown = {"marker": look["marker"], "s": look["s"], "facecolor": face, "edgecolor": colour}
-        axes.scatter(part[x], part[y], linewidth=0.8, zorder=3, **shown)
-
-
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
     """Draw the legend under the axes, so that it never covers data: of looks, or of what is drawn by its label."""
     own = entries if isinstance(entries, Mapping) else {text: Line2D([], [], **look) for text, look in entries}
     figure.legend(own.values(), own, loc="outside lower left", ncols=columns, alignment="left")
-
-
-def drive_entries(drives: list[Any]) -> Entries:
-    """Return the legend entries of motor forces, told apart by dashes."""
-    looks = [{"color": "0.2", "linestyle": style.LINES[j % 6]} for j in range(len(drives))]
-    return [(level_text("motor_force", d), look) for d, look in zip(drives, looks, strict=True)]
-
-
-def drive_of(levels: list[Any] | None) -> list[Any]:
-    """Return the drives that get a line each: up to five levels, otherwise one line for all."""
-    return levels if levels is not None and len(levels) <= 5 else [None]
 
 
 def quantiles(

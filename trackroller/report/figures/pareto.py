@@ -13,7 +13,7 @@ from trackroller.report.claims import leading_factor
 from trackroller.report.figures import style
 from trackroller.report.findings import CONDITIONS
 from trackroller.report.groups import coloured
-from trackroller.report.numbers import capital, factor_label, listing, long_name, plain, with_unit
+from trackroller.report.numbers import capital, listing, long_name, plain, with_unit
 from trackroller.report.view import StudyView
 from trackroller.study.design.entries import OPTION_FACTORS
 
@@ -28,11 +28,6 @@ def _given(front: xr.Dataset) -> str:
     told = f" Factors that the use sets and a designer cannot choose: {listing(given)}." if given else ""
     models = [long_name(n) for n in names if n in OPTION_FACTORS]
     return told + (f" An option of the calculation, not of the design: {listing(models)}." if models else "")
-
-
-def _label(front: xr.Dataset, name: str) -> str:
-    units, text = front[name].attrs.get("units", ""), front[name].attrs.get("long_name", name)
-    return with_unit(capital(text), units) if units else factor_label(name)
 
 
 def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Drawn:
@@ -109,8 +104,8 @@ def _trade(
         if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
             set_scale("log")
             style.log_ticks(axes.xaxis if name == x else axes.yaxis, values.min(), values.max())
-    axes.set_xlabel(_label(front, x) + (" →" if up_x == "max" else " ←"))
-    axes.set_ylabel(_label(front, y) + (" →" if up_y == "max" else " ←"))
+    axes.set_xlabel(choices.heading(front, x) + (" →" if up_x == "max" else " ←"))
+    axes.set_ylabel(choices.heading(front, y) + (" →" if up_y == "max" else " ←"))
 
 
 def robust_points(table: xr.Dataset, output: str) -> style.Drawn:

@@ -6,6 +6,8 @@ caption and sentence, or None where the design does not support it.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import seaborn
 import xarray as xr
@@ -13,42 +15,21 @@ from matplotlib.figure import Figure
 
 from trackroller.report import sentences as words
 from trackroller.report.figures import style
-from trackroller.report.numbers import capital, unit_text
+from trackroller.report.numbers import capital, with_unit
+from trackroller.study.outputs import DEFAULTS
 
+Look = dict[str, Any]
 MAX_BARS = 12
+SIZED = ("mu_star", "effect")  # indices with a unit; all others are shares of variance
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
-FIRST = (
-    "roller_life_hours",
-    "roller_life_cycles",
-    "guide_life_hours",
-    "guide_life_cycles",
-    "friction_power",
-    "roller_peak_stress",
-    "guide_peak_stress",
-    "max_pressure",
-    "friction_energy",
-)
-AXIS = {
-    "S1": "first-order index: share of variance",
-    "ST": "total index: share of variance",
-    "first": "first-order index: share of variance",
-    "main_share": "first-order index: share of variance",
-    "mu_star": "mean absolute effect μ*",
-    "effect": "change over the range",
-}
 
 
 def main_outputs(sens: xr.Dataset, count: int) -> list[str]:
     """Name the outputs most asked for that have an index."""
     index = words.headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
-    return sorted(names, key=lambda n: FIRST.index(n) if n in FIRST else len(FIRST))[:count]
-
-
-def effect_unit(sens: xr.Dataset, output: str) -> str:
-    """Name the unit of an effect: decades on the logarithmic scale."""
-    part = sens.sel(output=output)
-    return "decades" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
+    usual = list(DEFAULTS)  # lives first
+    return sorted(names, key=lambda n: usual.index(n) if n in usual else len(usual))[:count]
 
 
 def title(sens: xr.Dataset, output: str) -> str:
@@ -75,9 +56,9 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
         if name not in words.SIGNED:  # a share of variance is not drawn below 0
             value, low, high = (np.maximum(v, 0.0) for v in (value, low, high))
         at = place + (0.19 - 0.38 * i) * (len(drawn) > 1)
-        look = {"height": 0.38 if len(drawn) > 1 else 0.62, "hatch": "////" * i, "color": style.palette(2)[i]}
-        axes.barh(at, value, edgecolor="0.15", linewidth=0.6, label=words.INDEX_WORDS[name], **look)
-        whisker = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
+        look: Look = {"height": 0.38 if len(drawn) > 1 else 0.62, "hatch": "////" * i, "linewidth": 0.6}
+        axes.barh(at, value, color=style.palette(2)[i], edgecolor="0.15", label=words.INDEX_WORDS[name], **look)
+        whisker: Look = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
         axes.errorbar(value, at, xerr=np.abs([value - low, high - value]), **whisker)
     if len(drawn) > 1:
         axes.legend(loc="lower right")
@@ -95,7 +76,8 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
 
 
 def _axis(sens: xr.Dataset, output: str, index: str) -> str:
-    return f"{AXIS[index]} [{effect_unit(sens, output) if index in ('mu_star', 'effect') else '–'}]"
+    text = words.INDEX_WORDS[index]
+    return with_unit(text, words.effect_unit(sens, output)) if index in SIZED else f"{text}: share of variance [–]"
 
 
 def overview(sens: xr.Dataset) -> style.Drawn:
@@ -109,13 +91,13 @@ def overview(sens: xr.Dataset) -> style.Drawn:
     keep = np.isfinite(table).any(axis=0)
     if keep.sum() < 2:
         return None
-    table, sized = table[:, keep], index in ("mu_star", "effect")
+    table, sized = table[:, keep], index in SIZED
     if sized:
         table = table / np.nanmax(table, axis=0)
     rank = np.argsort(-np.nan_to_num(table).mean(axis=1))
     names = [capital(str(n)) for n in sens["factor_name"].values[rank]]
     outputs = [capital(str(n)) for n in sens["output_name"].values[keep]]
-    label = f"{'relative to the largest' if sized else AXIS[index]} [–]"
+    label = f"{words.INDEX_WORDS[index]}: {'relative to the largest' if sized else 'share of variance'} [–]"
     figure = _heat(table[rank].T, outputs, names, label, "Influence on every output")
     caption = f"{capital(words.INDEX_WORDS[index])} of every factor (columns) on every output (rows)."
     return figure, style.FigureInfo("influence-overview", caption, words.overview(sens).text)
@@ -125,9 +107,10 @@ def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, he
     """Draw a heat map with its values written in."""
     figure = style.new_figure(34 + 5.2 * len(rows))
     texts = [[f"{v:.2f}".removeprefix("0") if abs(v) < 10 else f"{v:.3g}" for v in row] for row in table]
-    look = {"cmap": "Greys", "vmin": 0.0, "vmax": max(float(np.nanmax(np.abs(table))), 1e-9), "annot_kws": {"size": 7}}
+    top = max(float(np.nanmax(np.abs(table))), 1e-9)
+    look: Look = {"cmap": "Greys", "vmin": 0.0, "vmax": top, "annot": np.array(texts), "annot_kws": {"size": 7}}
     bar = {"label": label, "shrink": 0.9, "pad": 0.02}
-    axes = seaborn.heatmap(table, ax=figure.add_subplot(), annot=np.array(texts), fmt="", cbar_kws=bar, **look)
+    axes = seaborn.heatmap(table, ax=figure.add_subplot(), fmt="", cbar_kws=bar, **look)
     axes.set_yticks(0.5 + np.arange(len(rows)), rows, rotation=0)
     axes.set_xticks(0.5 + np.arange(len(columns)), columns, rotation=25, ha="right", rotation_mode="anchor")
     axes.tick_params(length=0)
@@ -185,14 +168,14 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     for share, dash in ((1.0, "--"), (0.5, ":")):
         label = "σ = μ*" if share == 1 else "σ = μ*/2"
         axes.plot([0, top], [0, share * top], color="0.4", linestyle=dash, linewidth=0.8, label=label)
-    whisker = {"capsize": 1.5, "elinewidth": 0.7, "linestyle": "none"}
-    edge = {"markeredgecolor": "0.15", "markeredgewidth": 0.5}
+    whisker: Look = {"capsize": 1.5, "elinewidth": 0.7, "linestyle": "none"}
+    whisker |= {"markeredgecolor": "0.15", "markeredgewidth": 0.5}
     ranks = words.order(sens, output)
     for i, (rank, colour) in enumerate(zip(ranks, style.palette(len(ranks)), strict=True)):
         half = np.abs([[rank.value - rank.low], [rank.high - rank.value]])
         look = {"color": colour, "marker": style.MARKERS[i % 10], "label": capital(rank.name)}
-        axes.errorbar(rank.value, float(part["sigma"].sel(factor=rank.factor)), xerr=half, **whisker, **edge, **look)
-    unit = effect_unit(sens, output)
+        axes.errorbar(rank.value, float(part["sigma"].sel(factor=rank.factor)), xerr=half, **whisker | look)
+    unit = words.effect_unit(sens, output)
     axes.set_xlabel(f"mean absolute effect μ* [{unit}]")
     axes.set_ylabel(f"spread of the effects σ [{unit}]")
     axes.set_xlim(0, top)
@@ -228,7 +211,7 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     np.fill_diagonal(table, np.abs(part[own].values) if own == "effect" else np.maximum(part[own].values, 0.0))
     table = np.where(np.triu(np.ones_like(table, dtype=bool)), np.abs(table), np.nan)
     names = [capital(str(n)) for n in part["factor_name"].values]
-    label = f"size [{effect_unit(sens, output)}]" if name == "interaction" else "share of variance [–]"
+    label = f"size [{words.effect_unit(sens, output)}]" if name == "interaction" else "share of variance [–]"
     figure = _heat(table, names, names, label, f"{title(sens, output)}: interactions")
     caption = "Off the diagonal: what two factors do together beyond the sum of both; on it: each factor alone."
     caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""

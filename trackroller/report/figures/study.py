@@ -16,9 +16,8 @@ from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
-from trackroller.report.figures.maps import life_map
+from trackroller.report.figures.maps import life_map, regime_map
 from trackroller.report.figures.pareto import pareto_front, robust_points
-from trackroller.report.figures.regimes import regime_map
 from trackroller.report.figures.sensitivity import (
     convergence,
     interactions,
@@ -28,7 +27,7 @@ from trackroller.report.figures.sensitivity import (
     tornado,
 )
 from trackroller.report.figures.sn_diagram import sn_diagram
-from trackroller.report.known_errors import FRICTION_OUTPUTS, friction_error
+from trackroller.report.flags import FRICTION_OUTPUTS, friction_error
 from trackroller.report.view import StudyView, load_analysis
 
 log = logging.getLogger(__name__)

@@ -11,6 +11,7 @@ import numpy as np
 
 from trackroller.damage import fatigue
 from trackroller.parameters import OPTIONS, REGIMES
+from trackroller.report.columns import at_surface
 from trackroller.report.flags import Flag, flags_of
 from trackroller.report.inputs import Row, as_material, input_row, is_told, material_rows, material_source
 from trackroller.report.numbers import life, number, plain, rounded, unit_text
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
     from trackroller.materials import Material
 
-ON_SURFACE = 1e-6  # a peak less deep than this share of the patch lies on the surface
 CONTACT_ROWS = (  # variable, words
     ("normal_force", "normal force F_N"),
     ("lateral_force", "lateral friction force F_T"),
@@ -154,8 +154,7 @@ def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Material]) -> C
 
 def _body(own: xr.Dataset, body: str, material: Material) -> BodyFacts:
     x, y, z = (float(own[f"peak_{axis}"]) for axis in "xyz")
-    surface = z <= ON_SURFACE * max(float(own.get("semi_axis_lateral", 1.0)), 1e-9)
-    depth = "on the surface" if surface else f"{rounded(z, 2)} mm below the surface"
+    depth = "at the surface" if at_surface(own) == 1 else f"{rounded(z, 2)} mm below the surface"
     place = f"{depth}, x = {rounded(x, 2)} mm, y = {rounded(y, 2)} mm"
     peak, cycles, hours = (float(own.get(n, math.nan)) for n in ("peak_stress", "life_cycles", "life_hours"))
     return BodyFacts(body, peak, place, peak / material.tensile_strength, peak / material.fatigue_limit, cycles, hours)
