@@ -77,8 +77,8 @@ def test_sentence_tells_the_size_and_the_ends():
     )
     best = front.isel(row=np.flatnonzero(front["optimal"]))
     low = best.isel(row=int(best["friction_power"].values.argmin()))
-    assert f"to {quantity(float(low['roller_life_hours']), 'h')} life of the roller and" in text
-    assert f"{quantity(float(low['friction_power']), 'W')} friction power of both contacts." in text
+    ends = quantity(float(low["roller_life_hours"]), "h"), quantity(float(low["friction_power"]), "W")
+    assert f" friction power of both contacts to {ends[0]} and {ends[1]}." in text
 
 
 def test_a_single_best_design_is_called_so():

@@ -90,7 +90,7 @@ def test_cases_that_miss_a_constraint_miss_the_target():
     power = out["target_probability"].sel(target=out["target"] == "friction_power").values
     np.testing.assert_allclose(power, 0.5, atol=0.005)
     said = choices.robustness(out, "roller_life_hours")
-    assert "nine of ten rolling cases that meet the constraints reach" in said.text and "no B10 is left" in said.text
+    assert "nine of ten rolling cases that meet the constraints reach" in said.text and "there is no B10" in said.text
     assert (out["b10_safe"].sel(output="roller_life_hours") == 0).all()  # half of the cases count as life 0
 
 

@@ -311,7 +311,7 @@ def test_every_sentence_on_design_points_is_true():
         assert told == pytest.approx(b10[best], rel=0.006)
         slip = float(re.search(r"full slip there in ([\d.]+) %", said.text)[1])
         assert slip == pytest.approx(100 * shares[1, best], abs=0.51)
-        assert ("no B10 is left" in said.text) == (shares[0, best] < 1 and safe[best] == 0)
+        assert ("there is no B10" in said.text) == (shares[0, best] < 1 and safe[best] == 0)
 
 
 def test_sentences_name_the_factors_that_are_correlated_in_the_rows():

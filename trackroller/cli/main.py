@@ -113,9 +113,10 @@ def explore(
     ] = None,
 ) -> None:
     """Write the explorer of a study that was run as one page (HTML) that works without a network."""
-    from trackroller.cli.study import write_page
+    from trackroller.report.explorer.page import write_explorer
 
-    write_page(study, results, out)
+    path = Path(study)
+    print(write_explorer(path if path.exists() else results / study, out))
 
 
 @app.command()

@@ -69,14 +69,6 @@ def make_report(name: str, results: Path) -> None:
     print(_report(study, study_folder(study.name, results)))
 
 
-def write_page(name: str, results: Path, out: Path | None) -> None:
-    """Write the explorer of a study, given by its folder, its name or its file of results."""
-    from trackroller.report.explorer.page import write_explorer  # heavy: xarray
-
-    path = Path(name)
-    print(write_explorer(path if path.exists() else results / name, out))
-
-
 def _report(study: Study, folder: StudyFolder) -> Path:
     from trackroller.report.build import build_report  # heavy: SALib
 

@@ -45,10 +45,10 @@ def target(table: xr.Dataset, number: int) -> Sentence:
         best, worst = int(np.argmax(share)), int(np.argmin(share))
         values |= {"best": best, "worst": worst}
         told = chance(share[best], low[best], high[best], INTERVAL)
-        text = f"{what}: probability {told} at {point_words(table, best)}"
-        if len(share) > 1 and share[best] - share[worst] < SAME:
-            text += f", and the same at all {len(share)} design points"
-        elif len(share) > 1:
+        same = len(share) > 1 and share[best] - share[worst] < SAME
+        where = f"all {len(share)} design points" if same else point_words(table, best)
+        text = f"{what}: probability {told} at {where}"
+        if len(share) > 1 and not same:
             text += f"; no other of the {count(len(share))} design points has more. The least, "
             text += f"{chance(share[worst], low[worst], high[worst], INTERVAL)}, is at {point_words(table, worst)}"
     elif np.isfinite(low):

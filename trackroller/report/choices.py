@@ -43,11 +43,9 @@ def pareto(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
         text = f"One of {allowed} allowed {kind}s is best in everything: {listing(told)}."
     else:
         one, two = ends[0], ends[1]
-        said = [
-            listing([f"{_goal_value(front, g, end[2][g])} {goal_words(front, g)}" for g, _ in goals])
-            for end in (one, two)
-        ]
-        span = f"from {said[0]} to {said[1]}" if one[2] != two[2] else f"all with {said[0]}"
+        first = listing([f"{_goal_value(front, g, one[2][g])} {goal_words(front, g)}" for g, _ in goals])
+        last = listing([_goal_value(front, g, two[2][g]) for g, _ in goals])
+        span = f"from {first} to {last}" if one[2] != two[2] else f"all with {first}"
         text = f"{count(len(best))} of {allowed} allowed {kind}s are Pareto-optimal: {span}."
     if view is not None and kind == "design":
         outside = int((~view.valid[front["row"].values[best]]).sum())
@@ -94,7 +92,10 @@ def robustness(table: xr.Dataset, output: str) -> Sentence:
     if not still and safe[best] > 0:
         text += f"; with every other case counted as life 0 it is {quantity(float(safe[best]), unit)}"
     elif not still:
-        text += "; one in ten or more are other cases, so that counting these no B10 is left"
+        missed = " or miss a constraint" if limited else ""
+        text += (
+            f"; one in ten or more of all cases do not roll{missed}, and with these counted as life 0 there is no B10"
+        )
     text += f"; full slip there in {chance(slip[best])} and lift-off in {chance(lift[best])} of the cases"
     values = {"output": output, "point": best, "b10": b10, "safe": float(safe[best])}
     worst = int(np.argmax(slip + lift))

@@ -94,7 +94,7 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
     if never := [r for r in OTHERS if r not in seen]:
         high = 100 * float(table["probability_high"].sel(regime=never).max())
         shown = listing([OTHERS[r] for r in never], "or")
-        note += f" No case of any point shows {shown}: below {high:.2g} % at each (95 %)."
+        note += f" No case shows {shown}: its probability is below {high:.2g} % at each design point (95 % confidence)."
     if (left := table.sizes["point"] - MAX_POINTS) > 0:
         note += f" {left} more design points are in sensitivity.nc."
     first = Table(f"b10_{output}", f"{name}: B10 [{unit}], best design points first", heads, rows, note)
@@ -140,7 +140,7 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     note = f"{capital('; '.join(told))}."
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
     if len(best) > len(rows):
-        note += f" {len(rows)} of the {len(best)} {kind}s, evenly along the first goal."
+        note += f" The table shows {len(rows)} of the {len(best)} {kind}s, spread evenly along the first goal."
     note += f" {error.text}" if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
     return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
 

@@ -264,8 +264,8 @@ def surface(view: StudyView, body: str, rows: np.ndarray) -> Sentence | None:
     if not known:
         return None
     where = f"at the surface in {count(hit)} of {count(known)} valid designs ({share(hit, known)})"
-    where = f"below the surface in all {count(known)} valid designs" if not hit else where
-    where = f"at the surface in all {count(known)} valid designs" if hit == known else where
+    if hit in (0, known):
+        where = f"{'at' if hit else 'below'} the surface in all {count(known)} valid designs"
     text = f"The peak stress of the {body} lies {where}."
     return Sentence("surface", text, {"body": body, "count": hit, "of": known}, rows)
 

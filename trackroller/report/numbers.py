@@ -9,16 +9,8 @@ from typing import Any
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 from trackroller.study.design.levels import short
 
-UNITS = {
-    "1": "–",
-    "-": "–",
-    "degree": "°",
-    "deg": "°",
-    "m min-1": "m/min",
-    "h-1": "1/h",
-    "J m-1": "J/m",
-    "N mm": "N·mm",
-}
+UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°"}
+UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm"}
 SPOKEN = ("motor_force", "guide_curve_radius", "material_pair", "roller_material", "guide_material")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 

@@ -40,18 +40,8 @@ SECTIONS = {  # where a figure stands, by the beginning of its name
     "ends": ("regime_map", "forces_against"),
     "models": ("models-",),
 }
-_TOLD = {
-    "study",
-    "materials",
-    "comment",
-    "title",
-    "coordinates",
-    "Conventions",
-    "life_conventions",
-    "sign_conventions",
-    "design",
-    *OPTIONS,
-}
+_ELSEWHERE = "study materials comment title coordinates Conventions life_conventions sign_conventions design"
+_TOLD = {*_ELSEWHERE.split(), *OPTIONS}  # attributes that do not stand in the record
 
 
 def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_nc: Path | None = None) -> Path:
@@ -189,17 +179,17 @@ def solution_facts(ds: xr.Dataset, view: StudyView) -> list[Row]:
     if "converged" in view.table:
         done = int((view.table["converged"] == 1).sum())
         rows.append(Row("Converged cases", f"{count(done)} of {count(len(view.table))}"))
-    for name, told in (
-        ("residual", "Largest relative residual of the equilibrium"),
-        ("error_estimate", "Largest estimated relative error of the peak stress"),
-    ):
-        if name in ds and ds[name].dtype.kind == "f" and np.isfinite(ds[name].values).any():
-            good = ds[name].values[np.isfinite(ds[name].values)]
-            text = rounded(float(good.max()), 2)
-            if name == "error_estimate" and good.max() > 0.01:
-                text = f"{percent(float(good.max()))} (median {percent(float(np.median(good)))})"
-            rows.append(Row(told, text))
+    if (found := _finite(ds, "residual")).size:
+        rows.append(Row("Largest relative residual of the equilibrium", rounded(float(found.max()), 2)))
+    if (found := _finite(ds, "error_estimate")).size:
+        text = f"{percent(float(found.max()))} (median {percent(float(np.median(found)))})"
+        rows.append(Row("Largest estimated relative error of the peak stress", text))
     return rows
+
+
+def _finite(ds: xr.Dataset, name: str) -> np.ndarray:
+    values = ds[name].values.astype(float) if name in ds else np.empty(0)
+    return values[np.isfinite(values)]
 
 
 def figures(folder: Path) -> dict[str, list[dict[str, Any]]]:

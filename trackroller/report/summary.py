@@ -38,20 +38,13 @@ def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> lis
     """
     robust = sens is not None and words.robust_design(sens)
     met = [target(sens, -1)] if sens is not None and "target" in sens.dims else []  # the last one joins several
+    compared = [Sentence("models", text) for text in models]
     lines = [
         ("Valid designs", [valid_designs(view), stopped(view)]),
         ("Best design point", [*decides(sens), *met]) if robust else ("What decides", decides(sens)),
         ("Best", [best_design(view), *([] if robust else met)]),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
-        (
-            "How sure",
-            [
-                friction_error(view),
-                full_sliding(view),
-                *accuracy(view),
-                *(Sentence("models", text) for text in models),
-            ],
-        ),
+        ("How sure", [friction_error(view), full_sliding(view), *accuracy(view), *compared]),
         ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]

@@ -8,10 +8,10 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import escape
 
 import numpy as np
 
+from trackroller.report import html
 from trackroller.report.tables import Table, cell
 from trackroller.study.files import write_whole
 
@@ -35,55 +35,33 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
             csv.writer(file).writerows([table.heads, *table.rows])
         paths.append(path)
     book = folder / "tables.xlsx"
-    write_whole(book, lambda beside: _save(beside, _workbook(tables)))
+    write_whole(book, lambda beside: _save(beside, tables))
     return [*paths, book]
 
 
-def _save(path: Path, parts: dict[str, str]) -> None:
+def _save(path: Path, tables: Sequence[Table]) -> None:
+    """Write a workbook with one sheet a table."""
+    names = [re.sub(r"[\[\]:*?/\\]", " ", table.name)[:31] for table in tables]
+    parts: dict[str, tuple[str, list[Any]]] = {
+        "[Content_Types].xml": ("types", []),
+        "_rels/.rels": ("root", []),
+        "xl/workbook.xml": ("book", []),
+        "xl/_rels/workbook.xml.rels": ("links", []),
+    }
+    for i, table in enumerate(tables, 1):
+        parts[f"xl/worksheets/sheet{i}.xml"] = "sheet", [table.heads, *table.rows]
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
-        for name, text in parts.items():
+        for name, (part, rows) in parts.items():
+            content = {"part": part, "names": names, "rows": rows}
+            text = html.render("workbook.xml.j2", content, figure=_figure, printable=_printable)
             file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), text)
 
 
-_XML = '<?xml version="1.0" encoding="UTF-8" standalone="yes"?>\n'
-_MAIN = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
-_OFFICE = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
-_PACKAGE = "http://schemas.openxmlformats.org/package/2006"
+def _figure(value: Any) -> str | None:
+    """Return a finite number with all its figures, None for anything else."""
+    return repr(float(value)) if isinstance(value, (int, float, np.number)) and np.isfinite(value) else None
 
 
-def _workbook(tables: Sequence[Table]) -> dict[str, str]:
-    """Return the parts of an Office Open XML workbook (ISO/IEC 29500), one sheet a table."""
-    names = [re.sub(r"[\[\]:*?/\\]", " ", t.name)[:31] for t in tables]
-    kind = "application/vnd.openxmlformats-officedocument.spreadsheetml"
-    sheets = [f'<sheet name="{escape(n)}" sheetId="{i}" r:id="rId{i}"/>' for i, n in enumerate(names, 1)]
-    links = [
-        f'<Relationship Id="rId{i}" Type="{_OFFICE}/worksheet" Target="worksheets/sheet{i}.xml"/>'
-        for i in range(1, len(names) + 1)
-    ]
-    types = [
-        f'<Override PartName="/xl/worksheets/sheet{i}.xml" ContentType="{kind}.worksheet+xml"/>'
-        for i in range(1, len(names) + 1)
-    ]
-    parts = {
-        "[Content_Types].xml": f'<Types xmlns="{_PACKAGE}/content-types"><Default Extension="rels" ContentType='
-        '"application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="xml" ContentType='
-        f'"application/xml"/><Override PartName="/xl/workbook.xml" ContentType="{kind}.sheet.main+xml"/>'
-        f"{''.join(types)}</Types>",
-        "_rels/.rels": f'<Relationships xmlns="{_PACKAGE}/relationships"><Relationship Id="rId1" '
-        f'Type="{_OFFICE}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
-        "xl/workbook.xml": f'<workbook xmlns="{_MAIN}" xmlns:r="{_OFFICE}">'
-        f"<sheets>{''.join(sheets)}</sheets></workbook>",
-        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{_PACKAGE}/relationships">'
-        f"{''.join(links)}</Relationships>",
-    }
-    for i, table in enumerate(tables, 1):
-        rows = "".join(f"<row>{''.join(map(_xml_cell, row))}</row>" for row in [table.heads, *table.rows])
-        parts[f"xl/worksheets/sheet{i}.xml"] = f'<worksheet xmlns="{_MAIN}"><sheetData>{rows}</sheetData></worksheet>'
-    return {name: _XML + text for name, text in parts.items()}
-
-
-def _xml_cell(value: Any) -> str:
-    if isinstance(value, (int, float, np.number)) and np.isfinite(value):
-        return f"<c><v>{float(value)!r}</v></c>"
-    text = re.sub(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", value if isinstance(value, str) else cell(value))
-    return f'<c t="inlineStr"><is><t xml:space="preserve">{escape(text)}</t></is></c>'
+def _printable(value: Any) -> str:
+    """Return a text without the characters that XML forbids."""
+    return re.sub(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", value if isinstance(value, str) else cell(value))

@@ -170,10 +170,7 @@ def _of_capacity(ds: xr.Dataset, ref: xr.Dataset) -> xr.DataArray:
         abs(ds[n] - ref[n]) / s
         for n, s in (("lateral_force", capacity), ("driving_force", capacity), ("spin_moment", capacity * arm))
     ]
-    worst = sizes[0]
-    for size in sizes[1:]:
-        worst = worst.where(worst > size, size)
-    return _largest(worst)
+    return _largest(xr.concat(sizes, "force").max("force"))
 
 
 def _work(name: str) -> Callable[[xr.Dataset, xr.Dataset], xr.DataArray]:

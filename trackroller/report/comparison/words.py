@@ -107,11 +107,8 @@ def report_section(ds: xr.Dataset) -> dict[str, Any]:
                 rows.append([f"{model}: {q.words}", *cells, str(e.size)])
     heads = ["Model, quantity", f"designs within {percent(GOOD)}", "median error", "90 % below", "largest", "designs"]
     table = Table("contact_models", "Errors of the cheaper models", heads, rows)
-    return {
-        "short": short(paired),
-        "said": [overview(paired), *details(paired)],
-        "tables": [table] if rows else [],
-    }
+    said = [overview(paired), *details(paired)]
+    return {"short": short(paired), "said": said, "tables": [table] if rows else []}
 
 
 def _exact(reference: str) -> str:

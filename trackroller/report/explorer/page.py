@@ -17,8 +17,8 @@ import xarray as xr
 
 from trackroller.analysis.pareto import default_objectives, study_pareto
 from trackroller.errors import InputError
-from trackroller.parameters import EXACTNESS
 from trackroller.report.choices import heading
+from trackroller.report.columns import study_dims
 from trackroller.report.explorer.pack import pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.explorer.sample import sample_rows
@@ -27,8 +27,9 @@ from trackroller.report.numbers import count
 from trackroller.report.view import StudyView, load_analysis
 from trackroller.study.files import StudyFolder, write_text
 from trackroller.study.goals import statistic
-from trackroller.study.outputs import read_study
+from trackroller.study.outputs import flat, read_study
 
+MODEL = "contact_model"  # a Pareto set compares designs solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
 
 
@@ -67,7 +68,7 @@ def explorer(ds: xr.Dataset, view: StudyView | None = None, sens: xr.Dataset | N
         "states": list(STATES),
         "goals": view.study.get("pareto") or default_objectives(ds),
         "constraints": list(view.study.get("constraints") or ()),
-        "compared": compared(view),
+        "compared": view.held_level(MODEL) if MODEL in view.factors else "",
         "points": design_points(ds, sens),
         "columns": packed,
     }
@@ -85,7 +86,7 @@ def _numbers(ds: xr.Dataset, view: StudyView) -> np.ndarray | None:
     """Return the case numbers of `trackroller repeat` if they are not the row numbers."""
     if "case" not in ds.variables or ds["case"].size != len(view.table) or ds["case"].dtype.kind not in "fiu":
         return None
-    numbers = ds["case"].values.ravel()
+    numbers = flat(ds, "case", tuple(study_dims(ds)))
     return None if (numbers == np.arange(len(numbers))).all() else numbers
 
 
@@ -123,14 +124,6 @@ def design_points(ds: xr.Dataset, sens: xr.Dataset | None) -> dict[str, Any] | N
     labels = {name: heading(front, name) for name in names}
     values = {name: [plain_level(value) for value in front[name].values.tolist()] for name in names}
     return {"goals": goals, "factors": factors, "labels": labels, "values": values}
-
-
-def compared(view: StudyView) -> str:
-    """Name the contact model whose rows a Pareto set compares, '' if the study has one model."""
-    if "contact_model" not in view.factors:
-        return ""
-    found = set(view.table["contact_model"].astype(str))
-    return next((model for model in EXACTNESS if model in found), "")
 
 
 def asset(name: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +13,7 @@ from trackroller.errors import InputError
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.columns import BODY_RESULTS, CONTACT_RESULTS, study_dims
 from trackroller.report.flags import words_of
+from trackroller.report.inputs import stored_materials
 from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, plain, unit_text
 from trackroller.report.view import BODIES, StudyView
 from trackroller.roller.record import setting_text
@@ -228,9 +228,8 @@ def _fixed(ds: xr.Dataset, view: StudyView, name: str) -> Any:
 
 def strengths(ds: xr.Dataset) -> dict[str, list[float]]:
     """Return tensile strength and fatigue limit [MPa] of each material of the study, by name."""
-    materials = json.loads(ds.attrs.get("materials") or "{}")
     return {
         str(name): [values["tensile_strength"], values["tensile_strength"] * values["fatigue_strength_ratio"]]
-        for name, values in materials.items()
+        for name, values in stored_materials(ds.attrs).items()
         if {"tensile_strength", "fatigue_strength_ratio"} <= set(values)
     }

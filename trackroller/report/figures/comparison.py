@@ -138,11 +138,10 @@ def energy(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
         handles = {f"{m}, local product" if m == "sliding" else m: h for m, h in handles.items()}
         implied = shown.ds[balance].sel(contact_model="sliding").sum("contact", skipna=False)
         own = np.where(rolling(shown.ds), implied.values, np.nan)
+        look = {"linestyle": "-.", "markerfacecolor": "white"}
         for column, panel in enumerate(axes[0]):
-            band = shown.bands(own, column)
-            handles["sliding, from the resultants"] = line(
-                panel, shown.x, band, "sliding", False, linestyle="-.", markerfacecolor="white"
-            )
+            drawn = line(panel, shown.x, shown.bands(own, column), "sliding", False, **look)
+            handles["sliding, from the resultants"] = drawn
     lines = [np.asarray(drawn.get_ydata(), float) for panel in axes[0] for drawn in panel.lines]
     values = np.concatenate(lines) if lines else np.empty(0)
     if (values > 0).any():

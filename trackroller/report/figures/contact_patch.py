@@ -49,6 +49,10 @@ def _shapes(patches: list[Patch]) -> str:
     return "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
 
 
+def _scale_note(to_scale: bool) -> str:
+    return "" if to_scale else " Axes not to one scale."
+
+
 def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
     """Return a figure with the patches side by side and, on request, axes for a profile.
 
@@ -109,10 +113,9 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
         _arrows(axes, patch, top, to_scale)
         _pole(axes, patch)
     _bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
-    note = "" if to_scale else " Axes not to one scale."
     pole = any(p.spin_pole is not None for p in patches)
     dot = " Black dot: spin pole." if pole else ""
-    style.head(figure, f"Shear traction on the roller: {case_name(ds)}", f"{case_text(ds)}{dot}{note}")
+    style.head(figure, f"Shear traction on the roller: {case_name(ds)}", f"{case_text(ds)}{dot}{_scale_note(to_scale)}")
     best = int(np.argmax([s.max() for s in sizes]))
     caption = (
         f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; shade: size, MPa). "
@@ -132,25 +135,11 @@ def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
     x, y = np.meshgrid(patch.x[columns], patch.y[rows])
     u, v = patch.field("shear_lateral")[pick], patch.field("shear_rolling")[pick]
     step = float(min(np.ptp(axes.get_xlim()) / count[0], np.ptp(axes.get_ylim()) / count[1]))
-    size: dict[str, Any] = (
-        {"angles": "xy", "scale_units": "xy", "scale": top / (1.5 * step)}
-        if to_scale
-        else {"angles": "uv", "scale_units": "width", "scale": top / 0.075}
-    )
-    axes.quiver(
-        x[keep],
-        y[keep],
-        u[keep],
-        v[keep],
-        pivot="mid",
-        units="inches",
-        width=0.010,
-        headwidth=4,
-        headlength=4.5,
-        headaxislength=4,
-        zorder=3,
-        **size,
-    )
+    size: dict[str, Any] = {"angles": "uv", "scale_units": "width", "scale": top / 0.075}
+    if to_scale:
+        size = {"angles": "xy", "scale_units": "xy", "scale": top / (1.5 * step)}
+    size |= {"units": "inches", "width": 0.010, "headwidth": 4, "headlength": 4.5, "headaxislength": 4}
+    axes.quiver(x[keep], y[keep], u[keep], v[keep], pivot="mid", zorder=3, **size)
 
 
 def _every(length: int, count: int) -> np.ndarray:
@@ -167,14 +156,8 @@ def _pole(axes: Axes, patch: Patch) -> None:
     if left <= x <= right and rear <= y <= front:
         axes.plot(x, y, "o", color="black", markersize=5, markeredgecolor="white", markeredgewidth=0.8, zorder=5)
     elif np.isfinite(x):
-        beyond = x > 0.5 * (left + right)
-        axes.annotate(
-            f"spin pole at x = {number(x)} mm",
-            (0.99 if beyond else 0.01, 0.03),
-            fontsize=7,
-            ha="right" if beyond else "left",
-            xycoords="axes fraction",
-        )
+        at, side = (0.99, "right") if x > 0.5 * (left + right) else (0.01, "left")
+        axes.text(at, 0.03, f"spin pole at x = {number(x)} mm", fontsize=7, ha=side, transform=axes.transAxes)
 
 
 def friction_energy(ds: xr.Dataset) -> style.Drawn:
@@ -192,9 +175,8 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     _bar(figure, image, grid, "Friction energy per area and distance [J/(m mm²)]")
     profiles = [p.summed(f, 0) for p, f in zip(patches, fields, strict=True)]
     for i, (patch, profile) in enumerate(zip(patches, profiles, strict=True)):
-        across.plot(
-            patch.x, profile, color=style.palette(2)[i], linestyle=style.LINES[i], label=f"contact {patch.contact}"
-        )
+        look = {"color": style.palette(2)[i], "linestyle": style.LINES[i]}
+        across.plot(patch.x, profile, label=f"contact {patch.contact}", **look)
     across.set_xlim(grid[0].get_xlim())
     across.locator_params(axis="x", nbins=5)
     across.set_ylim(bottom=0)
@@ -202,11 +184,7 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     across.set_ylabel("Sum along $y_\\mathrm{C}$\n[J/(m mm)]")
     across.set_title("Across the running track", loc="left", fontsize=7.5, pad=3)
     figure.legend(loc="outside lower left", ncols=2)
-    style.head(
-        figure,
-        f"Friction energy of both contacts: {case_name(ds)}",
-        case_text(ds) + ("" if to_scale else " Axes not to one scale."),
-    )
+    style.head(figure, f"Friction energy of both contacts: {case_name(ds)}", case_text(ds) + _scale_note(to_scale))
     caption = (
         f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
         f"direction: what each strip of the running track takes. {case_text(ds)}"

@@ -22,10 +22,7 @@ from trackroller.report.figures.contact_patch import case_name, case_text
 from trackroller.report.numbers import capital, near, rounded
 from trackroller.roller.record import MATERIALS, materials_of
 
-PLANES = (
-    ("von_mises_xz", "xz_x", "xz_z", "x", "lateral"),
-    ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"),
-)
+PLANES = (("von_mises_xz", "xz_x", "xz_z", "x", "lateral"), ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"))
 TRACTIONS = ("pressure", "shear_lateral", "shear_rolling")
 AROUND = 0.25  # of the grid of the tractions: so far the surface is shown beyond each end of it
 SLENDER = 2.5  # patches longer than this are not drawn to one scale
@@ -169,17 +166,9 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     right = x < np.mean(axes.get_xlim())
     up = 9 if plane[1] == "y" or axes.get_ylim()[1] > axes.get_ylim()[0] else -9
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.9}
-    axes.annotate(
-        f"{value:.0f} MPa",
-        (x, y),
-        xytext=(8 if right else -8, up),
-        textcoords="offset points",
-        fontsize=7,
-        ha="left" if right else "right",
-        va="center",
-        zorder=7,
-        bbox=box,
-    )
+    place: dict[str, Any] = {"xytext": (8 if right else -8, up), "textcoords": "offset points", "va": "center"}
+    place |= {"ha": "left" if right else "right", "zorder": 7, "bbox": box}
+    axes.annotate(f"{value:.0f} MPa", (x, y), fontsize=7, **place)
 
 
 def _sentence(part: xr.Dataset, bodies: list[str]) -> str:

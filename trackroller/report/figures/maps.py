@@ -156,15 +156,9 @@ def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
     middle = spots[np.argmin(((spots - spots.mean(axis=0)) ** 2).sum(axis=1))]
     box = {"facecolor": "white", "edgecolor": "0.3", "linewidth": 0.5, "boxstyle": "round,pad=0.2"}
     thin = np.ptp(spots[:, 1]) + 1 < 0.12 * cells.shape[1]
-    label: dict[str, Any] = {
-        "ha": "center",
-        "va": "center",
-        "fontsize": 7,
-        "zorder": 5,
-        "rotation": 90 if thin else 0,
-        "bbox": box,
-    }
-    axes.text(middle[1], middle[0], REGIME_LABELS[code], **label).set_in_layout(False)
+    label: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5, "bbox": box}
+    text = axes.text(middle[1], middle[0], REGIME_LABELS[code], rotation=90 if thin else 0, **label)
+    text.set_in_layout(False)
 
 
 def regime_map(view: StudyView) -> style.Drawn:

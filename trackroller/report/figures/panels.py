@@ -45,17 +45,8 @@ def mark_unlimited(axes: Axes, height: float | None) -> None:
     if height is None:
         return
     axes.axhline(height, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
-    axes.annotate(
-        "unlimited",
-        (1.0, height),
-        xycoords=("axes fraction", "data"),
-        xytext=(-2, 2),
-        textcoords="offset points",
-        ha="right",
-        va="bottom",
-        fontsize=7,
-        color="0.25",
-    )
+    place = axes.get_yaxis_transform()
+    axes.text(0.995, height, "unlimited", transform=place, ha="right", va="bottom", fontsize=7, color="0.25")
 
 
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:

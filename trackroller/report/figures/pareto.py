@@ -9,6 +9,7 @@ import xarray as xr
 
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report import choices
+from trackroller.report.aims import MAX_POINTS
 from trackroller.report.claims import leading_factor
 from trackroller.report.figures import style
 from trackroller.report.findings import CONDITIONS
@@ -18,7 +19,6 @@ from trackroller.report.view import StudyView
 from trackroller.study.design.entries import OPTION_FACTORS
 
 _WAYS = {"max": "up", "min": "down"}
-MAX_POINTS = 24
 
 
 def _given(front: xr.Dataset) -> str:

@@ -129,11 +129,8 @@ def _lines(axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[f
     """Draw the S-N curve of a material, with its scatter if it gives one."""
     at = np.geomspace(*ends, 400)
     for probability in fatigue.PROBABILITIES if scatters(material) else (0.5,):
-        look: dict[str, Any] = {
-            "linewidth": 1.0 if probability == 0.5 else 0.8,
-            "linestyle": _DASHES.get(probability, "-"),
-        }
-        axes.plot(at, curve(material, rule, probability, at), color=colour, zorder=2, **look)
+        stress, width = curve(material, rule, probability, at), 1.0 if probability == 0.5 else 0.8
+        axes.plot(at, stress, color=colour, linewidth=width, linestyle=_DASHES.get(probability, "-"), zorder=2)
     knees = [material.cycles_at_tensile_strength, material.cycles_at_fatigue_limit]
     ends_look: dict[str, Any] = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
     axes.plot(knees, [material.tensile_strength, material.fatigue_limit], color="0.1", zorder=3, **ends_look)

@@ -141,9 +141,8 @@ def _lay_out(figure: Figure) -> None:
     if not title or room is None:
         return
     top = room.get_window_extent().transformed(figure.transFigure.inverted()).y1
-    figure.text(
-        0.015, top, title, ha="left", va="top", fontsize=7.5, fontweight="bold", linespacing=1.17, in_layout=False
-    )
+    look: dict[str, Any] = {"fontsize": 7.5, "fontweight": "bold", "linespacing": 1.17, "in_layout": False}
+    figure.text(0.015, top, title, ha="left", va="top", **look)
     figure._trackroller_title = ""  # type: ignore[attr-defined]
 
 
