@@ -130,8 +130,7 @@ def _between(z: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
     fine = np.matmul(np.matmul(matrix, z), matrix.T)
     for field in fine:
         _shorten(field)
-    fine *= fields.finer_factor(parts)
-    return fine
+    return np.multiply(fine, fields.finer_factor(parts), out=fine)
 
 
 @compiled
