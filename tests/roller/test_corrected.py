@@ -166,3 +166,14 @@ def test_braking_ends_at_the_complete_friction_of_the_law():
         assert found.regime.values.tolist()[::3] == [0, 1] and found.regime.max() == 1
         np.testing.assert_allclose(found.transmitted_force, -complete, rtol=3e-5)
     assert tr.solve(cases, ("forces",), contact_model="sliding").regime.values.tolist() == [0, 0, 0, 1]
+
+
+@pytest.mark.parametrize("model, accuracy", [("sliding", "standard"), ("kalker", "preview"), ("kalker", QUICK)])
+def test_converged_rows_keep_the_stated_residual(model, accuracy):
+    cases = [tr.Case(**STEEL, axial_force=a, motor_force=m) for a in (0.0, 30.0) for m in (0.0, -10.0, 30.0)]
+    found = tr.solve([*cases, *CASES], ("forces",), contact_model=model, accuracy=accuracy)
+    limit = found.residual.attrs["converged_up_to"]
+    assert found.converged.all() and found.residual.max() <= limit
+    assert limit == (1e-10 if model == "sliding" else 1e-4)
+    if accuracy is QUICK:  # the elements stop early on purpose
+        assert found.residual.max() > 1e-7

@@ -19,7 +19,7 @@ from trackroller.contact.linear import LARGEST_RATIO
 from trackroller.contact.normal.models import GridFastsimModel, GridKalkerModel, GridSlidingModel
 from trackroller.contact.normal.patches import Patches
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Accuracy, Rolling
+from trackroller.contact.settings import CONVERGED, Accuracy, Rolling
 from trackroller.contact.table.model import TableModel
 from trackroller.errors import check_names
 
@@ -33,7 +33,7 @@ class SlidingModel(ContactModel):
 
     name = "sliding"
     difference_step = 1e-5
-    residual = 1e-10
+    residual = CONVERGED["sliding"]
 
     def __init__(self, given: Rolling, settings: Accuracy) -> None:
         self.given, self.settings = given, settings
@@ -114,6 +114,7 @@ class FastsimModel(ContactModel):
     """Kalker's simplified theory; NaN where the ellipse is more slender than its coefficients reach."""
 
     name = "fastsim"
+    residual = CONVERGED["fastsim"]
 
     def __init__(self, given: Rolling, settings: Accuracy) -> None:
         self.given, n = given, settings.on_grids  # strips and steps in the proportion of the default settings

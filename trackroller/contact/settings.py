@@ -13,6 +13,18 @@ if TYPE_CHECKING:  # these modules load numba, which a plan does not need
     from trackroller.contact.common import Elastic
     from trackroller.contact.friction_laws import FrictionLaw
 
+# Largest residual of a converged row by contact model: of the balance of the roller and, in patches that elements solve
+# for the balance, of the friction law over mu p_max. Every accuracy has the same limits. The normal problem of patches
+# that are no ellipses ends at the last limit.
+CONVERGED = {"sliding": 1e-10, "fastsim": 1e-7, "kalker": 1e-4, "kalker_table": 1e-4}
+CONVERGED_PRESSURE = 1e-7
+
+
+def converged_up_to(contact_model: str, normal: str) -> float:
+    """Return the largest residual with which a row of a contact model and a normal problem counts as converged."""
+    own = CONVERGED[contact_model]
+    return own if normal == "hertz" else max(own, CONVERGED_PRESSURE)
+
 
 @dataclass(frozen=True)
 class Rolling:

@@ -167,7 +167,7 @@ def validity_bit(name: str) -> int:
 
 FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
     "regime": ("regime of the case", REGIMES),
-    "converged": ("equilibrium found to the residual that its contact model can reach", ("no", "yes")),
+    "converged": ("the residual is within its limit (attribute converged_up_to of residual)", ("no", "yes")),
     "contact_model_used": ("contact model that solved the case", CONTACT_MODELS),
     "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),
 }

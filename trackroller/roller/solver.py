@@ -10,6 +10,7 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from trackroller.contact.friction_laws import law_of
+from trackroller.contact.settings import converged_up_to
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
@@ -240,7 +241,8 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
 
 
 def _tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
-    """Add the measured errors of discretisation as attributes, if they were measured for these options."""
+    """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
+    ds["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
     tabled = np.any(ds.contact_model_used.values == CONTACT_MODELS.index("kalker_table"))
     model = "kalker_table" if tabled else options.contact_model

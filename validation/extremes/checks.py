@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.contact.settings import CONVERGED
 from trackroller.roller.solver import solve
 from validation.extremes.scenes import FORCES, Scene, mirrored, scaled
 from validation.extremes.search import located
@@ -35,7 +36,6 @@ COMPARED = {"normal_force": (2, 1), "max_pressure": (0, 1), "peak_stress": (0, 1
 TURNED = ("lateral_force", "spin_moment", "spin_pole_lateral")
 # tolerances by contact model: exact sums, or patches solved by iteration on a grid
 NUMERICAL = {"sliding": 1e-7, "kalker": 1e-4, "fastsim": 1e-4}
-RESIDUAL = {"sliding": 1e-10, "kalker": 1e-7, "fastsim": 1e-7}
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ def solved(run: Run) -> Finding:
 def residual(run: Run) -> Finding:
     """Return the relative residual of the equilibrium."""
     values = np.where(run.regime() == ROLLING, run.result.residual.values, 0.0)
-    return _worst(run, "residual", values, RESIDUAL[run.model])
+    return _worst(run, "residual", values, CONVERGED[run.model])
 
 
 def _difference(run: Run, other: xr.Dataset, length: float, modulus: float, mirror: bool) -> np.ndarray:

@@ -18,6 +18,7 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Works
 from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
+from trackroller.contact.settings import CONVERGED
 from trackroller.contact.slip import Creepage
 
 NEAR = 0.02  # if the normalised slip changed less than this, the iteration starts from the patch's last solution
@@ -27,8 +28,7 @@ REACH = 2.0  # steps over which the derivative is trusted
 # Outside its range the table's derivatives are those at the end of the range, and a correction leaves a larger share
 # of its change for the next one. Changes there count this many times.
 OUTSIDE = 20.0
-# Residual of the friction law over mu p_max where elements correct the table, and where they give tractions only
-CORRECTION_TOLERANCE, TRACTION_TOLERANCE = 1e-4, 1e-3
+TRACTION_TOLERANCE = 1e-3  # residual of the friction law over mu p_max where elements give tractions only
 
 
 class Correction:
@@ -119,7 +119,7 @@ class Correction:
             if not pick.size:
                 continue
             own, slot = rows[pick], _slots(rows[pick], side[pick])
-            tolerance = CORRECTION_TOLERANCE if forces else TRACTION_TOLERANCE
+            tolerance = CONVERGED["kalker"] if forces else TRACTION_TOLERANCE
             settings, start = dataclasses.replace(self.settings, extrapolate=forces, tolerance=tolerance), None
             if started:
                 settings = dataclasses.replace(settings, extrapolate=False)

@@ -18,8 +18,10 @@ import numpy as np
 from scipy import fft
 
 from trackroller.contact.influence import displacements, pressure_displacements
+from trackroller.contact.settings import CONVERGED_PRESSURE
 
-TOLERANCE = 1e-7  # the iteration ends when the largest gap in the patch, divided by the approach, is below
+# the iteration ends when the largest gap in the patch, divided by the approach, is below
+TOLERANCE = CONVERGED_PRESSURE
 ITERATIONS = 400
 
 
