@@ -44,14 +44,16 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
     inside = np.isin(np.arange(len(view.table)), rows.index)
     chosen = coloured(view, hue, inside) if hue else [("", np.ones(len(rows), bool))]
     rows, label = add_fit(view, rows)
-    groups = [(text, rows.index.to_numpy()[mask]) for text, mask in chosen]
+    groups = [([text], rows.index.to_numpy()[mask]) for text, mask in chosen]
     groups = _merged(groups, rows, columns) if view.grid else groups
     figure = style.new_figure(64 + 3.6 * (len(groups) + 2))
     panels = figure.subplots(1, len(bodies), sharex=True, sharey=True, squeeze=False)[0]
     entries: Entries = []
-    for i, ((text, members), colour) in enumerate(zip(groups, style.palette(len(groups)), strict=True)):
-        look = {"color": colour, "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6]}
-        entries += [(text, look)] if text else []
+    names, colours = [text for text, _ in chosen], style.palette(len(chosen))
+    for texts, members in groups:
+        i = names.index(texts[0])  # a level has the colour of the other figures
+        look = {"color": colours[i], "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6]}
+        entries += [(listing(texts), look)] if hue else []
         for axes, body in zip(panels, bodies, strict=True):
             _stress_series(axes, rows[rows.index.isin(members)], body, look, view.grid)
     for axes, body in zip(panels, bodies, strict=True):
@@ -111,14 +113,14 @@ def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     return rows, f"Fit: guide over groove radius $-${r_g}/{r_t} [–]"
 
 
-def _merged(groups: list, rows: pd.DataFrame, columns: list[str]) -> list[tuple[str, np.ndarray]]:
+def _merged(groups: list, rows: pd.DataFrame, columns: list[str]) -> list[tuple[list[str], np.ndarray]]:
     """Join groups with the same stresses: materials that differ in strength alone."""
     found: dict[tuple[str, ...], tuple[list[str], np.ndarray]] = {}
-    for text, members in groups:
+    for texts, members in groups:
         own = rows[rows.index.isin(members)].sort_values("_fit")[["_fit", *columns]]
         key = tuple(f"{value:.4g}" for value in own.to_numpy(dtype=float).ravel())
-        found.setdefault(key, ([], members))[0].append(text)
-    return [(listing(texts), members) for texts, members in found.values()]
+        found.setdefault(key, ([], members))[0].extend(texts)
+    return list(found.values())
 
 
 def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], grid: bool) -> None:
