@@ -9,7 +9,7 @@ from reference_cases import solve_sliding
 import trackroller as tr
 from trackroller.roller.dataset import validity_bit
 from validation.extremes.random_cases import random_extremes
-from validation.extremes.scenes import scaled
+from validation.extremes.scenes import mirrored, scaled
 
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = range(4)
 
@@ -141,3 +141,30 @@ def test_vanishing_friction_and_motor_force_are_quiet(friction, motor):
     ds = solved(tr.Case(friction_coefficient=friction, motor_force=motor))
     assert ds.regime.values in (ROLLING, FULL_SLIP)
     assert np.isfinite(ds.normal_force.values).all()
+
+
+def test_random_extremes_of_kalker_balance_and_mirror():
+    """The balances, eqs (7) to (10), hold for the returned forces, and the mirrored roller has mirrored forces."""
+    cases = random_extremes(40, 11)
+    ds = solved(*cases, contact_model="kalker", accuracy="preview")
+    given = {name: np.array([case[name] for case in cases]) for name in ("axial_force", "radial_force", "motor_force")}
+    friction, alpha = (np.array([c[name] for c in cases]) for name in ("friction_coefficient", "contact_angle"))
+    sine, cosine = np.sin(np.deg2rad(alpha)), np.cos(np.deg2rad(alpha))
+    rolls = (ds.regime.values == ROLLING) & (friction > 0) & (ds.converged.values == 1)
+    normal, lateral = ds.normal_force.values.T, ds.lateral_force.values.T
+    load = np.abs(given["axial_force"]) + np.abs(given["radial_force"])
+    across = cosine * lateral.sum(axis=0) + sine * (normal[0] - normal[1]) + given["axial_force"]
+    down = sine * (lateral[1] - lateral[0]) + cosine * normal.sum(axis=0) + given["radial_force"]
+    radius = np.array(
+        [case["axis_distance"] - case["guide_profile_radius"] * c for case, c in zip(cases, cosine, strict=True)]
+    )
+    drilling = ds.drilling_torque.values / radius
+    torque = drilling + ds.transmitted_force.values + given["motor_force"]
+    largest = friction * normal.sum(axis=0) + np.abs(drilling) + np.abs(given["motor_force"])
+    assert rolls.sum() > 10
+    for unbalanced, scale in ((across, load), (down, load), (torque, largest)):
+        assert np.max(np.abs(unbalanced / np.where(scale > 0, scale, 1.0))[rolls]) < 1e-5
+    other = solved(*[mirrored(case) for case in cases], contact_model="kalker", accuracy="preview")
+    assert np.array_equal(other.regime, ds.regime)
+    gap = np.max(np.abs(other.normal_force.values[:, ::-1] - normal.T), axis=1) / np.max(normal, axis=0)
+    assert np.max(gap[rolls]) < 1e-4
