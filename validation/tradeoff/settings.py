@@ -42,7 +42,7 @@ SEARCHES = (
     ("d", 6, 0.001),
     ("e", 5, 0.0005),
 )
-ELEMENTS = {"kalker": (8, 12, 16, 20, 24, 40, 56), "fastsim": (10, 14, 20, 28, 40, 56, 80)}
+ELEMENTS = {"kalker": (8, 12, 16, 20, 28, 40, 56), "fastsim": (10, 14, 20, 28, 40, 56, 80)}
 REFERENCE_ELEMENTS = {"kalker": 80, "fastsim": 160}
 FINE = PeakSettings(12, 16, 24, 48, 16, 12, 0.001, 0.0)
 # A search only ever finds too little, so the largest of several fine ones is the best known.

@@ -8,7 +8,7 @@ import numpy as np
 # singular at the trailing edge of full adhesion, and the displacement has a kink at the leading edge.
 SLIDING, ADHESION = 1.0 / 3.0, 1.0
 EARLY = 16  # power of the used share of the bound: a small adhesion area decides the order already
-FITTED, FITTED_AT = 0.12, 28  # factor and elements of `force_error`
+FITTED, FITTED_AT = 0.115, 28  # factor and elements of `force_error`
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
 # Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and spins of an element at which the adhesion area
 # begins to be unseen and at which its share has halved.
