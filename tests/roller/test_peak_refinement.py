@@ -49,7 +49,7 @@ def test_refinement_brings_the_peak_to_the_finer_elements(monkeypatch, ridge):
     assert searched == [ELEMENTS]
     before, after = (np.abs(found.peak_stress / fine.peak_stress - 1.0).max().item() for found in (rough, ridge[0]))
     assert after < 0.004 < before < 0.03
-    assert (ridge[0].error_estimate < rough.error_estimate).all()
+    assert ridge[0].error_estimate.max() < 0.5 * rough.error_estimate.max()
     for name in ("normal_force", "lateral_force", "driving_force"):
         assert (ridge[0][name] == rough[name]).all()
 
