@@ -190,7 +190,7 @@ def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
     told = contents(ds, sens)["why"][1]
     assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
-    column = told.heads.index("delta")
+    column = told.heads.index("Delta")
     assert any(row[column].startswith("(") for row in told.rows[1:])
 
 
