@@ -8,7 +8,7 @@ import numpy as np
 # singular at the trailing edge of full adhesion, and the displacement has a kink at the leading edge.
 SLIDING, ADHESION = 1.0 / 3.0, 1.0
 EARLY = 16  # power of the used share of the bound: a small adhesion area decides the order already
-FITTED, FITTED_AT = 0.115, 28  # factor and elements of `force_error`
+FITTED, FITTED_AT, SLENDER = 0.077, 28, 0.6  # factor, elements and power of the axis ratio of `force_error`
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
 # Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and spins of an element at which the adhesion area
 # begins to be unseen and at which its share has halved.
@@ -42,7 +42,9 @@ def unseen_adhesion(spin: np.ndarray, ratio: np.ndarray, pole: np.ndarray, eleme
     return inside * share / (1.0 + (SEEN / of_element) ** 6) / (1.0 + of_element / SMALL)
 
 
-def force_error(change: np.ndarray, capacity: np.ndarray, stick: np.ndarray, elements: int) -> np.ndarray:
+def force_error(
+    change: np.ndarray, capacity: np.ndarray, stick: np.ndarray, ratio: np.ndarray, elements: int
+) -> np.ndarray:
     """Return the estimated error of extrapolated friction forces, (n,) [N].
 
     The change from elements of twice the size alone tells little, because the coarse grid hardly sees a small adhesion
@@ -54,10 +56,12 @@ def force_error(change: np.ndarray, capacity: np.ndarray, stick: np.ndarray, ele
     change : of F_T, F_A (and M_R) from elements of twice the size, (n, 3) [N]
     capacity : mu F_N, (n,) [N]
     stick : share of the adhesion area, (n,)
+    ratio : b/a, (n,); the elements of slender patches are slender too
     elements : along each axis
     """
     finer, largest = (FITTED_AT / elements) ** 1.5, np.abs(change[:, :2]).max(axis=1)
-    return FITTED * np.sqrt(finer * capacity * (largest + 1e-3 * finer * capacity)) * np.cbrt(stick + 3e-3)
+    factor = FITTED * np.maximum(ratio, 1.0 / ratio) ** SLENDER * np.cbrt(stick + 3e-3)
+    return factor * np.sqrt(finer * capacity * (largest + 1e-3 * finer * capacity))
 
 
 def energy(fine: np.ndarray, coarse: np.ndarray) -> np.ndarray:
