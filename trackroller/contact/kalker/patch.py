@@ -126,7 +126,8 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         work = work + weight * (work - report.work - report.pressure_work)
         # observed to be of second order wherever a part of the patch slides
         energy = extrapolation.energy(energy, report.energy_residual)
-    value = value + limit
+    value, ratio = value + limit, ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
+    told = extrapolation.force_error(error, friction * ellipse.normal_force, fine.stick_fraction, ratio, elements)
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
@@ -141,13 +142,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         energy,
         limit,
         np.abs(error),
-        extrapolation.force_error(
-            error,
-            friction * ellipse.normal_force,
-            fine.stick_fraction,
-            ellipse.semi_axis_rolling / ellipse.semi_axis_lateral,
-            elements,
-        ),
+        told,
         fine.own_slip,
         fine.residual,
         fine.steps,
