@@ -320,6 +320,20 @@ def test_grid_with_holes_drops_levels_and_says_how_many_cells():
     assert np.isnan(indices.grid_shares(np.full((3, 3), np.nan))["main_share"]).all()
 
 
+def test_note_of_a_grid_counts_the_cells_that_go_with_a_hole():
+    """One failed corner of 4 by 5 cells costs a level, so that a full grid remains."""
+    factors = {"axial_force": {"values": [0, 10, 20, 30]}, "velocity": {"values": [20, 40, 60, 80, 100]}}
+
+    def fake(design):
+        y = design["axial_force"].values + design["velocity"].values
+        return {"friction_power": np.where(y == 130, np.nan, y)}
+
+    result = analyse_dataset(solved({"name": "g", "factors": factors}, fake))
+    told = str(result["note"].sel(output="friction_power").item())
+    assert told.startswith("16 of 20 cells used; rows left out: 1 ")
+    assert "; 3 further cells of their levels" in told
+
+
 def test_morris_agrees_with_salib_and_uses_what_is_left():
     """mu, mu*, sigma as SALib gives them; a lost row costs its two effects only."""
     from SALib.analyze import morris as oracle

@@ -36,6 +36,9 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
     text = f"{used} of {total} {unit} used"
     if column.excluded:
         text += "; rows left out: " + ", ".join(f"{n} {why}" for why, n in column.excluded.items())
+        further = total - used - sum(column.excluded.values())
+        if unit == "cells" and further > 0:
+            text += f"; {further} further cells of their levels, as indices of a grid need every combination of levels"
     if used < RELIABLE * total:
         text += "; the indices describe the cases used, not the whole range of the factors"
     return text
