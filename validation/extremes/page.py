@@ -21,7 +21,8 @@ NOTES = (
     "axial force lifts a contact. Both results are shown as they are (rolling, lift_off), and both carry the bit "
     "`jamming`. The bit marks rolling rows with |F_T| >= F_N tan(α), and lifted rows that would be such rows without "
     "axial force.",
-    "Braking ends in full slip without a jump (r_Δ0 → ∞). Driving ends where the roller spins on the spot "
+    "Braking ends in full slip without a jump (r_Δ0 → ∞); `kalker` says full slip from 2e-6 of the complete friction "
+    "before this end, where its table ends. Driving ends where the roller spins on the spot "
     "(r_Δ0 = -r_A). There the spin moments still add to the torque, but full slip is defined without them. Therefore "
     "full slip begins with a small jump of spin moment, transmitted force and peak stress; normal and lateral forces "
     "do not jump.",
@@ -30,7 +31,7 @@ NOTES = (
     "there. `kalker` and `fastsim` showed no such fold.",
     "In patches that are a hundred times larger than the rolling radius (bit `half_space`) the spin moments are much "
     "larger than the transmitted force. There `residual` is at least the uncertainty of the transmitted force over "
-    "μ ΣF_N, and `converged` is 0 above 1e-10.",
+    "μ ΣF_N, and `converged` is 0 above the limit of the model (attribute `converged_up_to`).",
     "Where a patch reaches beyond the equator of the guide contour, the slip is assumed constant. The torque jumps "
     "there, and a case whose balance lies inside the jump fails.",
     "A life beyond the largest floating-point number is inf, because the S-N curve has no end.",
