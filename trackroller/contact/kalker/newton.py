@@ -97,37 +97,32 @@ def room_for(ny, nx, krylov):
 
 
 class Work(NamedTuple):
-    """Work space of one patch: fields (ny, nx) of the iteration and arrays of its linear systems."""
+    """Work space of one patch and the parts of its linear systems."""
 
-    bound: np.ndarray
-    slope: np.ndarray
-    held: np.ndarray
-    mean: np.ndarray
-    value: np.ndarray
+    room: Room
     derivative: Derivative
     columns: Columns
     operator: Operator
-    space: Space
 
 
 @compiled
 def _state(law, work, traction, slip):
     """Compute bounds and residual at a traction and slip; return the residual's largest component and its norm."""
     if law.falls:
-        row_means(reals(slip), work.columns.first, work.columns.loaded, work.mean)
-    law_of_slip(work.mean, law.height, law.scale, law.knots, law.factors, work.bound, work.slope)
-    return residual(reals(traction), reals(slip), work.bound, law.rho, reals(work.value))
+        row_means(reals(slip), work.columns.first, work.columns.loaded, work.room.mean)
+    law_of_slip(work.room.mean, law.height, law.scale, law.knots, law.factors, work.room.bound, work.room.slope)
+    return residual(reals(traction), reals(slip), work.room.bound, law.rho, reals(work.room.value))
 
 
 @compiled
 def _step(law, work, traction, slip, tolerance, leap, step, change):
     """Write Newton's step and the slip that it causes; return its products. A leap makes the slits stick."""
     moved, d = reals(slip), work.derivative
-    jacobian(reals(traction), moved, work.mean, work.bound, work.slope, law.rho, d.projection, d.turn)
+    jacobian(reals(traction), moved, work.room.mean, work.room.bound, work.room.slope, law.rho, d.projection, d.turn)
     if leap:
-        hold(work.held, moved, law.rho, reals(work.value), d.projection, d.turn)
-    products = solve(work.value, d, work.columns, work.operator, tolerance, work.space, step)
-    convolve(step, work.operator.p, work.operator.q, work.space.transforms, change)
+        hold(work.room.held, moved, law.rho, reals(work.room.value), d.projection, d.turn)
+    products = solve(work.room.value, d, work.columns, work.operator, tolerance, work.room.space, step)
+    convolve(step, work.operator.p, work.operator.q, work.room.space.transforms, change)
     return products + 1
 
 
@@ -168,7 +163,7 @@ def _iterate(law, work, at, tolerance, limit):
         inner = max(0.3 * tolerance / largest, min(0.03, 0.1 * largest))
         leap = short >= SHORT and left == 0
         if leap:
-            leap = find_slits(reals(at[0]), reals(at[1]), work.bound, law.rho, work.held) > 0
+            leap = find_slits(reals(at[0]), reals(at[1]), work.room.bound, law.rho, work.room.held) > 0
         products += _step(law, work, at[0], at[1], inner, leap, moves[0], moves[1])
         if leap:
             for k in range(2):
@@ -221,15 +216,10 @@ def newton(problem, room, traction, tolerance, limit):
     first, loaded = column_ranges(problem.height)
     room.mean[:] = 0.0
     work = Work(
-        room.bound,
-        room.slope,
-        room.held,
-        room.mean,
-        room.value,
+        room,
         Derivative(room.projection, room.turn, falls, rho),
         Columns(functions.column, first, loaded),
         Operator(functions.p, functions.q),
-        room.space,
     )
     law = Law(problem.height, problem.scale, problem.knots, problem.factors, falls, rho)
     at = np.empty((2, *traction.shape), np.complex128)

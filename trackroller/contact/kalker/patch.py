@@ -69,10 +69,14 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
         first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
     found = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
-        height, _ = cells(ellipse, settings.elements)
-        traction[:] = subgrid.shares(_fields(ellipse, found), 2)
-        traction *= height if height.ndim == 2 else height[:, None]
+        traction[:] = _on_half_elements(ellipse, found)
     return found
+
+
+def _on_half_elements(ellipse: Ellipse | GridPatch, coarse: batch.Found | PatchSolution) -> np.ndarray:
+    """Return the tractions of a solution, interpolated to elements of half the size."""
+    height, _ = cells(ellipse, 2 * coarse.traction.shape[-1])
+    return subgrid.shares(_fields(ellipse, coarse), 2) * (height if height.ndim == 2 else height[:, None])
 
 
 def _fields(ellipse: Ellipse | GridPatch, found: batch.Found | PatchSolution) -> subgrid.Fields:
@@ -89,10 +93,8 @@ def refined(
     ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings, coarse: PatchSolution
 ) -> PatchSolution:
     """Solve patches again on twice the elements of the solution `coarse`, from its tractions; see `solve_patch`."""
-    height, _ = cells(ellipse, 2 * settings.elements)
-    start = subgrid.shares(_fields(ellipse, coarse), 2) * height
     finer = replace(settings, elements=2 * settings.elements, extrapolate=False)
-    return solve_patch(ellipse, creep, friction, elastic, finer, start)
+    return solve_patch(ellipse, creep, friction, elastic, finer, _on_half_elements(ellipse, coarse))
 
 
 def _forces(ellipse: Ellipse | GridPatch, friction, found: batch.Found) -> np.ndarray:
