@@ -55,9 +55,23 @@ def test_refinement_brings_the_peak_to_the_finer_elements(monkeypatch, ridge):
 
 
 def test_sections_show_the_refined_peak(ridge):
-    """The sections meet the peak between their points."""
+    """The points of the sections lie beside the peak, so that their largest stress is a little below it."""
     found, _ = ridge
     np.testing.assert_allclose(found.von_mises_xz.max(("section_z", "section_x")), found.peak_stress, rtol=0.05)
+
+
+def test_four_sections_solve_a_refined_patch_once(monkeypatch):
+    solved_again, plain = [], ellipse_stresses.EllipseStresses._shares
+
+    def recorded(self, flat, ask):
+        solved_again.extend(flat.tolist() if ask.__name__ == "finer_shares" else [])
+        return plain(self, flat, ask)
+
+    monkeypatch.setattr(ellipse_stresses.EllipseStresses, "_shares", recorded)
+    tr.solve(RIDGE, OUTPUTS, contact_model="kalker")
+    refined = solved_again[: len(set(solved_again))]  # by the search
+    assert refined
+    assert solved_again == 2 * refined
 
 
 def test_a_patch_that_does_not_converge_on_finer_elements_keeps_its_peak(monkeypatch, ridge):

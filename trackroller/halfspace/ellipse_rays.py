@@ -35,7 +35,7 @@ from trackroller.numerics.lanes import bilinear
 
 @inner
 def chord_angles(patch, px, py, rule, work):
-    """Write angles and weights of chords through the point (px a, py b); return their number."""
+    """Write angles and weights of chords through the point (px a, py b); return the number of chords."""
     a, b = patch.a, patch.b
     r2 = px * px + py * py
     half = math.asin(1.0 / math.sqrt(r2)) if r2 > 1.0 else 0.5 * math.pi  # outside: the cone that meets the patch
@@ -53,7 +53,7 @@ def chord_angles(patch, px, py, rule, work):
 
 @inner
 def rays_of_chords(patch, px, py, count, work):
-    """Turn `count` chords through the point into rays from it and return their number.
+    """Turn `count` chords through the point into rays from it and return the number of rays.
 
     A point inside the patch has rays to both sides; from a point outside only one side meets the patch.
     """

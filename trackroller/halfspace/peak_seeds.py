@@ -77,7 +77,7 @@ def ridge_points(fields: np.ndarray) -> np.ndarray:
     """Return surface points on the line where sliding begins, (n, MOST_ON_RIDGE, 3); NaN in patches without it.
 
     Where a patch begins to slide, the traction changes with the root of the distance. Stresses at the surface have a
-    cusp there, so that all peaks at the surface of random designs lie on this line.
+    cusp there. Nearly all peaks that a coarse scan misses lie on this line.
 
     Parameters
     ----------
