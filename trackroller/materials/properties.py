@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from trackroller.errors import InputError
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import Parameter
 
 
@@ -100,10 +100,7 @@ def check_number(prop: Parameter, value: Any, where: str, factor: float = 1.0) -
     remedy = f"Give {prop.name} in {prop.unit}." if prop.unit != "-" else "Correct the value."
     if prop.name.startswith("scatter"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."
-    try:
-        number = read_number(value) * factor
-    except ValueError:
-        number = math.nan
+    number = number_or_nan(value) * factor
     if math.isnan(number) or not prop.accepts(number):
         raise InputError(f"{where}.{prop.name}", value, prop.allowed(), remedy)
     return number

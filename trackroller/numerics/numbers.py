@@ -50,6 +50,25 @@ def read_number(value: Any) -> float:
         raise ValueError(str(exc)) from None
 
 
+def number_or_nan(value: Any) -> float:
+    """Return a number as `read_number` does, or NaN for a value that is no number; all bounds refuse NaN.
+
+    Parameters
+    ----------
+    value : int, float or str
+        What the user wrote.
+
+    Returns
+    -------
+    float
+        The number, or NaN.
+    """
+    try:
+        return read_number(value)
+    except ValueError:
+        return math.nan
+
+
 def number_in(value: Any, field: str, allowed: str, lower: float = -math.inf, upper: float = math.inf) -> float:
     """Return a number between two bounds, which are allowed values themselves.
 
@@ -72,10 +91,7 @@ def number_in(value: Any, field: str, allowed: str, lower: float = -math.inf, up
     InputError
         If the value is no number or lies outside the bounds.
     """
-    try:
-        number = read_number(value)
-    except ValueError:
-        number = math.nan
+    number = number_or_nan(value)
     if not lower <= number <= upper:
         raise InputError(field, value, allowed)
     return number

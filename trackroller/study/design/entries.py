@@ -9,7 +9,7 @@ from typing import Any
 from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, check_names, nearest, unknown_name
 from trackroller.numerics import expressions
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_or_nan, read_number
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
@@ -140,17 +140,12 @@ def _number(name: str, value: Any, where: str) -> Any:
         return None
     if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
         return value
-    if isinstance(value, (list, dict, bool)) or value is None:
-        raise InputError(where, value, parameter.allowed())
-    try:
-        number = read_number(value)
-    except ValueError:
+    number = number_or_nan(value)
+    if math.isnan(number) or not parameter.accepts(number):
         remedy = ""
         if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
             remedy = f"Did you mean '{close}'?"
-        raise InputError(where, value, parameter.allowed(), remedy) from None
-    if math.isnan(number) or not parameter.accepts(number):
-        raise InputError(where, value, parameter.allowed())
+        raise InputError(where, value, parameter.allowed(), remedy)
     return number
 
 

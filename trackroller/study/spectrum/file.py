@@ -16,6 +16,7 @@ block.
 from __future__ import annotations
 
 import math
+import sys
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,7 +28,7 @@ import numpy as np
 from trackroller.damage.fatigue import PROBABILITIES
 from trackroller.errors import InputError, check_names
 from trackroller.materials.yaml_file import parse_mapping, read_text
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
@@ -205,14 +206,8 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
 
 
 def _number(name: str, value: Any, open_lower: bool = False) -> float:
-    allowed = f"a finite number {'>' if open_lower else '>='} 0"
-    try:
-        number = read_number(value)
-    except ValueError:
-        raise InputError(name, value, allowed) from None
-    if not math.isfinite(number) or number < 0 or (open_lower and number == 0):
-        raise InputError(name, value, allowed)
-    return number
+    lower = math.nextafter(0.0, 1.0) if open_lower else 0.0
+    return number_in(value, name, f"a finite number {'>' if open_lower else '>='} 0", lower, sys.float_info.max)
 
 
 def _probabilities(values: Any) -> tuple[float, ...]:
