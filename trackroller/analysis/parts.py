@@ -90,7 +90,7 @@ def of_groups(
     if exchanged := design.meta.get("groups"):
         columns = len(exchanged)
         sets = [1 << exchanged.index(name) for name in groups]
-    block = y.reshape(int(design.meta["base_samples"]), -1)
+    block = design.blocks(y)
     block = block[np.isfinite(block).all(axis=1)]
     whole = (1 << columns) - 1
     drawn = closed_indices(block, columns, second, [*sets, *(whole ^ one for one in sets)], seed, resamples)
@@ -162,7 +162,7 @@ def _saltelli_level(
     """
     count = len(design.factors)
     second = bool(design.meta["second_order"])
-    block, inside = (values.reshape(int(design.meta["base_samples"]), -1) for values in (y, inside))
+    block, inside = design.blocks(y), design.blocks(inside)
     others = np.delete(np.arange(count), place)
     if second:
         of_a, of_b = np.flatnonzero(inside[:, 0]), np.flatnonzero(inside[:, -1])

@@ -65,8 +65,8 @@ class Found(NamedTuple):
 def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     groups, second = design.meta.get("groups"), bool(design.meta["second_order"])
     count = len(groups or design.factors)
-    blocks = int(design.meta["base_samples"])
-    block = y.reshape(blocks, -1)
+    block = design.blocks(y)
+    blocks = len(block)
     # rows of A and B only: their mixtures repeat coordinates, so they are not independent rows
     own = np.full_like(block, np.nan)
     own[:, [0, -1]] = block[:, [0, -1]]

@@ -131,7 +131,7 @@ def _of_rows(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list
     """Return the levels of the factors, and the probabilities over all rows and at each level."""
     rows = np.arange(design.size)
     if design.method == "saltelli":  # rows of A and B; their mixtures repeat coordinates
-        rows = rows.reshape(int(design.meta["base_samples"]), -1)[:, [0, -1]].ravel()
+        rows = design.blocks(rows)[:, [0, -1]].ravel()
     levels = [level for name, f in design.factors.items() for level in _levels(f, design.columns[name][rows])]
     hits = hits[rows]
     strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)

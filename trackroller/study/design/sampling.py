@@ -115,6 +115,13 @@ class SampledDesign:
         values = [f.discrete and self.method != "plackett_burman" for f in self.factors.values()]
         return np.array(values, dtype=bool)
 
+    def blocks(self, values: np.ndarray) -> np.ndarray:
+        """Return the values (n,) of a Saltelli design by base sample, shape (base samples, rows of a base sample).
+
+        The first row of a base sample is its row of A, and the last one its row of B.
+        """
+        return values.reshape(int(self.meta["base_samples"]), -1)
+
 
 def sample(
     factors: Mapping[str, Any],
