@@ -18,6 +18,7 @@ from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
 from trackroller.study.inventory import check_default_model
 from trackroller.study.plan import locate, study_folder
+from trackroller.study.store import FAILED
 
 if TYPE_CHECKING:
     from trackroller.study.config import Study
@@ -115,7 +116,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     _, found, place = locate(study, folder)
     solved = np.flatnonzero(place >= 0)
     states = found.states.isel(case=place[solved])
-    bad = states["regime"].values == REGIMES.index("failed")
+    bad = states["regime"].values == FAILED
     failed, seconds = solved[bad], found.states.attrs["seconds"]
     status = Status(
         total=len(place),

@@ -16,11 +16,12 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.files import StudyFolder, Tell, write_whole
 from trackroller.study.identity import chunk_name
 
-FAILED = 3  # value of `regime`
+FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
 _LABELS = {"case": "fingerprint of the case", "reason": "why a case failed or misses its tolerance"}
 _SMALL = 64  # cases; smaller files gain nothing from compression
