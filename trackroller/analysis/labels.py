@@ -16,6 +16,35 @@ from trackroller.study.outputs import Output
 
 CORRELATED = 0.5  # rank correlation of two columns of a table above which the result warns
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
+_WORDS = {
+    "S1": "first-order Sobol index",
+    "ST": "total Sobol index",
+    "S2": "second-order Sobol index",
+    "mu": "mean elementary effect",
+    "mu_star": "mean absolute elementary effect",
+    "sigma": "standard deviation of elementary effects",
+    "effects_used": "elementary effects used",
+    "main_share": "share of variance of main effect",
+    "interaction_share": "share of variance of interaction",
+    "higher_share": "share of variance of interactions of three and more factors",
+    "effect": "change over the factor's range",
+    "curvature": "quadratic coefficient, coded",
+    "interaction": "two-factor interaction effect",
+    "r_squared": "share of variance fitted",
+    "fit_alone": "first-order index by a fitted polynomial",
+    "fit_share": "share of variance predicted by the fitted polynomial",
+    "first": "first-order index (share of variance), from given data",
+    "pawn": "PAWN index",
+    "delta": "delta index",
+    "pawn_noise": "PAWN index below which an inert factor stays",
+    "delta_noise": "delta index below which an inert factor stays",
+    "prcc": "partial rank correlation coefficient",
+    "group_S1": "first-order Sobol index of the group, interactions inside the group included",
+    "group_ST": "total Sobol index of the group",
+    "conditional_S1": "first-order Sobol index among the rows of one level",
+    "conditional_ST": "total Sobol index among the rows of one level",
+    "conditional_rows": "rows, cells or blocks behind the indices of one level",
+}
 
 
 def note(column: Output, used: int, total: int, unit: str) -> str:
@@ -98,37 +127,6 @@ def correlated(design: SampledDesign) -> str:
         for one, other, rho in correlated_pairs(design)
     ]
     return f"; {', '.join(told)}: the index of each includes the influence of both" if told else ""
-
-
-_WORDS = {
-    "S1": "first-order Sobol index",
-    "ST": "total Sobol index",
-    "S2": "second-order Sobol index",
-    "mu": "mean elementary effect",
-    "mu_star": "mean absolute elementary effect",
-    "sigma": "standard deviation of elementary effects",
-    "effects_used": "elementary effects used",
-    "main_share": "share of variance of main effect",
-    "interaction_share": "share of variance of interaction",
-    "higher_share": "share of variance of interactions of three and more factors",
-    "effect": "change over the factor's range",
-    "curvature": "quadratic coefficient, coded",
-    "interaction": "two-factor interaction effect",
-    "r_squared": "share of variance fitted",
-    "fit_alone": "first-order index by a fitted polynomial",
-    "fit_share": "share of variance predicted by the fitted polynomial",
-    "first": "first-order index (share of variance), from given data",
-    "pawn": "PAWN index",
-    "delta": "delta index",
-    "pawn_noise": "PAWN index below which an inert factor stays",
-    "delta_noise": "delta index below which an inert factor stays",
-    "prcc": "partial rank correlation coefficient",
-    "group_S1": "first-order Sobol index of the group, interactions inside the group included",
-    "group_ST": "total Sobol index of the group",
-    "conditional_S1": "first-order Sobol index among the rows of one level",
-    "conditional_ST": "total Sobol index among the rows of one level",
-    "conditional_rows": "rows, cells or blocks behind the indices of one level",
-}
 
 
 def labelled(design: SampledDesign, columns: list[Output], results: list[Estimates], at: np.ndarray) -> xr.Dataset:

@@ -26,6 +26,8 @@ from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import find_study, status_of
 
+MOST = 20_000  # --explain examines at most this many cases of a study
+
 
 def run_with_progress(
     path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
@@ -141,9 +143,6 @@ def print_rerun(crate: Path, results: Path) -> int:
     if same:
         print(f"{len(compared)} variables have the same values as {stored}")
     return int(not same)
-
-
-MOST = 20_000  # --explain examines at most this many cases of a study
 
 
 def print_plan(path: Path | None, results: Path, explain: bool, words: list[str], no_shortcuts: bool) -> None:

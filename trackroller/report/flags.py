@@ -54,6 +54,8 @@ WORDS: dict[str, tuple[str, str]] = {
     ),
 }
 OF_BODY = ("yield", "static", "deep_life", "half_space")  # flags that may hold for one body alone
+KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
+FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
 
 
 def of_body(flag: str, body: str) -> str:
@@ -95,10 +97,6 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
         text = f"Friction energy and power differ from the work put in by {percent(residual)}."
         found.append(Flag("energy_residual", text, "Solve it with contact_model: kalker."))
     return found
-
-
-KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
-FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
 
 
 def friction_error(view: StudyView) -> Sentence | None:

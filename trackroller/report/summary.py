@@ -23,6 +23,8 @@ from trackroller.report.view import StudyView
 from trackroller.study.design.sampling import ARRAYS
 
 Line = tuple[str, list[Sentence]]
+HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
+FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
 
 
 def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> list[Line]:
@@ -74,10 +76,6 @@ def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
     said, more = words.decides(sens, ranked[0]), part_sentences(sens, ranked[0])
     by_group = "group_ST" in sens and words.headline(sens) == "first"  # the design serves groups better than factors
     return [*more, said] if by_group else [said, *more]
-
-
-HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
-FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
 
 
 def samples(sens: xr.Dataset, asked: int) -> Sentence | None:

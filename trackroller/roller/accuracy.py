@@ -26,6 +26,20 @@ FORCE_QUANTITIES = ("normal_force", "friction_force", "spin_moment")
 PEAK_OUTPUTS = frozenset(("peak_stress", "life", "subsurface"))
 FORCE_SHARE = 0.1  # share of the tolerance for the forces of full sliding, whose cost is low
 PEAK_SHARE = 0.2  # share of the tolerance for the search of the peak, beside that for the elements
+_QUANTITY_OF = {
+    "normal_force": "normal_force",
+    "lateral_force": "friction_force",
+    "driving_force": "friction_force",
+    "spin_moment": "spin_moment",
+    "friction_power": "friction_energy",
+    "friction_energy_per_distance": "friction_energy",
+    "peak_stress": "peak_stress",
+    "life_cycles": "life",
+    "life_hours": "life",
+    "roller_life_hours": "life",
+    "guide_life_hours": "life",
+}
+_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
 
 
 @dataclass(frozen=True)
@@ -225,22 +239,6 @@ def rounded_up(value: float) -> float:
     """Return a number > 0 rounded up to two figures."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{math.ceil(value / unit - 1e-9) * unit:.3g}")
-
-
-_QUANTITY_OF = {
-    "normal_force": "normal_force",
-    "lateral_force": "friction_force",
-    "driving_force": "friction_force",
-    "spin_moment": "spin_moment",
-    "friction_power": "friction_energy",
-    "friction_energy_per_distance": "friction_energy",
-    "peak_stress": "peak_stress",
-    "life_cycles": "life",
-    "life_hours": "life",
-    "roller_life_hours": "life",
-    "guide_life_hours": "life",
-}
-_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
 
 
 def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]:

@@ -42,6 +42,7 @@ _ORDERS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)] + [
     for i in range(4)
     for j in range(4 - i)  # every fourth derivative has at least one z
 ]
+STYLES = ("printed", "reused", "shared")
 
 
 @dataclass(frozen=True)
@@ -54,9 +55,6 @@ class Contact:
     q_y: np.ndarray
     q_z: np.ndarray
     poisson_ratio: float
-
-
-STYLES = ("printed", "reused", "shared")
 
 
 @cache

@@ -43,6 +43,8 @@ BASE: CaseDict = {
 ALWAYS = ("finite", "solved", "residual", "scaling", "mirror", "condition")
 FLAT_TAN = math.tan(math.radians(30.0))
 COMPLETE = 0.2 * 200.0 / math.cos(math.radians(30.0))  # what the base case can transmit in complete slip [N]
+LENGTHS = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius")
+FORCES = ("radial_force", "axial_force", "motor_force")
 
 
 @dataclass(frozen=True)
@@ -419,10 +421,6 @@ def _borders() -> tuple[Scene, ...]:
             },
         ),
     )
-
-
-LENGTHS = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius")
-FORCES = ("radial_force", "axial_force", "motor_force")
 
 
 def scaled(case: Mapping[str, Any], length: float, modulus: float) -> CaseDict:

@@ -22,6 +22,9 @@ RESULTS = (
     *("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress"),
     *("roller_life_hours", "guide_life_hours", "life_cycles"),
 )
+GOOD = 0.05  # error of a design below which its model is good enough [1]
+FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral", "semi_axis_rolling")
+ENERGY = "friction_energy_per_distance"
 
 
 def pairs(ds: xr.Dataset) -> xr.Dataset | None:
@@ -136,9 +139,6 @@ def spin(inputs: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.asarray(np.sin(found.contact_angle) / found.rolling_radius * 4.0 / curvature)
 
 
-GOOD = 0.05  # what counts as good enough
-
-
 @dataclass(frozen=True)
 class Quantity:
     """A compared quantity: how its error is measured, its names, and the results it needs."""
@@ -174,16 +174,13 @@ def _of_capacity(ds: xr.Dataset, ref: xr.Dataset) -> xr.DataArray:
 
 
 def _work(name: str) -> Callable[[xr.Dataset, xr.Dataset], xr.DataArray]:
-    right = "friction_energy_per_distance"
-    return lambda ds, ref: abs(ds[name].sum("contact", skipna=False) / ref[right].sum("contact", skipna=False) - 1.0)
+    return lambda ds, ref: abs(ds[name].sum("contact", skipna=False) / ref[ENERGY].sum("contact", skipna=False) - 1.0)
 
 
 def _stick(ds: xr.Dataset, ref: xr.Dataset) -> xr.DataArray:
     return _largest(abs(ds["stick_area_fraction"] - ref["stick_area_fraction"]))
 
 
-FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral", "semi_axis_rolling")
-ENERGY = "friction_energy_per_distance"
 QUANTITIES = (
     Quantity("normal_force", "normal forces", "Normal force", _relative("normal_force"), ("normal_force",)),
     Quantity(
