@@ -492,7 +492,7 @@ def test_adhesion_below_an_element_does_not_lower_the_lateral_force():
 
 
 def test_unseen_adhesion_ends_where_elements_see_it_or_the_patch_slides():
-    """The share falls with the area of an element; a pole outside the patch leaves nothing unseen."""
+    """The unseen share is proportional to the area of an element, and zero if the pole lies outside the patch."""
     lost = extrapolation.unseen_adhesion
     one, inside = np.ones(1), np.zeros(1)
     assert lost(40.0 * one, one, inside, 40) == pytest.approx(lost(20.0 * one, one, inside, 20) / 4.0)

@@ -124,7 +124,7 @@ def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tm
         same(place / "s" / "study.nc", tmp_path / "calm" / "s" / "study.nc")
         again = count_solved() - before
         assert sum(n - 1 for n in again.values()) <= 4, f"only the block in work is lost, at kill point {point}"
-        assert len(again) == 4 + 2, "the new cases and the failed ones"
+        assert len(again) == 4 + 2, "4 new cases and the 2 that failed"
         if not killed:
             break
         point += 1

@@ -92,7 +92,7 @@ def test_killed_study_goes_on_to_its_report_and_after_a_change_runs_only_what_de
     replace_in(place / "tiny.yaml", "a small study", "other words")
     again = started(run("-n"))
     assert "solve" not in again and "gather" in again and "report" in again
-    lay_study(place, levels=11)  # keeps the six levels and adds the five between
+    lay_study(place, levels=11)  # the six old levels, and five new ones between them
     assert started(run("results/tiny/study.nc")).count("solve") == 3, "10 new cases, 4 in a chunk"
     with xr.open_dataset(out / "study.nc") as ds:
         assert ds.sizes["axial_force"] == 11 and int((ds["regime"] < 3).sum()) == int(ds["converged"].sum()) == 22

@@ -151,9 +151,10 @@ def _levels_words(view: StudyView, name: str, levels: Any) -> str:
 def _most_frequent(
     view: StudyView, hit: np.ndarray, among: np.ndarray
 ) -> tuple[str, tuple[Any, int, int], tuple[Any, int, int]] | None:
-    """Return the factor whose levels differ most in how often they are hit, and its most and least frequent level.
+    """Return the factor whose levels differ most in the share of hits, and the levels of its largest and least share.
 
-    The order of these two levels must be the same within every category.
+    Each level comes with its number of hits and its number of rows among `among`. The order of the two levels must be
+    the same within every category.
     """
     best = None
     for name in view.factors:

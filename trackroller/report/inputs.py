@@ -56,7 +56,7 @@ def input_row(name: str, value: Any) -> Row:
 def material_rows(material: Material) -> list[Row]:
     """Return the values of a material."""
     told = [Row(words, number(getattr(material, name)), unit) for name, words, unit in MATERIAL_ROWS]
-    return [Row("name", material.name), *told, Row("exponent of the S-N curve k", rounded(material.woehler_exponent))]
+    return [Row("name", material.name), *told, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
 
 
 def factor_table(view: StudyView) -> Table | None:

@@ -78,7 +78,7 @@ class Factor:
 
     @property
     def ordered(self) -> bool:
-        """Return whether the values of the factor are finite numbers, which have an order."""
+        """Return whether the factor goes from less to more, which needs finite numbers as values."""
         return self.numeric and (not self.discrete or all(math.isfinite(v) for v in self.levels))
 
     def take(self, index: np.ndarray) -> np.ndarray:
