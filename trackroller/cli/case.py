@@ -110,7 +110,7 @@ def solve_and_tell(
 def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) -> None:
     """Solve the blocks of a spectrum file, and write or print the result.
 
-    `out` receives netCDF, and `page` the page. JSON is printed if `json` is True; otherwise tables, unless `out` is given.
+    `out` receives netCDF, and `page` the page. `json` prints JSON; without `json` and `out`, tables are printed.
     """
     target, sheet = (None if place is None else writable(place) for place in (out, page))
     from trackroller.report.sheet.page import write_spectrum  # heavy: jinja2
