@@ -16,9 +16,10 @@ from typing import NamedTuple
 import numpy as np
 from rocket_fft import c2c
 
-from trackroller.numerics.compiled import compiled, fast
+from trackroller.numerics.compiled import compiled, fast, formula
 
 ROUND = 1e-5  # least |a^2 - b^2|/(a b) at which the closed form for ellipses keeps its digits; the form errs by less
+THIRD = 1.0 / 3.0
 DIGITS = 13  # digits of element sizes and Poisson's ratio; patches that differ by rounding share influence functions
 
 
@@ -50,16 +51,22 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
     numpy.ndarray, shape (3, 2 ny - 1 + below + above, 2 nx - 1)
         Components xx, yy, xy for j from -(ny-1)-below to ny-1+above and i from -(nx-1) to nx-1.
     """
-    rows, columns = 2 * ny - 1 + below + above, 2 * nx - 1
+    rows, columns, zero = 2 * ny - 1 + below + above, 2 * nx - 1, ny + below
     corner = np.empty((3, rows + 1, columns + 1))
-    for j in range(rows + 1):
-        y = (j - (ny - 1) - below - 0.5) * hy
-        for i in range(columns + 1):
-            x = (i - (nx - 1) - 0.5) * hx
-            along_y, along_x = _log_part(x, y), _log_part(y, x)  # int int y^2/r^3, int int x^2/r^3
-            corner[0, j, i] = along_y * (1.0 - poisson) + along_x
-            corner[1, j, i] = along_x * (1.0 - poisson) + along_y
-            corner[2, j, i] = -poisson * math.sqrt(x * x + y * y)
+    for j in range(rows, -1, -1):
+        y, mirror = (j - zero + 0.5) * hy, 2 * zero - 1 - j
+        for i in range(nx, columns + 1):
+            x = (i - nx + 0.5) * hx
+            if j < zero and mirror <= rows:  # the antiderivatives are odd or even in x and y
+                for c in range(3):
+                    corner[c, j, i] = corner[c, mirror, i] if c == 2 else -corner[c, mirror, i]
+            else:
+                along_y, along_x = _log_part(x, y), _log_part(y, x)  # int int y^2/r^3, int int x^2/r^3
+                corner[0, j, i] = along_y * (1.0 - poisson) + along_x
+                corner[1, j, i] = along_x * (1.0 - poisson) + along_y
+                corner[2, j, i] = -poisson * math.sqrt(x * x + y * y)
+            for c in range(3):
+                corner[c, j, columns - i] = corner[c, j, i] if c == 2 else -corner[c, j, i]
     return _over_element(corner, 1.0 / math.pi)
 
 
@@ -133,6 +140,33 @@ def convolve(field, p, q, work, out):
     out[:] = work[0, :ny, :nx]
 
 
+@formula
+def difference(behind, here, ahead, far, hy):
+    """Return -du/dy of four displacements, one row behind to two rows ahead, with an error of third order.
+
+    The material enters at the leading edge, which is ahead. A central difference alone would leave the shortest waves
+    undetermined in the adhesion area. Upwind differences of second order, with two thirds of the central one, have no
+    error of second order. About the spin pole, where the slip turns, this error would act on F_T with first order.
+    """
+    return (behind * THIRD + 0.5 * here - ahead + far * (0.5 * THIRD)) * (1.0 / hy)
+
+
+@compiled
+def _functions(hx, hy, poisson, ny, nx, rolling):
+    """Return the fields of `Influence`, of the slips in `rolling` or of the displacements."""
+    u = displacements(hx, hy, poisson, ny, nx, 1, 2)
+    kernel = u[:, 1 : 2 * ny].copy()
+    if rolling:
+        for c in range(3):
+            for j in range(2 * ny - 1):
+                for i in range(2 * nx - 1):
+                    kernel[c, j, i] = difference(u[c, j, i], u[c, j + 1, i], u[c, j + 2, i], u[c, j + 3, i], hy)
+    p, q = 0.5 * (kernel[0] + kernel[1]) + 0j, 0.5 * (kernel[0] - kernel[1]) + 1j * kernel[2]
+    own = 0.5 * (u[0, ny : ny + 3, nx - 1] + u[1, ny : ny + 3, nx - 1])
+    scale = (1.5 * own[0] - 2.0 * own[1] + 0.5 * own[2]) / hy if rolling else own[0]
+    return _multipliers(p, ny, nx), _multipliers(q, ny, nx), scale, kernel[:2, :, nx - 1].copy()
+
+
 class Influence(NamedTuple):
     """Influence functions of ny x nx elements for products by fast Fourier transforms; a field is x + iy.
 
@@ -162,14 +196,7 @@ class Influence(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool) -> Influence:
-    u = displacements(hx, hy, poisson, ny, nx, 1, 2)
-    behind, here, ahead, far = (u[:, k : k + 2 * ny - 1] for k in range(4))
-    kernel = difference(behind, here, ahead, far, hy) if rolling else here
-    own = 0.5 * u[:2, ny : ny + 3, nx - 1].sum(axis=0)
-    scale = (1.5 * own[0] - 2.0 * own[1] + 0.5 * own[2]) / hy if rolling else own[0]
-    p, q = 0.5 * (kernel[0] + kernel[1]) + 0j, 0.5 * (kernel[0] - kernel[1]) + 1j * kernel[2]
-    own_column = np.ascontiguousarray(kernel[:2, :, nx - 1])
-    return Influence(_multipliers(p, ny, nx), _multipliers(q, ny, nx), float(scale), own_column)
+    return Influence(*_functions(hx, hy, poisson, ny, nx, rolling))
 
 
 def rounded(*values: float) -> tuple[float, ...]:
@@ -233,13 +260,3 @@ def hertz_coupling_slip(a, b, ny, nx):
             out[j, i] = out[ny - 1 - j, nx - 1 - i] = slip
             out[j, nx - 1 - i] = out[ny - 1 - j, i] = mirror
     return out
-
-
-def difference(behind, here, ahead, far, hy):
-    """Return -du/dy of four displacements, one row behind to two rows ahead, with an error of third order.
-
-    The material enters at the leading edge, which is ahead. A central difference alone would leave the shortest waves
-    undetermined in the adhesion area. Upwind differences of second order, with two thirds of the central one, have no
-    error of second order. About the spin pole, where the slip turns, this error would act on F_T with first order.
-    """
-    return (behind / 3.0 + 0.5 * here - ahead + far / 6.0) / hy
