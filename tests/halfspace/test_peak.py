@@ -201,8 +201,8 @@ def test_friction_brings_the_peak_to_the_surface():
 
 
 def test_ridge_points_lie_where_sliding_begins():
-    """Traction of a round adhesion area: the points lie on its rim, inside by at most one point of the grid."""
-    n, radius = 72, 0.6
+    """Traction of a round adhesion area: different points on its rim, inside by at most one point of the grid."""
+    n, radius = 96, 0.6
     x = (2.0 * np.arange(n) + 1.0) / n - 1.0
     share = np.minimum(np.hypot(x, x[:, None]) / radius, 1.0).astype(np.float32)
     fields = np.stack([[share, 0 * share], [0 * share + 1, 0 * share]])
@@ -212,4 +212,6 @@ def test_ridge_points_lie_where_sliding_begins():
     r, angle = np.hypot(*points[0, :, :2].T), np.arctan2(*points[0, :, :2].T)
     assert radius - 2.0 * np.sqrt(2.0) / n < r.min() and r.max() < radius
     assert np.histogram(angle, 12, (-np.pi, np.pi))[0].min() > 0.5 * MOST_ON_RIDGE / 12
-    assert (points[0, :, 2] == 0.0).all()
+    assert (points[0, :, 2] == 0.0).all() and len(np.unique(points[0], axis=0)) == MOST_ON_RIDGE
+    few = ridge_points(fields[:1, :, ::4, ::4])  # no more points than the line has
+    assert len(np.unique(few[0], axis=0)) == few.shape[1] < MOST_ON_RIDGE

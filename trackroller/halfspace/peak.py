@@ -117,15 +117,10 @@ def _with_ridges(patches: Patches, points: np.ndarray, values: np.ndarray, rule:
     surface = np.where(points[..., 2:] == 0.0, values, 0.0).max(axis=1)
     worth = (surface > RIDGE_WORTH * values.max(axis=1)).any(axis=1) & (patches.rows["friction"] > LITTLE_FRICTION)
     line = ridge_points(patches.fields[worth])
-    rows, known = np.flatnonzero(worth), np.isfinite(line[:, 0, 0])
-    if not known.any():
-        return points, values
-    rows = rows[known]
-    some = Patches(patches.rows[rows], patches.fields[rows], patches.poisson_ratio[rows], patches.slender, True)
-    more = np.zeros((len(points), *line.shape[1:]))
-    found = np.zeros((*more.shape[:2], 2))
-    more[rows], found[rows] = line[known], some.scan(line[known], rule)
-    return np.concatenate([points, more], axis=1), np.concatenate([values, found], axis=1)
+    more = np.full((len(points), *line.shape[1:]), np.nan)
+    more[worth] = line
+    found = patches.scan(more, rule)
+    return np.concatenate([points, np.nan_to_num(more)], axis=1), np.concatenate([values, found], axis=1)
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:

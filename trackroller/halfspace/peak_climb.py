@@ -68,20 +68,21 @@ class Patches:
         return out
 
     def scan(self, u: np.ndarray, rule: np.ndarray) -> np.ndarray:
-        """Return the von Mises stress (n, m, 2) in both bodies at normalised points u (n, m, 3), on all threads."""
-        n, m = u.shape[:2]
-        out = np.empty((2, n * m))
-        of, flat = np.repeat(np.arange(n), m), u.reshape(n * m, 3)
-        nu, signs = np.ascontiguousarray(self.poisson_ratio[of].T), np.repeat(FRICTION_SIGNS, n * m).reshape(2, n * m)
+        """Return the von Mises stress (n, m, 2) in both bodies at normalised points u (n, m, 3); 0 at points of NaN."""
+        of, place = np.nonzero(np.isfinite(u[..., 0]))
+        points, found = u[of, place], np.empty((2, of.size))
+        nu, signs = np.ascontiguousarray(self.poisson_ratio[of].T), np.repeat(FRICTION_SIGNS, of.size).reshape(2, -1)
 
         def work(first: int, last: int) -> None:
             some = slice(first, last)
-            parts = self.parts(of[some], flat[some], rule, rule)
+            parts = self.parts(of[some], points[some], rule, rule)
             for body in (0, 1):
-                von_mises_of_parts(parts, nu[body, some], signs[body, some], out[body, some])
+                von_mises_of_parts(parts, nu[body, some], signs[body, some], found[body, some])
 
-        share_rows(work, n * m, 64, 1024)
-        return np.moveaxis(out.reshape(2, n, m), 0, 2)
+        share_rows(work, of.size, 64, 1024)
+        out = np.zeros((*u.shape[:2], 2))
+        out[of, place] = found.T
+        return out
 
 
 def lengths(rows: np.ndarray) -> np.ndarray:

@@ -74,7 +74,9 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
 
 
 def ridge_points(fields: np.ndarray) -> np.ndarray:
-    """Return surface points on the line where sliding begins, (n, MOST_ON_RIDGE, 3); NaN in patches without it.
+    """Return surface points on the line where sliding begins, (n, m, 3) with m <= MOST_ON_RIDGE.
+
+    A patch with fewer points than others has rows of NaN after them.
 
     Where a patch begins to slide, the traction changes with the root of the distance. Stresses at the surface have a
     cusp there. Nearly all peaks that a coarse scan misses lie on this line.
@@ -93,12 +95,13 @@ def ridge_points(fields: np.ndarray) -> np.ndarray:
     beside[:, :, 1:] |= slides[:, :, :-1]
     beside[:, :, :-1] |= slides[:, :, 1:]
     beside &= ~slides & (x**2 + y[:, None] ** 2 < NEAR_RIM**2)
-    out = np.full((n, MOST_ON_RIDGE, 3), np.nan)
-    for points, line in zip(out, beside, strict=True):
-        places = np.flatnonzero(line)
-        if places.size:
-            places = places[np.linspace(0, places.size - 1, MOST_ON_RIDGE).astype(int)]
-            points[:] = np.stack([x[places % nx], y[places // nx], np.zeros(MOST_ON_RIDGE)], axis=1)
+    lines = [np.flatnonzero(line) for line in beside]
+    most = min(max((places.size for places in lines), default=0), MOST_ON_RIDGE)
+    out = np.full((n, most, 3), np.nan)
+    for points, places in zip(out, lines, strict=True):
+        if places.size > most:
+            places = places[np.linspace(0, places.size - 1, most).astype(int)]
+        points[: places.size] = np.stack([x[places % nx], y[places // nx], np.zeros(places.size)], axis=1)
     return out
 
 
