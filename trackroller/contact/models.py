@@ -92,7 +92,8 @@ class KalkerModel(ContactModel):
     def finer_shares(self, ellipse, slip, friction, rows):
         if self.correction is None:
             return None
-        settings, elastic = self.correction.settings, self.given.elastic.take(rows)
+        settings = dataclasses.replace(self.correction.settings, tolerance=CONVERGED[self.name])
+        elastic = self.given.elastic.take(rows)
         creep = kalker.Creepage.of_slip(slip, settings.profile_slip)
         coarse = self._solution(ellipse, slip, friction, rows)
         found = kalker.refined(ellipse, creep, friction, elastic, settings, coarse)
