@@ -8,6 +8,7 @@ coefficients with Kalker's printed table (1990, table E.3) and with rectangular 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
@@ -18,6 +19,7 @@ from numpy.polynomial.chebyshev import chebpts1, chebval, chebvander
 from trackroller.contact.common import Resultants
 from trackroller.contact.slip import Creepage
 from trackroller.errors import InputError
+from trackroller.numerics.compiled import compiled
 
 LARGEST_RATIO = 50.0  # of b/a; the smallest ratio is its inverse
 NODES = (21, 7)  # of ln(ratio) and of nu
@@ -40,12 +42,35 @@ def nodes() -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=1)
-def _chebyshev() -> np.ndarray:
-    """Return Chebyshev coefficients of the logarithms of the table, (nodes of ratio, nodes of nu, 4)."""
+def chebyshev() -> np.ndarray:
+    """Return Chebyshev coefficients of the logarithms of C11, C22, C23, C33, (4, nodes of ratio, nodes of nu)."""
     text = resources.files("trackroller.contact").joinpath(TABLE).read_text(encoding="utf-8")
     values = np.loadtxt(text.splitlines(), delimiter=",")[:, 2:].reshape(*NODES, 4)
     u, v = (np.linalg.inv(chebvander(chebpts1(n), n - 1)) for n in NODES)
-    return np.einsum("ij,kl,jlc->ikc", u, v, np.log(values))
+    return np.ascontiguousarray(np.einsum("ij,kl,jlc->cik", u, v, np.log(values)))
+
+
+@compiled
+def logarithm(ratio, poisson_ratio, series):
+    """Return the logarithm of the creepage coefficient with the Chebyshev `series` (nodes of ratio, nodes of nu)."""
+    u, v = math.log(ratio) / math.log(LARGEST_RATIO), 4.0 * poisson_ratio - 1.0
+    total, now, before = 0.0, 1.0, u  # Chebyshev polynomials of u, and of v below
+    for i in range(series.shape[0]):
+        line, power, last = 0.0, 1.0, v
+        for k in range(series.shape[1]):
+            line += power * series[i, k]
+            power, last = 2.0 * v * power - last, power
+        total += now * line
+        now, before = 2.0 * u * now - before, now
+    return total
+
+
+@compiled
+def _logarithms(ratio, poisson_ratio, series, out):
+    """Write the logarithms of all creepage coefficients into `out` (4, n)."""
+    for field in range(out.shape[0]):
+        for i in range(out.shape[1]):
+            out[field, i] = logarithm(ratio[i], poisson_ratio[i], series[field])
 
 
 def creepage_coefficients(axis_ratio, poisson_ratio) -> CreepageCoefficients:
@@ -75,12 +100,9 @@ def creepage_coefficients(axis_ratio, poisson_ratio) -> CreepageCoefficients:
         raise InputError("axis_ratio", axis_ratio, allowed, "Leave out more slender patches.")
     if not np.all((nu >= 0) & (nu <= 0.5)):
         raise InputError("poisson_ratio", poisson_ratio, "values between 0 and 0.5", "Correct the material.")
-    shape, ratio, nu = ratio.shape, ratio.reshape(-1), nu.reshape(-1)
-    u, v = np.log(ratio) / np.log(LARGEST_RATIO), 4.0 * nu - 1.0
-    rows = chebval(u, _chebyshev(), tensor=True)  # (nodes of nu, 4, ...)
-    powers = np.moveaxis(chebvander(v, NODES[1] - 1), -1, 0)
-    values = np.exp(np.einsum("kcn,kn->cn", rows, powers))
-    return CreepageCoefficients(*values.reshape(4, *shape))
+    values = np.empty((4, ratio.size))
+    _logarithms(np.array(ratio.reshape(-1)), np.array(nu.reshape(-1)), chebyshev(), values)
+    return CreepageCoefficients(*np.exp(values).reshape(4, *ratio.shape))
 
 
 def linear_resultants(a, b, creep: Creepage, shear_modulus, coefficients: CreepageCoefficients) -> Resultants:

@@ -61,8 +61,7 @@ class Correction:
     def _table(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and its validity, (m,)."""
         elastic = self.elastic.take(rows)
-        forces, place, held = table.nearest_forces(patch, slip.longitudinal, slip.spin, friction, elastic)
-        return forces.T, place, held
+        return table.nearest_forces(patch, slip.longitudinal, slip.spin, friction, elastic)
 
     def _corrected(self, forces: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> np.ndarray:
         reach = self.reach[rows, side]

@@ -16,60 +16,93 @@ coordinate but g has a limit.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from typing import NamedTuple
 
 import numpy as np
 
 from trackroller.contact.common import Elastic
-from trackroller.contact.linear import creepage_coefficients
+from trackroller.contact.linear import logarithm
 from trackroller.contact.protocol import Patch
+from trackroller.numerics.compiled import compiled, formula
 
 HALF_WAY = 3.0  # r at rho = 1/2
 RATIOS = (0.05, 20.0)  # of b/a
 LARGEST_SLIP = 1e100  # creepages are cut off here; far below, the patch already slides completely
+LEAST_BEND = 1e-250  # smallest unit of the creepages
 
 
+@formula
 def spin_arm(g):
     """Return the lever arm L of spin over c = sqrt(a b); the pole leaves a slender patch (b << a) at theta = 60 deg."""
     return np.sqrt((1.0 / g + g / 4.0) / 3.0)
 
 
+@formula
 def coupling_creepage(g):
     """Return Z over C11 K/mu."""
     return 0.5 / (1.0 + g)
 
 
-@dataclass(frozen=True)
-class Dimensionless:
-    """Normalised patches, arrays (n,): axis ratio g, Poisson's ratio, and X, Y, Z of the coordinates."""
+class Rolling(NamedTuple):
+    """Patches in steady rolling, arrays (n,): a, b [mm], xi [1], phi [1/mm], mu, mu F_N [N], and elastic constants."""
 
-    g: np.ndarray
-    poisson: np.ndarray
-    along: np.ndarray
-    across: np.ndarray
+    lateral: np.ndarray
+    rolling: np.ndarray
+    longitudinal: np.ndarray
+    spin: np.ndarray
+    friction: np.ndarray
+    capacity: np.ndarray
+    shear_modulus: np.ndarray
+    poisson_ratio: np.ndarray
     coupling: np.ndarray
 
-    @property
-    def radius(self) -> np.ndarray:
-        """Return r, (n,)."""
-        return np.sqrt(self.along**2 + self.across**2 + self.coupling**2)
+    @classmethod
+    def of(cls, ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) -> Rolling:
+        """Return patches as kernels take them; see `table.solve_patch`."""
+        a, b, capacity = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.normal_force
+        constants = elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling
+        columns = np.empty((9, a.size))
+        for column, value in zip(columns, (a, b, longitudinal, spin, friction, capacity, *constants), strict=True):
+            column[:] = value
+        return cls(*columns)
 
     @property
-    def log_ratio(self) -> np.ndarray:
-        """Return ln g of the nearest axis ratio in the table's range, (n,)."""
-        return np.log(np.clip(self.g, *RATIOS))
+    def size(self) -> np.ndarray:
+        """Return c = sqrt(a b), (n,) [mm]."""
+        return np.sqrt(self.lateral * self.rolling)
+
+    @property
+    def held(self) -> np.ndarray:
+        """Return which patches lie in the table's range, (n,); where there is no patch NaN stays NaN."""
+        g, edge = self.rolling / self.lateral, 1.0 + 1e-9
+        return ((g >= RATIOS[0] / edge) & (g <= RATIOS[1] * edge)) | ~np.isfinite(g)
 
 
-def normalise(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) -> Dimensionless:
-    """Return the coordinates of patches with creepages xi [1] and phi [1/mm]; see `table.solve_patch`."""
-    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    g, square = b / a, a * b
-    near = np.clip(np.where(np.isfinite(g), g, 1.0), *RATIOS)
-    c11 = creepage_coefficients(near, elastic.poisson_ratio).c11
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        bend = np.maximum(friction * ellipse.normal_force / (elastic.shear_modulus * square * c11), 1e-250)
-        coupled = np.where((elastic.coupling == 0.0) | (friction == 0.0), 0.0, elastic.coupling / friction)
-        z = c11 * coupled * coupling_creepage(near)
-        values = longitudinal / bend + z, spin * np.sqrt(square) * spin_arm(near) / bend, z
-    x, y, z = (np.clip(v, -LARGEST_SLIP, LARGEST_SLIP) for v in values)
-    return Dimensionless(*np.broadcast_arrays(g, elastic.poisson_ratio, x, y, z))
+@compiled
+def _limited(value, low, high):
+    """Return `value` between its limits; NaN stays NaN."""
+    return low if value < low else (high if value > high else value)
+
+
+@compiled
+def coordinates(patches, i, linear):
+    """Return axis ratio, X, Y and Z of patch i; `linear` are the coefficients of `linear.chebyshev`.
+
+    The ratio is that of the nearest patch in the table's range. X, Y or Z is not finite where there is no patch.
+    """
+    square = patches.lateral[i] * patches.rolling[i]
+    ratio = patches.rolling[i] / patches.lateral[i]
+    g = _limited(ratio if math.isfinite(ratio) else 1.0, RATIOS[0], RATIOS[1])
+    c11 = math.exp(logarithm(g, patches.poisson_ratio[i], linear[0]))
+    bend = patches.capacity[i] / (patches.shear_modulus[i] * square * c11)
+    bend = LEAST_BEND if bend < LEAST_BEND else bend
+    friction, coupling = patches.friction[i], patches.coupling[i]
+    coupled = 0.0 if coupling == 0.0 or friction == 0.0 else coupling / friction
+    z = c11 * coupled * coupling_creepage(g)
+    x = patches.longitudinal[i] / bend + z
+    y = patches.spin[i] * math.sqrt(square) * spin_arm(g) / bend
+    if not math.isfinite(ratio):
+        x = np.nan
+    limit = LARGEST_SLIP
+    return g, _limited(x, -limit, limit), _limited(y, -limit, limit), _limited(z, -limit, limit)

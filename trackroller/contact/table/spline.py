@@ -9,15 +9,18 @@ and second coefficient in nu - 0.3. `validation.kalker_table` builds them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+import math
+from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources as files
+from typing import NamedTuple
 
 import numpy as np
 
 from trackroller.contact.common import Elastic, Resultants
+from trackroller.contact.linear import chebyshev
 from trackroller.contact.protocol import Patch
-from trackroller.contact.table.coordinates import HALF_WAY, RATIOS, Dimensionless, normalise
+from trackroller.contact.table.coordinates import HALF_WAY, Rolling, coordinates
 from trackroller.numerics.compiled import compiled
 from trackroller.numerics.knots import interval
 from trackroller.numerics.threads import share_rows
@@ -27,8 +30,7 @@ POISSON = 0.3  # Poisson's ratio of the finer of both splines
 FIELDS = ("lateral", "driving", "spin", "stick")
 
 
-@dataclass(frozen=True)
-class Spline:
+class Spline(NamedTuple):
     """Tensor product of cubic splines: four knot vectors, and coefficients (n1, n2, n3, n4, fields)."""
 
     knots: tuple[np.ndarray, ...]
@@ -74,42 +76,27 @@ def _basis(knots, x, out):
 
 
 @compiled
-def _evaluate(first, last, knots, values, points, out):
-    """Add rows first to last - 1 of the tensor product at points (n, 4) to `out` (n, fields)."""
-    k0, k1, k2, k3 = knots
-    basis, start = np.empty((4, 4)), np.empty(4, np.int64)
-    for row in range(first, last):
-        start[0], start[1] = _basis(k0, points[row, 0], basis[0]), _basis(k1, points[row, 1], basis[1])
-        start[2], start[3] = _basis(k2, points[row, 2], basis[2]), _basis(k3, points[row, 3], basis[3])
-        for h in range(4):
-            for i in range(4):
-                for j in range(4):
-                    w = basis[0, h] * basis[1, i] * basis[2, j]
-                    line = values[start[0] + h, start[1] + i, start[2] + j]
-                    for k in range(4):
-                        for f in range(values.shape[4]):
-                            out[row, f] += w * basis[3, k] * line[start[3] + k, f]
+def evaluate(spline, place, basis, line, out):
+    """Write the values of a `Spline` at a place (4,) between its outer knots into `out` (fields,).
 
-
-def evaluate(spline: Spline, points: np.ndarray) -> np.ndarray:
-    """Return the values of a tensor-product spline.
-
-    Parameters
-    ----------
-    spline : Spline
-        The spline.
-    points : numpy.ndarray, shape (n, 4)
-        Points between the outer knots.
-
-    Returns
-    -------
-    numpy.ndarray, shape (n, fields)
-        Values.
+    basis (4, 4) and line (4 fields,) are work space.
     """
-    points = np.ascontiguousarray(points, dtype=float)
-    out = np.zeros((len(points), spline.values.shape[4]))
-    share_rows(lambda a, b: _evaluate(a, b, spline.knots, spline.values, points, out), len(points), 512)
-    return out
+    (k0, k1, k2, k3), values = spline
+    h, i, j = (_basis(k0, place[0], basis[0]), _basis(k1, place[1], basis[1]), _basis(k2, place[2], basis[2]))
+    fields = values.shape[4]
+    first = _basis(k3, place[3], basis[3]) * fields
+    rows = values.reshape(*values.shape[:3], values.shape[3] * fields)
+    line[:] = 0.0
+    for p in range(4):
+        for q in range(4):
+            for r in range(4):
+                w, row = basis[0, p] * basis[1, q] * basis[2, r], rows[h + p, i + q, j + r]
+                for k in range(line.size):
+                    line[k] += w * row[first + k]
+    for f in range(fields):
+        out[f] = 0.0
+        for k in range(4):
+            out[f] += basis[3, k] * line[k * fields + f]
 
 
 @dataclass(frozen=True)
@@ -175,23 +162,13 @@ def solve_patch(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) 
     -----
     `stored().errors` has the differences from the exact solver.
     """
-    xi, phi, mu = (np.asarray(v, float) for v in (longitudinal, spin, friction))
-    d = normalise(ellipse, xi, phi, mu, elastic)
-    known = _held(d)
-    rows = np.flatnonzero(known)
-    unit = np.full((len(FIELDS), known.size), np.nan)
-    unit[:, rows] = unit_forces(Dimensionless(*(getattr(d, f.name)[rows] for f in fields(d))))
-    capacity = mu * ellipse.normal_force
-    c = np.sqrt(ellipse.semi_axis_lateral * ellipse.semi_axis_rolling)
-    forces = Resultants(capacity * unit[0], capacity * unit[1], capacity * c * unit[2])
-    work = -(xi * forces.driving_force + phi * forces.spin_moment)
-    return TableSolution(forces, np.clip(unit[3], 0.0, 1.0), work, known)
-
-
-def _held(d: Dimensionless) -> np.ndarray:
-    """Return which patches lie in the table's range, (n,); where there is no patch NaN stays NaN."""
-    edge = 1.0 + 1e-9
-    return ((d.g >= RATIOS[0] / edge) & (d.g <= RATIOS[1] * edge)) | ~np.isfinite(d.g)
+    patches = Rolling.of(ellipse, longitudinal, spin, friction, elastic)
+    unit, _ = _looked_up(patches)
+    known, capacity = patches.held, patches.capacity
+    unit[~known] = np.nan
+    forces = Resultants(capacity * unit[:, 0], capacity * unit[:, 1], capacity * patches.size * unit[:, 2])
+    work = -(patches.longitudinal * forces.driving_force + patches.spin * forces.spin_moment)
+    return TableSolution(forces, np.clip(unit[:, 3], 0.0, 1.0), work, known)
 
 
 def nearest_forces(
@@ -203,34 +180,54 @@ def nearest_forces(
 
     Returns
     -------
-    forces : numpy.ndarray, shape (3, n)
+    forces : numpy.ndarray, shape (n, 3)
         F_T/(mu N), F_A/(mu N) and M_R/(mu N c); NaN where there is no patch.
     place : numpy.ndarray, shape (n,)
         X/(3 + r) in (-1, 1).
     held : numpy.ndarray of bool, shape (n,)
         True for patches in the table's range.
     """
-    xi, phi, mu = (np.asarray(v, float) for v in (longitudinal, spin, friction))
-    d = normalise(ellipse, xi, phi, mu, elastic)
-    return unit_forces(d)[:3], d.along / (HALF_WAY + d.radius), _held(d)
+    patches = Rolling.of(ellipse, longitudinal, spin, friction, elastic)
+    unit, place = _looked_up(patches)
+    return unit[:, :3], place, patches.held
 
 
-def unit_forces(d: Dimensionless) -> np.ndarray:
-    """Return F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of the adhesion area, (4, n).
+def _looked_up(patches: Rolling) -> tuple[np.ndarray, np.ndarray]:
+    """Return the forces and the share of the adhesion area (n, 4) of `_look_up`, and the place of the slip, (n,)."""
+    n, tables, linear = patches.lateral.size, stored(), chebyshev()
+    unit, place = np.empty((n, 4)), np.empty(n)
+    share_rows(lambda a, b: _look_up(a, b, patches, linear, tables.forces, tables.poisson, unit, place), n, 512)
+    return unit, place
 
-    A patch outside the range takes the values at the end of the range. NaN where there is no patch.
+
+@compiled
+def _look_up(first, last, patches, linear, forces, poisson, unit, place):
+    """Write F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of the adhesion area of patches into `unit` (n, 4).
+
+    A patch outside the range takes the values at the end of the range. NaN where there is no patch. `place` (n,) takes
+    X/(3 + r).
     """
-    there = np.isfinite(d.g * d.along * d.across)
-    # If both creepages and K change their signs, the tractions do so as well.
-    turned = np.where(d.coupling == 0.0, np.where(d.along < 0.0, -1.0, 1.0), np.sign(d.coupling))
-    z, y, r = np.abs(d.coupling), np.abs(d.across), np.where(there, d.radius, 0.0)
-    rho, plane = r / (r + HALF_WAY), np.hypot(d.along, y)
-    points = np.stack([rho, np.arctan2(z, plane), np.arctan2(turned * d.along, y), d.log_ratio], axis=1)
-    points = np.where(there[:, None], points, 0.0)
-    tables, change = stored(), np.where(there, d.poisson - POISSON, 0.0)
-    forces, more = evaluate(tables.forces, points).T, evaluate(tables.poisson, points).T
-    forces += change * (more[:4] + change * more[4:])
-    # A reflection of x changes the signs of the spin, of F_T and of M_R, and keeps F_A.
-    share = np.where(r > 0.0, d.across / np.where(r > 0.0, r, 1.0), 0.0)
-    forces[:3] *= np.stack([rho * share, rho * turned, rho * share])
-    return np.where(there, forces, np.nan)
+    at, basis, more = np.empty(4), np.empty((4, 4)), np.empty(2 * len(FIELDS))
+    line, wide = np.empty(4 * len(FIELDS)), np.empty(8 * len(FIELDS))
+    for i in range(first, last):
+        g, x, y, z = coordinates(patches, i, linear)
+        r = math.sqrt(x * x + y * y + z * z)
+        place[i] = x / (HALF_WAY + r)
+        if not math.isfinite(r):
+            unit[i] = np.nan
+            continue
+        # If both creepages and K change their signs, the tractions do so as well.
+        turned = -1.0 if z < 0.0 or (z == 0.0 and x < 0.0) else 1.0
+        rho = r / (r + HALF_WAY)
+        at[0], at[1] = rho, math.atan2(abs(z), math.sqrt(x * x + y * y))
+        at[2], at[3] = math.atan2(turned * x, abs(y)), math.log(g)
+        evaluate(forces, at, basis, line, unit[i])
+        evaluate(poisson, at, basis, wide, more)
+        change = patches.poisson_ratio[i] - POISSON
+        for k in range(4):
+            unit[i, k] += change * (more[k] + change * more[4 + k])
+        # A reflection of x changes the signs of the spin, of F_T and of M_R, and keeps F_A.
+        across = rho * (y / r if r > 0.0 else 0.0)
+        unit[i, 0] *= across
+        unit[i, 1] *= rho * turned
+        unit[i, 2] *= across
