@@ -86,6 +86,9 @@ class KalkerModel(ContactModel):
     def surface(self, ellipse, slip, friction, rows):
         return kalker.to_tractions(ellipse, friction, self._solution(ellipse, slip, friction, rows))
 
+    def stick(self, ellipse, slip, friction, rows):
+        return self._solution(ellipse, slip, friction, rows).stick_fraction
+
     def shares(self, ellipse, slip, friction, rows):
         return kalker.shares(ellipse, self._solution(ellipse, slip, friction, rows))
 

@@ -75,7 +75,7 @@ class ContactModel:
 
     name = ""  # as in `parameters.CONTACT_MODELS`
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
-    knows_tractions = True  # forces and `surface` come from one solution; otherwise `stick` gives the adhesion area
+    knows_tractions = True  # forces and `surface` come from one solution
     refines = False  # `surface` is exact for any number of elements of a refined patch
     difference_step = 1e-3  # relative step of derivatives, above the noise of the model
     residual = 1e-7  # relative residual of the equilibrium that the model can reach
@@ -112,9 +112,9 @@ class ContactModel:
         """Return the patches that carry the normal forces of `patch`, with their final pressures."""
         return patch
 
-    def stick(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return the share of the adhesion area in each patch, (m,) [1]."""
-        return self.surface(patch, slip, friction, rows).stick_share
+    def stick(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray | None:
+        """Return the share of the adhesion area in each rolling patch, (m,) [1]; None if `surface` tells it."""
+        return None
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""

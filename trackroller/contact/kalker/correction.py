@@ -122,15 +122,16 @@ class Correction:
             settings, start = dataclasses.replace(self.settings, extrapolate=forces, tolerance=tolerance), None
             if started:
                 settings = dataclasses.replace(settings, extrapolate=False)
-                start = self.store.get(slot).traction
+                before = self.store.get(slot)
+                start = before.traction
             creep = Creepage.of_slip(slip.take(pick), settings.profile_slip)
             found = solve_patch(patch.take(pick), creep, friction[pick], self.elastic.take(own), settings, start)
             exact[pick] = _columns(found.resultants) / scale[pick]
             if started:
                 exact[pick] += self.limit[own, side[pick]]
-                found = dataclasses.replace(found, energy_residual=self.store.get(slot).energy_residual)
+                found = found.extrapolated_as(before)
             else:
-                self.limit[own, side[pick]] = found.limit / scale[pick]
+                self.limit[own, side[pick]] = found.limit[:, :3] / scale[pick]
                 if forces:
                     self.error[own, side[pick]] = found.force_error / scale[pick, 0]
             self.store.put(slot, found)

@@ -10,6 +10,7 @@ SLIDING, ADHESION = 1.0 / 3.0, 1.0
 EARLY = 16  # power of the used share of the bound: a small adhesion area decides the order already
 FITTED, FITTED_AT, SLENDER = 0.077, 28, 0.6  # factor, elements and power of the axis ratio of `force_error`
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
+FEW = 5.0  # elements in an adhesion area of which half the change between the grids is chance
 # Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and spins of an element at which the adhesion area
 # begins to be unseen and at which its share has halved.
 UNSEEN, UNSEEN_POWER, RATIOS, SEEN, SMALL = 0.62, 0.8, (0.25, 3.5), 0.57, 5.0
@@ -62,6 +63,15 @@ def force_error(
     finer, largest = (FITTED_AT / elements) ** 1.5, np.abs(change[:, :2]).max(axis=1)
     factor = FITTED * np.maximum(ratio, 1.0 / ratio) ** SLENDER * np.cbrt(stick + 3e-3)
     return factor * np.sqrt(finer * capacity * (largest + 1e-3 * finer * capacity))
+
+
+def adhesion(fine: np.ndarray, coarse: np.ndarray, weight: np.ndarray, elements: int) -> np.ndarray:
+    """Extrapolate the share of the adhesion area from two grids, (n,).
+
+    The coarse grid tells little of an area of few elements, so its change counts less there.
+    """
+    count = 0.25 * np.pi * elements**2 * fine
+    return np.clip(fine + weight * count / (count + FEW) * (fine - coarse), 0.0, 1.0)
 
 
 def energy(fine: np.ndarray, coarse: np.ndarray) -> np.ndarray:

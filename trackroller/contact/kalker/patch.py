@@ -97,15 +97,16 @@ def refined(
     return solve_patch(ellipse, creep, friction, elastic, finer, _on_half_elements(ellipse, coarse))
 
 
-def _forces(ellipse: Ellipse | GridPatch, friction, found: batch.Found) -> np.ndarray:
-    """Return the resultants (n, 3) of one grid: see `subgrid.forces`."""
+def _integrals(ellipse: Ellipse | GridPatch, friction, found: batch.Found) -> tuple[np.ndarray, np.ndarray]:
+    """Return the resultants (n, 3) and the share of the adhesion area (n,) of one grid: see `subgrid.integrals`."""
     if not friction.size:
-        return found.report.forces
+        return found.report.forces, found.report.stick_fraction
     finer = ellipse if ellipse.is_hertzian else ellipse.refined(subgrid.PARTS, subgrid.PARTS)
-    between, _ = cells(finer, subgrid.PARTS * found.traction.shape[-1])
+    between = cells(finer, subgrid.PARTS * found.traction.shape[-1])
     bound = (friction * ellipse.max_pressure)[:, None]
     sides = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    return bound * subgrid.forces(_fields(ellipse, found), between, *sides)
+    forces, adhesion = subgrid.integrals(_fields(ellipse, found), between, *sides)
+    return bound * forces, np.where(found.report.products > 0, adhesion, 0.0)  # patches without friction have none
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -116,19 +117,21 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
     found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = found.report
-    value, limit, error = _forces(ellipse, friction, found), np.zeros((n, 3)), np.full((n, 3), np.nan)
+    (value, stick), limit, error = _integrals(ellipse, friction, found), np.zeros((n, 4)), np.full((n, 3), np.nan)
     pressed = fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
-        error = value - _forces(ellipse, friction, coarse)
+        other, stick_before = _integrals(ellipse, friction, coarse)
+        error = value - other
         weight, report = extrapolation.weight(_fields(ellipse, found).used), coarse.report
-        limit = weight[:, None] * error
+        limit[:, :3] = weight[:, None] * error
+        limit[:, 3] = extrapolation.adhesion(stick, stick_before, weight, elements) - stick
         limit[:, 0] += np.sign(value[:, 0]) * _unseen(ellipse, creep, friction, elastic, settings)
         pressed = pressed + weight * (pressed - report.pressure_work)
         work = work + weight * (work - report.work - report.pressure_work)
         # observed to be of second order wherever a part of the patch slides
         energy = extrapolation.energy(energy, report.energy_residual)
-    value, ratio = value + limit, ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
+    value, ratio = value + limit[:, :3], ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
     told = extrapolation.force_error(error, friction * ellipse.normal_force, fine.stick_fraction, ratio, elements)
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
@@ -138,7 +141,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         found.slip,
         found.stick,
         found.factor,
-        fine.stick_fraction,
+        stick + limit[:, 3],
         work,
         pressed,
         energy,
@@ -171,9 +174,7 @@ def _full(value, n: int) -> np.ndarray:
     return np.array(np.broadcast_to(np.asarray(value, float), n), order="C")
 
 
-def _prepared(
-    ellipse: Ellipse | GridPatch, friction, elastic: Elastic
-) -> tuple[Ellipse | GridPatch, np.ndarray, Elastic]:
+def _prepared(ellipse: Ellipse | GridPatch, friction, elastic: Elastic) -> tuple[Any, np.ndarray, Elastic]:
     n = np.size(ellipse.semi_axis_lateral)
     if ellipse.is_hertzian:
         ellipse = Ellipse(

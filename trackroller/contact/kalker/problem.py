@@ -62,7 +62,7 @@ class PatchSolution:
     factor : ndarray, shape (n, ny, nx), or (n, 1, 1) under constant friction
         Friction over its value at rest [1].
     stick_fraction : ndarray, shape (n,)
-        Share of the adhesion area in the patch [1].
+        Share of the adhesion area in the patch [1]; its boundary may cross elements. Extrapolated as the resultants.
     friction_energy_per_distance : ndarray, shape (n,)
         Dissipation per travelled distance [N], from the work of the rigid slip and of the pressures.
     pressure_work : ndarray, shape (n,)
@@ -70,8 +70,8 @@ class PatchSolution:
         the normal, and the pressures do work on this motion.
     energy_residual : ndarray, shape (n,)
         Dissipation summed over the elements, over `friction_energy_per_distance`, less 1 [1]; extrapolated.
-    limit : ndarray, shape (n, 3)
-        Change of the resultants by the extrapolation [N, N, N mm]; 0 without extrapolation.
+    limit : ndarray, shape (n, 4)
+        Change of the resultants and of the adhesion area by the extrapolation [N, N, N mm, 1]; 0 without it.
     error_estimate : ndarray, shape (n, 3)
         |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation.
     force_error : ndarray, shape (n,)
@@ -108,6 +108,11 @@ class PatchSolution:
     def works(self) -> Works:
         """Return the dissipation summed over the elements and the part that the pressures supply, (n,) [N]."""
         return Works(self.friction_energy_per_distance * (1.0 + self.energy_residual), self.pressure_work)
+
+    def extrapolated_as(self, before: PatchSolution) -> PatchSolution:
+        """Return the solution with energy residual and adhesion area extrapolated as in the similar one `before`."""
+        stick = np.clip(self.stick_fraction + before.limit[:, 3], 0.0, 1.0)
+        return replace(self, stick_fraction=stick, limit=before.limit, energy_residual=before.energy_residual)
 
     def take(self, index) -> PatchSolution:
         """Return the solution of the patches `index` (integer or boolean array)."""

@@ -126,8 +126,17 @@ def _of_four(field: np.ndarray) -> np.ndarray:
 
 def _between(z: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
     """Interpolate z (n, 2, m, m) to `parts` times the elements and apply the law of friction of the fields."""
+    return _by_law(_finer(z, parts), fields, parts)
+
+
+def _finer(z: np.ndarray, parts: int) -> np.ndarray:
+    """Interpolate z (n, 2, m, m) to `parts` times the elements by cubic splines."""
     matrix = _spline(z.shape[-1], parts)
-    fine = np.matmul(np.matmul(matrix, z), matrix.T)
+    return np.matmul(np.matmul(matrix, z), matrix.T)
+
+
+def _by_law(fine: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
+    """Turn z on `parts` times the elements into the traction over mu p at rest, in place."""
     for field in fine:
         _shorten(field)
     return np.multiply(fine, fields.finer_factor(parts), out=fine)
@@ -148,17 +157,42 @@ def _sum(traction, a, b, out):
         out[k] *= 4.0 * a * b / (nx * ny)
 
 
-def forces(fields: Fields, height: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return F_T, F_A and M_R over mu p_max, (n, 3), in patches with half sides a, b (n,) [mm].
+@compiled
+def _adhesion(z, share):
+    """Return the part of a patch where z (2, ny, nx) is shorter than 1; `share` (ny, nx) is the part of each element.
 
-    `height` (., .) or (n, ., .) is the mean pressure over the largest on PARTS times the elements. In full adhesion
-    the traction is singular at the trailing edge, where an element holds its mean and no smooth field does. So the
-    elements' own tractions count the more, the less of the bound is used.
+    |z|^2 is taken as linear within an element, with the slopes to its neighbours, so that the boundary may cross it.
     """
-    between = shares(fields)
+    _, ny, nx = z.shape
+    excess = z[0] ** 2 + z[1] ** 2 - 1.0
+    sticking = 0.0
+    for i in range(ny):
+        for j in range(nx):
+            along = excess[min(i + 1, ny - 1), j] - excess[max(i - 1, 0), j]
+            across = excess[i, min(j + 1, nx - 1)] - excess[i, max(j - 1, 0)]
+            steep = 0.5 * (abs(along) + abs(across)) + 1e-12
+            sticking += share[i, j] * min(max(0.5 - excess[i, j] / steep, 0.0), 1.0)
+    return sticking / share.sum()
+
+
+def integrals(
+    fields: Fields, cells: tuple[np.ndarray, np.ndarray], a: np.ndarray, b: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return F_T, F_A and M_R over mu p_max, (n, 3), and the share of the adhesion area, (n,).
+
+    `cells` are the mean pressure over the largest, and the share inside the patch, of PARTS times the elements, each
+    (., .) or (n, ., .); a, b (n,) are the half sides of the patches [mm]. In full adhesion the traction is singular at
+    the trailing edge, where an element holds its mean and no smooth field does. So the elements' own tractions count
+    the more, the less of the bound is used.
+    """
+    height, share = cells
+    fine = _finer(fields.before_law(), PARTS)
+    within = np.broadcast_to(share, (len(fine), *share.shape[-2:]))
+    adhesion = np.array([_adhesion(z, own) for z, own in zip(fine, within, strict=True)])
+    between = _by_law(fine, fields, PARTS)
     between *= height if height.ndim == 2 else height[:, None]
     smooth, plain = np.zeros((2, len(between), 3))
     for i in range(len(between)):
         _sum(between[i], a[i], b[i], smooth[i])
         _sum(fields.traction[i], a[i], b[i], plain[i])
-    return smooth + (1.0 - fields.used[:, None]) ** 2 * (plain - smooth)
+    return smooth + (1.0 - fields.used[:, None]) ** 2 * (plain - smooth), adhesion

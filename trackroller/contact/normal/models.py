@@ -178,6 +178,10 @@ class GridKalkerModel(GridModel):
         grid = self.patch(patch, slip, rows)
         return kalker.to_tractions(grid, friction, self._solved(grid, slip, friction, rows))
 
+    def stick(self, patch, slip, friction, rows) -> np.ndarray:
+        """Return the share of the adhesion area in each rolling patch, (m,) [1]."""
+        return self._solved(self.patch(patch, slip, rows), slip, friction, rows).stick_fraction
+
     def state(self, n):
         """Return the larger residual of both problems, and whether both are met, each (n,)."""
         normal, tangential = super().state(n), self._law.state(n)

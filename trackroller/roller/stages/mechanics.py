@@ -126,9 +126,9 @@ def contact(results: Results, options: Options) -> None:
     if model.full_sliding or results.scene.frictionless:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
     elif "contact" in options.outputs or "max_shear" in (options.stop_if or ""):
-        v["stick_area_fraction"] = results.full(_stick_share(results))
         if model.knows_tractions:
             v["max_shear"] = results.full(_largest_shear(results))
+        v["stick_area_fraction"] = _stick_share(results)
 
 
 def _spin_pole(results: Results, options: Options) -> tuple[np.ndarray, np.ndarray]:
@@ -165,14 +165,14 @@ def steep_friction(results: Results, options: Options) -> None:
 
 
 def _stick_share(results: Results) -> np.ndarray:
-    """Return the share of each existing patch that sticks [1]; a tabulated model knows it without tractions."""
-    model, good = results.scene.model, results.good
-    if model.knows_tractions:
-        return surface_tractions(results).stick_share
-    patch, slip, friction, rows = results.of(good)
-    slip = replace(slip, shift=np.where(np.isfinite(slip.shift), slip.shift, 0.0))
-    share = model.stick(patch, slip, friction, rows)
-    return np.where(results.slides_along[good] == 0, share, 0.0)
+    """Return the share of the adhesion area in both patches of each roller [1], 0 in full slip, (n, 2)."""
+    mirror, rolls = results.scene.mirror, results.good & (results.slides_along == 0)
+    share = results.scene.model.stick(*results.of(mirror.asked(rolls)))
+    if share is None:
+        return results.full(surface_tractions(results).stick_share)
+    out = np.where(results.good, 0.0, np.nan)
+    out[rolls] = mirror.spread(rolls, share)
+    return results.by_contact(out)
 
 
 def _largest_shear(results: Results) -> np.ndarray:
