@@ -67,6 +67,7 @@ docs: $(CI_STAMP)
 	$(BIN)/python docs/generate.py --check
 	$(BIN)/python -m validation.adopt.extremes --check
 	$(BIN)/python -m validation.adopt.paper --check
+	$(BIN)/python -m validation.adopt.tradeoff --check
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 # the pages in a browser; needs Chromium, and axe-core from `npm ci` in web/

@@ -13,6 +13,7 @@ import trackroller as tr
 from trackroller.contact.slip import pole_split, rolling_slip
 from trackroller.errors import InputError
 from trackroller.roller import accuracy as ac
+from validation.adopt import tradeoff as adopted
 from validation.tradeoff import page as tradeoff_page
 from validation.tradeoff import parts as tradeoff
 from validation.tradeoff import settings as tradeoff_settings
@@ -211,3 +212,7 @@ def test_wrong_sizes_are_refused(tmp_path, text):
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError):
         tradeoff.load_sizes(path)
+
+
+def test_the_ladders_of_the_package_are_those_of_the_kept_data():
+    assert adopted.LADDERS.read_text(encoding="utf-8") == adopted.ladders(), "run: python -m validation.adopt.tradeoff"

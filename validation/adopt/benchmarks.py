@@ -10,24 +10,21 @@ from __future__ import annotations
 
 import json
 import shutil
-import subprocess
-import sys
-from pathlib import Path
 
-from validation.adopt.common import DATA, FIGURES, FOLDER
+from validation.adopt.common import DATA, FIGURES, results_of, write_generated
 from validation.benchmarks import programs, scaling
 
 
 def main() -> None:
     """Copy the data files, draw the figure of `scaling` and write the pages."""
-    results = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER.parent / "results"
+    results = results_of("")
     files = [results / "benchmarks" / f"{name}.json" for name in programs()] + [results / "peers" / "peers.json"]
     for path in files:
         if path.is_file():
             shutil.copy(path, DATA / path.name)
     measured = json.loads((DATA / "scaling.json").read_text(encoding="utf-8"))
     scaling.draw(measured["by_size"], measured["by_accuracy"], FIGURES)
-    subprocess.run([sys.executable, str(FOLDER / "generate.py")], check=True)
+    write_generated()
 
 
 if __name__ == "__main__":

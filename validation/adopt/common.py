@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -62,11 +63,32 @@ def copy_figures(results: Path, names: Iterable[str], colours: int | None = None
                 image.convert("RGB").quantize(colours).save(kept, optimize=True)
 
 
-def main(target: str, page: Callable[[], str], adopt: Callable[[Path], None]) -> None:
-    """Adopt `results/TARGET` or the given folder and write its page; `--check` ends with 1 if it is out of date."""
-    words, path = sys.argv[1:], PAGES / f"{target}.md"
-    if "--check" in words:
-        raise SystemExit(path.read_text(encoding="utf-8") != page())
+def results_of(target: str) -> Path:
+    """Return the folder that the command line names; without a name, `results/TARGET` of the repository."""
+    return Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER.parent / "results" / target
+
+
+def main(target: str, path: Path, text: Callable[[], str], adopt: Callable[[Path], None]) -> None:
+    """Adopt the data of a target and write the file that follows from them; `--check` only compares.
+
+    Parameters
+    ----------
+    target : str
+        Name of the folder in `results/`, if the command line names none.
+    path : Path
+        The file to write, or to compare: with `--check` the program ends with 1 if the file is out of date.
+    text : callable
+        Returns the text of the file from the data in the repository.
+    adopt : callable
+        Copies the data from a folder of results into the repository.
+    """
+    if "--check" in sys.argv[1:]:
+        raise SystemExit(path.read_text(encoding="utf-8") != text())
     DATA.mkdir(exist_ok=True)
-    adopt(Path(words[0]) if words else FOLDER.parent / "results" / target)
-    path.write_text(page(), encoding="utf-8")
+    adopt(results_of(target))
+    path.write_text(text(), encoding="utf-8")
+
+
+def write_generated() -> None:
+    """Write the pages of `docs/generate.py`, in a process of its own that reads the new data."""
+    subprocess.run([sys.executable, str(FOLDER / "generate.py")], check=True)

@@ -6,11 +6,8 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
-from pathlib import Path
 
-from validation.adopt.common import DATA, FIGURES, FOLDER, copy_figures
+from validation.adopt.common import DATA, FIGURES, copy_figures, results_of, write_generated
 
 NAMES = ("error", "error-factors", "energy", "patches")
 COLOURS = 64
@@ -18,12 +15,12 @@ COLOURS = 64
 
 def main() -> None:
     """Copy the figures under the names that the pages use, and the errors."""
-    results = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER.parent / "results" / "contact_models"
+    results = results_of("contact_models")
     copy_figures(results, [f"models-{name}" for name in NAMES], COLOURS)
     for name in NAMES:
         (FIGURES / f"models-{name}.png").replace(FIGURES / f"contact_models_{name.replace('-', '_')}.png")
     shutil.copy(results / "errors.json", DATA / "contact_models.json")
-    subprocess.run([sys.executable, str(FOLDER / "generate.py")], check=True)
+    write_generated()
 
 
 if __name__ == "__main__":

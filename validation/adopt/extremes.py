@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from validation.adopt.common import DATA, PICTURES, copy_figures, main, shortened
+from validation.adopt.common import DATA, PAGES, PICTURES, copy_figures, main, shortened
 from validation.extremes.page import blocks, read
 from validation.pages import markdown
 
@@ -34,4 +34,4 @@ def adopt(results: Path) -> None:
 
 
 if __name__ == "__main__":
-    main("extremes", page, adopt)
+    main("extremes", PAGES / "extremes.md", page, adopt)

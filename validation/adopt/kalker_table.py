@@ -6,16 +6,15 @@
 from __future__ import annotations
 
 import shutil
-import sys
 from pathlib import Path
 
 from trackroller.contact.table import spline
-from validation.adopt.common import DATA, FOLDER
+from validation.adopt.common import DATA, results_of
 
 
 def main() -> None:
     """Copy the table into the package and its measured errors into the docs."""
-    results = Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER.parent / "results" / "kalker_table"
+    results = results_of("kalker_table")
     shutil.copy(results / spline.TABLE, Path(spline.__file__).with_name(spline.TABLE))
     shutil.copy(results / "errors.json", DATA / "kalker_table.json")
 

@@ -10,7 +10,7 @@ import json
 import shutil
 from pathlib import Path
 
-from validation.adopt.common import DATA, PICTURES, copy_figures, main
+from validation.adopt.common import DATA, PAGES, PICTURES, copy_figures, main
 from validation.pages import markdown
 from validation.paper.compute import STORED, stored
 from validation.paper.page import blocks
@@ -32,4 +32,4 @@ def adopt(results: Path) -> None:
 
 
 if __name__ == "__main__":
-    main("paper", page, adopt)
+    main("paper", PAGES / "paper.md", page, adopt)
