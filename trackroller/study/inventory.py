@@ -96,7 +96,8 @@ def check_default_model(study: Study, folder: StudyFolder) -> None:
         raise InputError(
             "contact_model",
             option.default,
-            f"it is the default now, the study file names no contact model, and {folder.root} was solved with another",
+            f"the default has changed from {earlier} to {option.default}, the study file names no contact model, and "
+            f"{folder.root} was solved with {earlier}",
             f"Nothing was changed. Add the line `contact_model: {earlier}` to the study file to keep that model and "
             f"its results, or `contact_model: {option.default}` to solve all cases anew.",
         )
