@@ -5,9 +5,11 @@ Exit codes: 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the p
 
 from __future__ import annotations
 
+import functools
 import sys
 import tempfile
 import traceback
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -238,8 +240,11 @@ def main() -> None:
     """Run the command line and end the process with its exit code.
 
     The codes are 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the program. Every error is one line on
-    stderr; an error of the program leaves its traceback in a log file that the line names.
+    stderr; an error of the program leaves its traceback in a log file that the line names. A warning is one line too,
+    which is printed once.
     """
+    print_once = functools.cache(_print_line)
+    warnings.showwarning = lambda message, *_: print_once(str(message))
     raise SystemExit(run_app(app))
 
 
@@ -265,8 +270,12 @@ def run_app(command: Callable[[], object]) -> int:
     return 0
 
 
+def _print_line(text: str) -> None:
+    print("trackroller: " + " ".join(text.split()), file=sys.stderr)
+
+
 def _tell(line: str, code: int) -> int:
-    print("trackroller: " + " ".join(line.split()), file=sys.stderr)
+    _print_line(line)
     return code
 
 
