@@ -199,6 +199,10 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     ds["contact_model_used"] = ("case", np.arange(40) % 2 + 2, {"flag_meanings": "sliding fastsim kalker kalker_table"})
     ds["stopped"] = ("case", (np.arange(40) < 7).astype("i1"))
     assert models_used(ds) == [Row("Contact model used", "kalker in 20, kalker_table in 20 of 40 cases")]
+    asked = ds.assign_attrs(contact_model="kalker")
+    asked["contact_model_used"][:] = 3
+    assert models_used(asked) == [Row("Contact model used", "kalker_table in 40 of 40 cases")]
+    assert models_used(asked.assign_attrs(contact_model="kalker_table")) == []
     told = contents(ds)
     valid = dict(told["summary"])["Valid designs"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)

@@ -120,6 +120,11 @@ def test_friction_energy_of_full_sliding_is_flagged_and_that_of_the_exact_theory
     for model, told in (("sliding", True), ("kalker", False)):
         ds = tr.solve(CASES["example"], ("forces", "friction_work"), contact_model=model, accuracy="preview")
         assert ("energy_residual" in {flag.name for flag in flags_of(ds)}) == told
+        forces = ds.drop_vars("energy_residual")
+        assert ("full_sliding" in {flag.name for flag in flags_of(forces)}) == told
+        named = {"sliding": "contact model sliding, ", "kalker": "contact model kalker (solved by kalker_table), "}
+        assert collect(ds).options.startswith(named[model])
+        assert json.loads(as_json(ds))["contact_model_used"]["meaning"] == ("sliding" if told else "kalker_table")
 
 
 def test_the_command_repeats_the_case(solved, facts):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.parameters import CONTACT_MODELS
+from trackroller.parameters import CONTACT_MODELS, REGIMES
 from trackroller.report.claims import Sentence
 from trackroller.report.numbers import capital, count, percent, plain, rounded
 from trackroller.report.view import BODIES, StudyView
@@ -54,6 +54,8 @@ WORDS: dict[str, tuple[str, str]] = {
     ),
 }
 OF_BODY = ("yield", "static", "deep_life", "half_space")  # flags that may hold for one body alone
+SLIDING_ERROR = "Its friction forces err by 38 % of mu F_N in the median of 540 measured rollers."
+_SLIDING, _ROLLING = CONTACT_MODELS.index("sliding"), REGIMES.index("rolling")
 KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
 
@@ -93,9 +95,12 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
             words = f"{words_of(name)} {of_body(name, ' and the '.join(own))}".rstrip()
             found.append(Flag(name, f"{capital(words)}.", WORDS[name][1]))
     residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
+    exact = "Solve it with contact_model: kalker."
     if residual > KNOWN_ERROR:
         text = f"Friction energy and power differ from the work put in by {percent(residual)}."
-        found.append(Flag("energy_residual", text, "Solve it with contact_model: kalker."))
+        found.append(Flag("energy_residual", text, exact))
+    if "energy_residual" not in ds and int(ds["contact_model_used"]) == _SLIDING and int(ds["regime"]) == _ROLLING:
+        found.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
     return found
 
 
@@ -119,14 +124,13 @@ def full_sliding(view: StudyView) -> Sentence | None:
 
     Return None if the study holds the friction work: another sentence then states the error measured in this study.
     """
-    rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
+    rows = view.rolling & (view.column("contact_model_used") == _SLIDING)
     if not rows.any() or np.isfinite(view.column("energy_residual")).any():
         return None
     cases = int(rows.sum())
     text = (
-        f"Known model error: full sliding solved {count(cases)} rolling designs. Its friction forces err by 38 % of "
-        "mu F_N in the median of 540 measured rollers. Solve with `contact_model: kalker` before a decision rests on "
-        "them."
+        f"Known model error: full sliding solved {count(cases)} rolling designs. {SLIDING_ERROR} Solve with "
+        "`contact_model: kalker` before a decision rests on them."
     )
     return Sentence("full_sliding", text, {"count": cases}, rows)
 

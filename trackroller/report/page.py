@@ -163,14 +163,17 @@ def _told(value: Any) -> str:
 
 
 def models_used(ds: xr.Dataset) -> list[Row]:
-    """Say how many cases each contact model solved, where several served the one that was asked for."""
+    """Say how many cases each contact model solved, where another model than the one asked for solved some of them."""
     if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
     names = str(ds["contact_model_used"].attrs.get("flag_meanings", "")).split()
     used = ds["contact_model_used"].values.astype(float)
-    counts = [(name, int((used == i).sum())) for i, name in enumerate(names)]
-    said = ", ".join(f"{name} in {count}" for name, count in counts if count)
-    return [Row("Contact model used", f"{said} of {used.size} cases")] if said and len(set(used.ravel())) > 1 else []
+    counts = {name: count for i, name in enumerate(names) if (count := int((used == i).sum()))}
+    asked = ds.attrs.get("contact_model")
+    if not counts or (len(counts) == 1 and asked in (None, *counts)):
+        return []
+    said = ", ".join(f"{name} in {count}" for name, count in counts.items())
+    return [Row("Contact model used", f"{said} of {used.size} cases")]
 
 
 def solution_facts(ds: xr.Dataset, view: StudyView) -> list[Row]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.damage import fatigue
-from trackroller.parameters import OPTIONS, REGIMES
+from trackroller.parameters import CONTACT_MODELS, OPTIONS, REGIMES
 from trackroller.report.columns import at_surface
 from trackroller.report.flags import Flag, flags_of
 from trackroller.report.inputs import Row, as_material, input_row, is_told, material_rows, material_source
@@ -116,10 +116,16 @@ def collect(ds: xr.Dataset) -> Facts:
         lives=lives,
         limits=limit_rows(found, inputs),
         flags=flags_of(ds),
-        options=", ".join(f"{plain(name)} {ds.attrs[name]}" for name in OPTIONS if ds.attrs.get(name)),
+        options=", ".join(f"{plain(name)} {ds.attrs[name]}{_used(ds, name)}" for name in OPTIONS if ds.attrs.get(name)),
         command=command_of(ds),
         versions=versions_text(),
     )
+
+
+def _used(ds: xr.Dataset, option: str) -> str:
+    """Name the contact model that solved the case if it is not the one asked for; an empty text for other options."""
+    used = CONTACT_MODELS[int(ds["contact_model_used"])]
+    return f" (solved by {used})" if option == "contact_model" and used != ds.attrs[option] else ""
 
 
 def versions_text() -> str:

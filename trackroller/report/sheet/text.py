@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.parameters import CONTACT_MODELS, REGIME_LABELS, REGIMES
 from trackroller.report.flags import flags_of
 from trackroller.report.sheet.facts import Facts, collect
 from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
@@ -104,7 +104,8 @@ def as_json(ds: xr.Dataset) -> str:
         }
         for name, variable in ds.variables.items()
     }
-    told["regime"]["meaning"] = np.array(REGIMES)[ds["regime"].values].tolist()
+    for name, words in (("regime", REGIMES), ("contact_model_used", CONTACT_MODELS)):
+        told[name]["meaning"] = np.array(words)[ds[name].values].tolist()
     if "case" in ds.attrs:
         inputs = inputs_of(ds)
         told["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
