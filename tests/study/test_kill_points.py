@@ -7,12 +7,10 @@ import os
 import re
 import shutil
 import signal
-from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
 import fake_solver
-import pytest
 import xarray as xr
 
 from trackroller.report.build import build_report
@@ -69,15 +67,6 @@ def kill_at(point: int, action: Callable[[], None]) -> bool:
     return os.WIFSIGNALED(os.waitpid(child, 0)[1])
 
 
-@pytest.fixture
-def count_solved(tmp_path, monkeypatch):
-    """Count how often each case was solved."""
-    file = tmp_path / "solved.txt"
-    file.touch()
-    monkeypatch.setenv("FAKE_SOLVED", str(file))
-    return lambda: Counter(file.read_text().splitlines())
-
-
 def same(one: Path, other: Path) -> None:
     """Check that variables, coordinates and attributes agree; only the date may differ."""
     sets = [xr.load_dataset(path) for path in (one, other)]
@@ -86,25 +75,25 @@ def same(one: Path, other: Path) -> None:
     xr.testing.assert_identical(*sets)
 
 
-def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, count_solved):
+def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, solved):
     data = GROWN | {"samples": 8}
     run(data, tmp_path / "calm")
-    before = count_solved()
+    before = solved()
     point = 0
     while kill_at(point, functools.partial(run, data, tmp_path / f"{point}")):
         killed = tmp_path / f"{point}"
         run(data, killed)
         for name in ("design.nc", "study.nc"):
             same(killed / "s" / name, tmp_path / "calm" / "s" / name)
-        twice = sum(n - 1 for n in (count_solved() - before).values())
+        twice = sum(n - 1 for n in (solved() - before).values())
         assert twice <= 4, f"only the block in work is lost, at kill point {point}"
         assert not list(killed.rglob("*.tmp")) and not list((killed / "s" / "parts").iterdir())
-        before = count_solved()
+        before = solved()
         point += 1
     assert point >= 20, "lists, plan, parts, chunks, design, study and their checksums"
 
 
-def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tmp_path, count_solved):
+def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tmp_path, solved):
     def failing(design, database=None, **options):
         ds = fake_solver.solve(design)
         return ds.assign(regime=ds["regime"].copy(data=(design["axial_force"] > 35).astype("i1") * 3))
@@ -118,11 +107,11 @@ def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tm
     while True:
         place = tmp_path / f"{point}"
         shutil.copytree(tmp_path / "start", place)
-        before = count_solved()
+        before = solved()
         killed = kill_at(point, functools.partial(run, grown, place, rerun_failed=True))
         run(grown, place, rerun_failed=True)
         same(place / "s" / "study.nc", tmp_path / "calm" / "s" / "study.nc")
-        again = count_solved() - before
+        again = solved() - before
         assert sum(n - 1 for n in again.values()) <= 4, f"only the block in work is lost, at kill point {point}"
         assert len(again) == 4 + 2, "4 new cases and the 2 that failed"
         if not killed:

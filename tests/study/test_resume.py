@@ -6,7 +6,6 @@ import multiprocessing
 import re
 import shutil
 import subprocess
-from collections import Counter
 from pathlib import Path
 
 import fake_solver
@@ -39,15 +38,6 @@ DATA = {
 def changed(**factors):
     """Return the study with other or further factors."""
     return DATA | {"factors": DATA["factors"] | {k: {"values": v} for k, v in factors.items()}}
-
-
-@pytest.fixture
-def solved(tmp_path, monkeypatch):
-    """Return a function that counts how often each case was solved."""
-    file = tmp_path / "solved.txt"
-    file.touch()
-    monkeypatch.setenv("FAKE_SOLVED", str(file))
-    return lambda: Counter(file.read_text().splitlines())
 
 
 def run(data, results, **more):

@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 import time
-from collections import Counter
 from pathlib import Path
 
 import fake_solver
@@ -30,15 +29,6 @@ DATA = {
     "factors": {"axial_force": {"values": LOADS}, "friction_coefficient": {"values": [0.1, 0.2]}},
 }
 EDITED = DATA | {"factors": DATA["factors"] | {"axial_force": {"values": [*LOADS, 50.0]}}}
-
-
-@pytest.fixture
-def solved(tmp_path, monkeypatch):
-    """Count how often each case was solved."""
-    file = tmp_path / "solved.txt"
-    file.touch()
-    monkeypatch.setenv("FAKE_SOLVED", str(file))
-    return lambda: Counter(file.read_text().splitlines())
 
 
 def snapshot(folder: Path) -> dict[Path, int]:
