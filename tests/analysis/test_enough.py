@@ -21,7 +21,7 @@ EXACT = {"ST": np.array([V[0] + V[2], V[1], V[2]]) / V.sum(), "first": np.array(
 
 
 def analysed(design, count, seed):
-    """Analyse the Ishigami function in the solver's place; for given data its polynomial part alone."""
+    """Analyse a study whose friction power is the Ishigami function of three factors."""
     data = {"name": "e", "design": design, "samples": count, "seed": seed, "factors": CARRIERS}
     data["analysis"] = {"outputs": ["friction_power"], "measures": ["first"]}
     data["outputs"] = ["forces", "friction_work"]

@@ -135,7 +135,7 @@ def test_an_error_of_the_program_is_one_line_with_a_log(capsys):
     assert "not thought of" in Path(log[1]).read_text(encoding="utf-8")
 
 
-# what a user may write for a number, sense and nonsense
+# valid and invalid texts that a user may write for a number
 digits = st.integers(0, 10**6).map(str)
 sense = st.one_of(
     st.integers(-(10**6), 10**6).map(str),

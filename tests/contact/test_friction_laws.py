@@ -284,7 +284,7 @@ def test_a_balance_that_the_rough_search_misplaces_is_found(kind):
 
 
 def test_most_falling_laws_of_a_sample_are_solved():
-    """Sliding friction is continuous in the slip: no case without an answer."""
+    """Sliding friction is continuous in the slip, so that the solver must find a solution."""
     rng = np.random.default_rng(20)
     cases = []
     for _ in range(40):

@@ -45,7 +45,7 @@ def test_traction_is_the_difference_of_two_hemispheres():
 
 
 def test_mindlin_with_lateral_contraction():
-    """With nu the theory leaves out the slip across the shift; force within 1.5 %."""
+    """With nu > 0 Mindlin's theory leaves out the slip across the shift; the force agrees within 1.5 %."""
     s = shift_patch(CIRCLE, 0.0, shift_of(0.6, 0.33), 0.0, 0.3, elastic(0.33))
     assert -s.resultants.driving_force[0] == pytest.approx(0.6 * 0.3 * FORCE, rel=1.5e-2)
 

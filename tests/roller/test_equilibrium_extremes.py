@@ -103,7 +103,7 @@ def test_self_locking_is_flagged_with_and_without_axial_force():
 
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_a_contact_lifts_at_a_stated_share_of_the_load_and_once(friction):
-    """Lift-off begins at 1e-8 of |F_rad| + |F_ax|, not where the iteration gives up; beyond it stays."""
+    """A contact lifts at a normal force of 1e-8 of |F_rad| + |F_ax|, and stays lifted under more axial force."""
     lift, low, high = 200 * np.tan(np.deg2rad(30)), 0.5, 1.1
     for _ in range(10):
         shares = np.linspace(low, high, 41)

@@ -1,4 +1,4 @@
-"""A study's RO-Crate lists every file with its digest, tells of damage, and is enough to solve the study again."""
+"""The RO-Crate of a study lists each file with its digest, reports damaged files, and suffices to solve it again."""
 
 from __future__ import annotations
 

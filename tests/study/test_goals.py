@@ -396,7 +396,7 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
 
 
 def test_every_source_of_an_analysis_is_an_input_of_its_rule():
-    """The rule names a module that exists, and whatever draws designs or estimates indices belongs to its sources."""
+    """Each rule names a module that exists; its sources include all code that draws designs or estimates indices."""
     root = Path(__file__).parents[2]
     text = (root / "workflow" / "rules" / "show.smk").read_text(encoding="utf-8")
     rules = dict(re.findall(r"rule (\w+):.*?code=digest_file\((.*?)\),\n    output", text, re.DOTALL))

@@ -1,4 +1,4 @@
-"""The benchmark's transcription of eqs. (1)-(6) computes the package's field: the ratio compares like with like."""
+"""The benchmark's transcription of eqs. (1)-(6) computes the same field as the package."""
 
 import numpy as np
 import pytest

@@ -1,7 +1,7 @@
 """Sentences as objects that can be checked, and the statistics that they state.
 
 Every sentence on the rows of a study is a `Sentence`: its text, what it claims as plain values, and the rows that it
-speaks of. `tests/report/test_truth.py` recomputes the claims from the raw rows.
+holds for. `tests/report/test_truth.py` recomputes the claims from the raw rows.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 FEW = 20  # fewer events are named one by one, without a cause
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
-FEWEST_ROWS = 20  # rows of a class below which its median is not compared
+FEWEST_ROWS = 20  # smallest number of rows of a class whose median is compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
 COVERED = 0.8  # share of a class that must lie in levels with enough rows; otherwise pooling cannot be checked
 UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change

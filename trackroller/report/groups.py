@@ -93,7 +93,7 @@ def coloured(view: StudyView, lead: str, rows: np.ndarray) -> list[tuple[str, np
     """
     index, ends = classes(view, lead, rows, 3)
     present = [k for k in range(len(ends)) if (index == k).any()]
-    if len(present) > COLOURS:  # a number of many levels: lowest, highest and between
+    if len(present) > COLOURS:  # of many levels show the lowest, the highest and some between
         chosen = np.unique(np.linspace(0, len(present) - 1, COLOURS).round().astype(int))
         present = [present[k] for k in chosen]
     return [(class_words(lead, ends[k]), index == k) for k in present]

@@ -132,7 +132,7 @@ def digest_file(folder: str | Path, *modules: str) -> str:
 
 
 def _split(source: str, docstring: str = "") -> tuple[str, list[str]]:
-    """Return the code without comments and blank lines, each docstring replaced, and the literal strings in it."""
+    """Return the code with replaced docstrings and without comments and blank lines, and the strings of the code."""
     kept: list[str] = []
     strings: list[str] = []
     last = 0

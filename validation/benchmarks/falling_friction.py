@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 import trackroller as tr
+from trackroller.parameters import REGIMES
 from trackroller.roller.case import CaseTable, to_table
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import ROLLING, solve_equilibrium
@@ -33,10 +34,9 @@ from validation.benchmarks.command import run
 from validation.benchmarks.peak_coverage import random_case
 
 RUNS = ("sliding:standard", "fastsim:standard", "kalker:preview", "kalker:standard")
-SPEED = 100.0  # mm/s, characteristic of every law; the velocity sets the slip over it
+SPEED = 100.0  # characteristic slip speed of every law [mm/s]; the travel velocity sets the slip speed over it
 STEPS = 16  # steps in which the velocity grows from nothing to its value
 APART = 0.02  # balances whose w differ by more count as two
-REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 
 
 def laws() -> list[dict[str, Any]]:

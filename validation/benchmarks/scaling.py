@@ -128,7 +128,7 @@ def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folde
 
 
 def linear(by_size: list[dict[str, Any]]) -> bool:
-    """Return True if the exponent of the complete cases is 1 within 0.1."""
+    """Return True if the time of complete cases grows with a power of their number from 0.9 to 1.1."""
     return abs(exponent([r for r in by_size if r["outputs"] == "complete"]) - 1) <= 0.1
 
 

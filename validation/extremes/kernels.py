@@ -147,7 +147,7 @@ def surface_centre() -> KernelError:
 
 
 def pole_positions() -> KernelError:
-    """Return the sliding forces with the pole at the centre, on the edge and far outside, 12 points against 600."""
+    """Compare the sliding forces of 12 points with those of 600; poles at the centre, on the edge and far outside."""
     values = (0.0, 1e-12, 1e-6, 0.3, 0.999999, 1.0, 1.000001, 3.0, 1e3, 1e6, 1e12)
     n, sine = np.ones(len(values)), 0.5
     ellipse = Ellipse(n, 0.5 * n, n)
@@ -163,7 +163,7 @@ def pole_positions() -> KernelError:
 
 
 def far_pole() -> KernelError:
-    """Return the driving force with the pole far outside against the series of F_A in powers of b over its distance."""
+    """Compare the driving force for poles far outside with the series of F_A in powers of b over the distance."""
     values = (1e3, 1e6, 1e9, 1e12)
     n = np.ones(len(values))
     ellipse = Ellipse(n, 0.5 * n, n)

@@ -67,7 +67,7 @@ def adhesion(nodes: Nodes, poisson: float) -> np.ndarray:
 
 
 def _fields(nodes: Nodes, poisson: float, levels: Sequence[np.ndarray]) -> np.ndarray:
-    """Return smooth fields (rho, chi, theta, ln g, 4) from the results at rho > 0."""
+    """Return the smooth fields of the table, shape (rho, chi, theta, ln g, 4), from the results at rho > 0."""
     values = np.stack([adhesion(nodes, poisson), *levels])
     values[1:, ..., :3] /= nodes.rho[1:, None, None, None, None]
     spin = np.cos(nodes.chis)[:, None] * np.cos(nodes.theta)

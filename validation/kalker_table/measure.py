@@ -122,7 +122,7 @@ def summary(p: Problem, off: np.ndarray) -> dict[str, float]:
 
 
 def measure(designs: int, count: int, seed: int, elements: int, tables: spline.Tables) -> dict[str, dict[str, float]]:
-    """Return the share of designs outside, and errors on `count` of their patches and `count` of the whole range."""
+    """Return the share of designs outside the table, and its errors on patches of designs and of its whole range."""
     unknown = accuracy.Levels(1.0, 1.0, 1.0, 1.0)  # the errors that the table will state
     with (
         mock.patch.object(spline, "stored", lambda: tables),

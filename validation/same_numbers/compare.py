@@ -93,7 +93,7 @@ def compare(before: Archive, after: Archive, tolerance: float = 0.0) -> list[Ver
 
 
 def _compare_wording(key: str, old: np.ndarray, new: np.ndarray, verdict: Verdict) -> None:
-    """Compare sentences, which may change but not appear or disappear."""
+    """Compare sentences: other words are a remark, an added or removed sentence is a problem."""
     if old.shape != new.shape or np.any((old == "") != (new == "")):
         verdict.problems.append(f"{key}: sentences appear or disappear")
     elif np.any(old != new):

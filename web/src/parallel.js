@@ -41,7 +41,7 @@ export function parallel(model, colours, say) {
     axes.forEach((column, i) => context[i ? "lineTo" : "moveTo"](x(i), y(placesOf(column)[row])));
   }
 
-  // Lines of one turn, those of a colour in one path each.
+  // Draw the next lines, one colour after the other; return the place after them and their number.
   function batch(from, most) {
     const { context } = lines;
     const { list, index } = colours();

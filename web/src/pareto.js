@@ -42,7 +42,7 @@ function tests(table, limits) {
   });
 }
 
-// The rolling cases alone are candidates, unless a limit or a constraint of the study speaks of regimes.
+// The rolling cases alone are candidates, unless a limit or a constraint of the study names a regime.
 function namesRegime(table, limits) {
   const speaks = (texts) => texts.some((text) => /\bregime\b/.test(text));
   if (Array.isArray(limits)) return speaks(limits);

@@ -1,4 +1,4 @@
-"""State where each cheaper contact model is good enough, over friction and drive, in sentences from the results."""
+"""State in sentences at which friction and drive each cheaper contact model is good enough."""
 
 from __future__ import annotations
 

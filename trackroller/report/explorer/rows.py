@@ -196,7 +196,7 @@ def solve_inputs(ds: xr.Dataset, view: StudyView, known: dict[str, Column]) -> t
 
     Returns
     -------
-    settings : key, and the text that is the same in all cases or the name of a column in a list of one
+    settings : pairs of a key and its text, or of a key and a list with the name of its column if the text varies
     columns : further columns that the settings name
     """
     dims, settings, more = study_dims(ds), [], []

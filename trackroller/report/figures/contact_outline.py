@@ -34,7 +34,7 @@ class Patch:
 
     @property
     def inside(self) -> np.ndarray:
-        """Return the points or elements that bear."""
+        """Return which points or elements of the grid carry pressure."""
         if self.solved:
             return _bears(self.ds)
         return (self.x[None, :] / self.a) ** 2 + (self.y[:, None] / self.b) ** 2 < 1.0

@@ -1,4 +1,4 @@
-"""From a study to its cases: the dataset that is solved."""
+"""Build the dataset of the cases of a study, which the solver takes."""
 
 from __future__ import annotations
 

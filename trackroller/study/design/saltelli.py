@@ -51,8 +51,8 @@ def pairs_sharing(count: int, second_order: bool) -> dict[int, list[tuple[int, i
 
     Returns
     -------
-    Set of columns -> pairs (row, row) with equal values in these columns and in no other. Where A or B has such a
-    partner, only these pairs: the control variate of A with B serves them best.
+    Set of columns -> pairs (row, row) with equal values in these columns and in no other. If pairs with A or with B are
+    among them, only these pairs are returned, because A and B give them the best control variate.
     """
     whole = (1 << count) - 1
     from_a = [whole, *(whole ^ (1 << j) for j in range(count))]
