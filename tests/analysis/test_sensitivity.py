@@ -320,8 +320,8 @@ def test_grid_with_holes_drops_levels_and_says_how_many_cells():
     assert np.isnan(indices.grid_shares(np.full((3, 3), np.nan))["main_share"]).all()
 
 
-def test_note_of_a_grid_counts_the_cells_that_go_with_a_hole():
-    """One failed corner of 4 by 5 cells costs a level, so that a full grid remains."""
+def test_note_of_a_grid_counts_the_cells_left_out_because_one_failed():
+    """One failed corner of 4 by 5 cells removes a level, so that the remaining grid is full."""
     factors = {"axial_force": {"values": [0, 10, 20, 30]}, "velocity": {"values": [20, 40, 60, 80, 100]}}
 
     def fake(design):

@@ -117,7 +117,7 @@ def test_friction_at_sliding_points_follows_the_law():
     slides = (t.pressure > 0) & ~t.stick
     friction = np.hypot(t.shear_lateral, t.shear_rolling)[slides] / (0.3 * t.pressure[slides])
     expected = law(2000.0 * np.hypot(t.slip_lateral, t.slip_rolling)[slides])
-    assert expected.min() < 0.7 and expected.max() > 0.95  # the patch holds most of the fall
+    assert expected.min() < 0.7 and expected.max() > 0.95  # slip speeds of the patch span most of the fall
     assert np.average(np.abs(friction - expected), weights=t.pressure[slides]) < 0.02
 
 

@@ -1,4 +1,4 @@
-"""Keys analysis, pareto and constraints of a study file; delta; the S-N diagram; what a report makes of them."""
+"""Keys analysis, pareto and constraints of a study file, in analysis and report; delta index; S-N diagram."""
 
 import json
 import re
@@ -213,7 +213,7 @@ def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
 
 
 def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set():
-    """Power over 12 W only where life depends on velocity alone; below, the axial force decides."""
+    """Above 12 W the life depends on the velocity alone; below 12 W the axial force decides."""
     ds = solved(
         LIVES | {"constraints": ["friction_power < 12", "regime != full_slip"]},
         lambda x, v: x > 0.9,

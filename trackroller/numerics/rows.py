@@ -23,7 +23,7 @@ def _part(value: Any, index: Any) -> Any:
 
 
 def once_each(make: Callable[[Any], Any], values: Iterable[Any]) -> list[Any]:
-    """Return `make(value)` for each value; it is called once for values that are written alike."""
+    """Return `make(value)` for each value; values with the same text share one call."""
     values = list(values)
     keys = [value if isinstance(value, str) else repr(value) for value in values]
     made = {key: make(value) for key, value in dict(zip(keys, values, strict=True)).items()}

@@ -123,7 +123,7 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
         why = [index_table(sens, error), *part_tables(sens)]
         index, names = words.headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
         known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
-        why += [measure_table(sens, name, error) for name in known[:1]]  # a life if there is one
+        why += [measure_table(sens, name, error) for name in known[:1]]  # a life, if the study has one, stands first
     return {
         "decide": [t for t in decide if t],
         "decide_said": said,

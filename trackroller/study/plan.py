@@ -204,7 +204,7 @@ def read_plan(study: Study, folder: StudyFolder) -> Plan | None:
 
 
 def _written(folder: StudyFolder) -> dict[str, Any]:
-    """Return what the plan file says, {} without a readable one."""
+    """Return the content of the plan file; {} if the file is missing or cannot be read."""
     try:
         return dict(json.loads(folder.plan_file.read_text()))
     except (OSError, ValueError, TypeError):

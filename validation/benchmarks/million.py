@@ -3,8 +3,8 @@
     python -m validation.benchmarks.million [--base-samples N] [--real] [--keep FOLDER]
 
 A Saltelli sample of six factors without second order has 8 cases for each base sample (131072: just over a million
-cases), with forces, contact and life. Without `--real`, results of a few thousand solved cases are handed out again and
-again in place of solving, so that the other steps are measured alone: planning, Snakemake's graph of jobs, gathering,
+cases), with forces, contact and life. Without `--real`, the results of a few thousand solved cases are repeated
+instead of solving, so that only the other steps are measured: planning, Snakemake's graph of jobs, gathering,
 analysis, figures, report. With `--real`, every case is solved by `snakemake --cores all`, which goes on where it
 stopped when the same command is given again with the same `--keep` folder.
 """

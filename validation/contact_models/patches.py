@@ -76,7 +76,7 @@ def _patch(axes: Axes, one: xr.Dataset, mu: float, top: float) -> Any:
     axes.add_patch(edge)
     image.set_clip_path(edge)
     slip = np.hypot(one["slip_lateral"].values, one["slip_rolling"].values)
-    stuck = (pressure > 0) & (slip <= STILL * np.nanmax(slip))  # the exact theory leaves rounding
+    stuck = (pressure > 0) & (slip <= STILL * np.nanmax(slip))  # elements that stick have a slip of rounding errors
     if stuck.any():
         hatch = axes.contourf(x, y, stuck.astype(float), levels=[0.5, 1.5], colors=[(1, 1, 1, 0)], hatches=["//////"])
         hatch.set_edgecolor("0.15")

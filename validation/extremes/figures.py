@@ -196,7 +196,7 @@ def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
         save(figure, out_dir, "extremes_kernels")
     return FigureInfo(
         "extremes_kernels",
-        "Relative errors of kernels where cancellation lurks.",
+        "Relative errors of kernels at places of cancellation.",
         "In double precision every kernel keeps nine digits or more (the 12-point rule seven, by its "
         "quadrature); in single precision some closed formulas keep none.",
     )

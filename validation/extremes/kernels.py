@@ -1,4 +1,4 @@
-"""Kernels where cancellation lurks against the same quantities in 50 digits (mpmath), and in single precision."""
+"""Compare kernels at places of cancellation with the same quantities in 50 digits (mpmath) and in single precision."""
 
 from __future__ import annotations
 

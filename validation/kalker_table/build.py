@@ -54,7 +54,7 @@ def solve_level(level: int) -> dict[str, np.ndarray]:
 
 
 def adhesion(nodes: Nodes, poisson: float) -> np.ndarray:
-    """Return the limit of the results over rho at rho = 0, the linear theory, (chi, theta, ln g, 4)."""
+    """Return the limit of the results over rho at rho = 0, from linear theory, shape (chi, theta, ln g, 4)."""
     chi, theta, g = nodes.mesh()
     c, log_g = creepage_coefficients(g, poisson), nodes.log_g
     # At chi = 90 deg the creepage is -Z. Only the difference between Z and the effect of K leaves a force.

@@ -45,7 +45,7 @@ SEARCHES = (
 ELEMENTS = {"kalker": (8, 12, 16, 20, 28, 40, 56), "fastsim": (10, 14, 20, 28, 40, 56, 80)}
 REFERENCE_ELEMENTS = {"kalker": 80, "fastsim": 160}
 FINE = PeakSettings(12, 16, 24, 48, 16, 12, 0.001, 0.0)
-# A search only ever finds too little, so the largest of several fine ones is the best known.
+# No search exceeds the true peak, so the largest result of several fine searches is the best known value.
 REFERENCE_SEARCHES = (
     PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0),
     PeakSettings(16, 24, 32, 96, 24, 20, 5e-4, 0.0),

@@ -91,7 +91,7 @@ def _numbers(ds: xr.Dataset, view: StudyView) -> np.ndarray | None:
 
 
 def pareto_rows(ds: xr.Dataset, cases: int) -> np.ndarray:
-    """Mark the Pareto set of the study's own goals, shape (n,) bool; no row without goals."""
+    """Mark the Pareto set of the study's own goals, shape (n,) bool; all False if the study has no goals."""
     marked = np.zeros(cases, dtype=bool)
     try:
         front = study_pareto(ds)
@@ -132,7 +132,7 @@ def asset(name: str) -> str:
 
 
 def _json(value: Any) -> markupsafe.Markup:
-    """Write JSON that no name of a user can end: every `<` is escaped, and there is no NaN."""
+    """Write JSON without NaN. Every `<` is escaped, so that no name of a user can end the script element."""
     text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return markupsafe.Markup(text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029"))
 

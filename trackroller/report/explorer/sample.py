@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 MOST_ROWS = 200_000  # cases that a page shows
-RARE = 1_000  # cases of a state that are all kept
+RARE = 1_000  # states with at most so many cases keep all of them
 
 
 def sample_rows(state: np.ndarray, keep: np.ndarray, most: int = MOST_ROWS, seed: int = 1) -> np.ndarray:

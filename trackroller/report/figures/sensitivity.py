@@ -152,7 +152,7 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
 
 
 def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
-    """Draw sigma over mu*: right matters, above the line acts differently from place to place.
+    """Draw sigma over mu*: a factor to the right matters, and above the line its effect differs from place to place.
 
     It answers: which factors can be left out of a further study, and which act only together with others?
     """

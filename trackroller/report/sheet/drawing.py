@@ -32,8 +32,8 @@ def drawing(ds: xr.Dataset) -> str:
 
     Notes
     -----
-    Lengths are to scale; so are the forces among each other. The width of the roller is not a parameter: twice the
-    guide's radius is drawn.
+    Lengths are to scale, and so are the forces relative to each other. The width of the roller is no parameter; it is
+    drawn as twice the guide's radius.
     """
     values = inputs_of(ds)
     alpha, r_guide = math.radians(values["contact_angle"]), values["guide_profile_radius"]
