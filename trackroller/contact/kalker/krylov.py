@@ -45,10 +45,15 @@ class Derivative(NamedTuple):
 
 
 class Space(NamedTuple):
-    """Work space: column factors (see `factors_of`), Krylov basis (m + 1, 2 ny nx) and transforms, see `convolve`."""
+    """Work space of a Newton step.
+
+    factors : see `factors_of`; basis : Krylov basis (m + 1, 2 ny nx); moves : of each vector of the basis the traction
+    and the slip that it stands for, complex (m, 2, ny, nx); transforms : see `convolve`.
+    """
 
     factors: np.ndarray
     basis: np.ndarray
+    moves: np.ndarray
     transforms: np.ndarray
 
 
@@ -123,49 +128,47 @@ def arnoldi(direction, product, mean, derivative, basis, k, triangle):
 
 
 @compiled
-def combination(basis, triangle, done, out):
-    """Write the least-squares combination of basis[: done] into `out` (2 ny nx,)."""
+def combination(vectors, triangle, done, out):
+    """Write the least-squares combination of vectors[: done] (m, n) into `out` (n,)."""
     hessenberg, rhs = triangle.hessenberg, triangle.rhs
-    for j in range(out.size):
-        out[j] = 0.0
+    out[:] = 0.0
     for i in range(done - 1, -1, -1):
         for j in range(i + 1, done):
             rhs[i] -= hessenberg[i, j] * rhs[j]
         rhs[i] = rhs[i] / hessenberg[i, i] if hessenberg[i, i] != 0.0 else 0.0
         for j in range(out.size):
-            out[j] += rhs[i] * basis[i, j]
+            out[j] += rhs[i] * vectors[i, j]
 
 
 @compiled
-def solve(value, derivative, columns, operator, tolerance, space, step):
+def solve(value, derivative, columns, operator, tolerance, space, move):
     """Solve Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES; return the products.
 
-    The solution goes into `step` (ny, nx), and `value` is overwritten. `tolerance` limits the linear residual over
+    The solution and the slip that it causes go into `move` (2, ny, nx). `tolerance` limits the linear residual over
     the norm of `value`.
     """
     ny, nx = value.shape
     slips, first, count = columns
     factorise(slips, derivative.projection, derivative.rho, first, count, space.factors)
-    limit = space.basis.shape[0] - 1
+    limit = space.moves.shape[0]
     triangle = Triangle(np.zeros((limit + 1, limit)), np.zeros((2, limit)), np.zeros(limit + 1))
-    product = np.empty_like(value)
     mean = np.zeros((ny, nx, 2))
-    value_reals, step_reals, product_reals = reals(value), reals(step), reals(product)
-    flat = value_reals.reshape(-1)
+    flat = reals(value).reshape(-1)
     norm = math.sqrt(dot(flat, flat))
     for j in range(flat.size):
         space.basis[0, j] = flat[j] / norm
     triangle.rhs[0] = norm
     done = 0
     for k in range(limit):
-        apply_inverse(space.factors, first, count, space.basis[k].reshape(ny, nx, 2), step_reals)
-        convolve(step, operator.p, operator.q, space.transforms, product)
+        traction, slip = space.moves[k, 0], space.moves[k, 1]
+        apply_inverse(space.factors, first, count, space.basis[k].reshape(ny, nx, 2), reals(traction))
+        convolve(traction, operator.p, operator.q, space.transforms, slip)
         if derivative.falls:
-            row_means(product_reals, first, count, mean)
-        rest = arnoldi(step_reals, product_reals, mean, derivative, space.basis, k, triangle)
+            row_means(reals(slip), first, count, mean)
+        rest = arnoldi(reals(traction), reals(slip), mean, derivative, space.basis, k, triangle)
         done = k + 1
         if rest <= tolerance * norm:
             break
-    combination(space.basis, triangle, done, flat)
-    apply_inverse(space.factors, first, count, value_reals, step_reals)
+    vectors = space.moves.reshape(limit, -1).view(np.float64)
+    combination(vectors, triangle, done, move.reshape(-1).view(np.float64))
     return done

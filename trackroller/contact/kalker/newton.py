@@ -91,6 +91,7 @@ def room_for(ny, nx, krylov):
         Space(
             factors_of(ny, nx),
             np.empty((krylov + 1, 2 * ny * nx)),
+            np.empty((krylov, 2, ny, nx), np.complex128),
             np.empty((2, 2 * ny, 2 * nx), np.complex128),
         ),
     )
@@ -115,15 +116,13 @@ def _state(law, work, traction, slip):
 
 
 @compiled
-def _step(law, work, traction, slip, tolerance, leap, step, change):
-    """Write Newton's step and the slip that it causes; return its products. A leap makes the slits stick."""
+def _step(law, work, traction, slip, tolerance, leap, move):
+    """Write Newton's step and the slip that it causes into `move`; return its products. A leap holds the slits."""
     moved, d = reals(slip), work.derivative
     jacobian(reals(traction), moved, work.room.mean, work.room.bound, work.room.slope, law.rho, d.projection, d.turn)
     if leap:
         hold(work.room.held, moved, law.rho, reals(work.room.value), d.projection, d.turn)
-    products = solve(work.room.value, d, work.columns, work.operator, tolerance, work.room.space, step)
-    convolve(step, work.operator.p, work.operator.q, work.room.space.transforms, change)
-    return products + 1
+    return solve(work.room.value, d, work.columns, work.operator, tolerance, work.room.space, move)
 
 
 @compiled
@@ -164,7 +163,7 @@ def _iterate(law, work, at, tolerance, limit):
         leap = short >= SHORT and left == 0
         if leap:
             leap = find_slits(reals(at[0]), reals(at[1]), work.room.bound, law.rho, work.room.held) > 0
-        products += _step(law, work, at[0], at[1], inner, leap, moves[0], moves[1])
+        products += _step(law, work, at[0], at[1], inner, leap, moves)
         if leap:
             for k in range(2):
                 _move(at[k], moves[k], 1.0, new[k])
@@ -224,7 +223,9 @@ def newton(problem, room, traction, tolerance, limit):
     law = Law(problem.height, problem.scale, problem.knots, problem.factors, falls, rho)
     at = np.empty((2, *traction.shape), np.complex128)
     at[0] = traction
-    convolve(at[0], functions.p, functions.q, room.space.transforms, at[1])
-    at[1] += problem.rigid
+    at[1] = problem.rigid
+    if np.any(traction != 0.0):
+        convolve(traction, functions.p, functions.q, room.space.transforms, room.value)
+        at[1] += room.value
     largest, steps, products = _iterate(law, work, at, tolerance, limit)
     return at, largest, steps, products
