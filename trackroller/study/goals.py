@@ -221,7 +221,7 @@ def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[st
         if config.design != "inner_outer" or name in chosen:
             continue
         if not kind:
-            allowed = f"{', '.join(STATISTICS)} of a result, or a numeric factor with a list: a case is no free choice"
+            allowed = f"{', '.join(STATISTICS)} of a result, or a numeric factor with a list: it compares design points"
             raise InputError("pareto", name, allowed, "For example b10(roller_life_hours) or mean(friction_power).")
         if kind == "probability" and output not in (*config.analysis.target, *REGIMES):
             remedy = "Add it to analysis.target, such as {roller_life_hours: {min: 500}}."

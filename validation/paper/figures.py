@@ -164,8 +164,8 @@ def tractions() -> Drawn:
         "paper_9_tractions",
         "Paper's figure 9: pressure and shear on the roller in contact 1, driven, μ = 0.3: sliding with the "
         "empirical spin pole (left) and kalker, the exact theory (right).",
-        "The lateral shear differs most: sliding puts the spin pole on the edge, but elasticity moves it inside "
-        "and the part of the other sign grows, so that less lateral force is left.",
+        "The lateral shear differs most. Sliding puts the spin pole on the edge, but elasticity moves it inside: the "
+        "part of the opposite sign grows, and the lateral force falls.",
     )
 
 
