@@ -21,7 +21,7 @@ for model in ("sliding", "kalker"):
         digest.update(found[name].values.tobytes())
 print(digest.hexdigest())
 """
-# compiles kernels that both models share, with other callers than those which come first in CODE
+# compile kernels that both models share before CODE does, and for other callers
 OTHERS_FIRST = """
 import numpy as np
 from trackroller.halfspace.kernels import point_kernel

@@ -70,7 +70,7 @@ def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     # rows of A and B only: their mixtures repeat coordinates, so they are not independent rows
     own = np.full_like(block, np.nan)
     own[:, [0, -1]] = block[:, [0, -1]]
-    # single factors have no other index beside those of groups
+    # a design of groups gives single factors no index, so their first-order index comes from given data
     measures = tuple(dict.fromkeys(("first", *how.measures) if groups else how.measures))
     given = given_data(own.ravel(), design.places, design.ordered, how.seed, measures, how.resamples)
     if groups:

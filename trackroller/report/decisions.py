@@ -26,7 +26,7 @@ OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 
 
 def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
-    """List the index that ranks the factors for every output, and what it was computed from."""
+    """List for every output the index that ranks the factors, and the rows from which it was computed."""
     index, rows = words.headline(sens), []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)

@@ -15,7 +15,7 @@ from trackroller.roller.dataset import VALIDITY_BITS, validity_bit
 
 if TYPE_CHECKING:
     import xarray as xr
-# what a flag says, and what its user can do
+# flag -> its meaning, and the advice to the user
 WORDS: dict[str, tuple[str, str]] = {
     "half_space": (
         "the patch is too large for a half-space",
@@ -72,7 +72,7 @@ def words_of(flag: str) -> str:
 
 @dataclass(frozen=True)
 class Flag:
-    """A flag that is set: its name, what it says, and what to do."""
+    """A flag that is set: its name, its meaning in a sentence, and the advice to the user."""
 
     name: str
     sentence: str

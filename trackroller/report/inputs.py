@@ -1,4 +1,4 @@
-"""What the report says of a study's inputs: factors, what is the same in all cases, materials, record."""
+"""Tables of a study's inputs for the report: factors, values that are the same in all cases, materials, record."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def material_rows(material: Material) -> list[Row]:
 
 
 def factor_table(view: StudyView) -> Table | None:
-    """List the factors and what follows from them: symbol, unit, values as found and as set, number of levels."""
+    """List factors and derived parameters: symbol, unit, values as found and as set, number of levels."""
     given = view.study.get("factors", {})
     specs = {name: _spec(spec) for name, spec in given.items()} if isinstance(given, Mapping) else {}
     follows = [n for n, spec in specs.items() if n not in view.factors and spec.startswith("=") and n in view.table]
@@ -120,7 +120,7 @@ def materials_table(attrs: Mapping[str, Any]) -> Table | None:
 
 
 def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the values of the materials that a result stores, by name; none of another program's result."""
+    """Return the values of the materials that a result stores, by name; {} for a result of another program."""
     try:
         stored = json.loads(str(attrs.get("materials", "{}")))
     except ValueError:

@@ -33,7 +33,7 @@ INDEX_WORDS = {  # in the order of the table of all measures
 
 
 class Rank(NamedTuple):
-    """A factor's index with its interval (NaN where there is none), as `order` puts them."""
+    """The index of a factor with its interval, NaN without an interval; `order` sorts them."""
 
     factor: str
     name: str
@@ -104,13 +104,13 @@ def caveat(sens: xr.Dataset, output: str) -> str:
 
 
 def tornado(sens: xr.Dataset, output: str) -> Sentence:
-    """State what decides an output, and how far the index can be trusted."""
+    """Name the factors that decide an output, and say how far the index can be trusted."""
     said = decides(sens, output)
     return replace(said, text=f"{said.text} {caveat(sens, output)}".strip()) if said.kind == "index" else said
 
 
 def decides(sens: xr.Dataset, output: str) -> Sentence:
-    """State what decides an output, by one index with its interval."""
+    """Name the factors that decide an output, by one index with its interval."""
     ranks, what, index = order(sens, output), of_output(sens, output), headline(sens)
     if not ranks:
         text = f"No index can be given for {what}: {sens.sel(output=output)['note'].item()}."

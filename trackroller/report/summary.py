@@ -63,7 +63,7 @@ def stopped(view: StudyView) -> Sentence | None:
 
 
 def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
-    """State what decides life (else the first output that has an index), or the best design point."""
+    """Name the factors that decide life, or else the first output with an index; or name the best design point."""
     if sens is None:
         return []
     names = [str(n) for n in sens["output"].values]

@@ -1,4 +1,4 @@
-"""Record what is needed to repeat a result: versions, commit, study, materials, date."""
+"""Record the facts that repeating a result needs: versions, commit, study, materials, date."""
 
 from __future__ import annotations
 

@@ -106,7 +106,7 @@ def summary(peaks: dict[str, np.ndarray], keep: np.ndarray) -> dict[str, Any]:
         "estimate_of_a_peak_percentiles": percentiles(estimate[present]),
         "within_0.2_percent": share(error <= TOLERANCE),
         "covered": share(error <= estimate),
-        # what `reference` says of itself is room that the comparison cannot decide
+        # the comparison cannot decide differences below the estimated error of `reference`
         "covered_with_slack_of_reference": share(error <= estimate + slack),
         "standard_above_reference_by_0.2_percent": int(np.sum(peaks["error"][present] > TOLERANCE)),
         "found_by_one_only": int(np.sum(~np.isfinite(error[present]))),

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 MODELS = ("sliding", "fastsim", "kalker")
-# friction and share of what friction can carry that the drive takes, of the pictures of the patch
+# pictures of the patch: friction coefficient, and motor force over the largest force that friction can transmit
 PATCHES = ((0.05, 0.0), (0.15, 0.0), (0.15, 0.5), (0.5, 0.0), (0.5, 0.5))
 
 

@@ -70,7 +70,7 @@ class Nodes:
 
 
 FORCES = Nodes((1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 15, 16), 11, tuple(np.deg2rad(CLOSE)), 10)
-# what Poisson's ratio adds is small and smooth
+# the part that Poisson's ratio adds is small and smooth, so that fewer nodes suffice
 POISSON = Nodes((2, 4, 5, 6, 7, 8, 10, 12, 14, 16), 4, tuple(np.deg2rad(np.arange(5.625, 90.0, 11.25))), 8)
 
 

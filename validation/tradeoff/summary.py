@@ -76,7 +76,7 @@ def _record(one: xr.Dataset) -> Record:
     out["ladder"] = json.loads(str(one["ladder"].values))
     out["errors"] = {}
     finest = REFERENCE_ELEMENTS.get(out["model"]) if out["stage"] == "elements" else None
-    # the reference errs in the same direction: its own share, by the order that is seen, is added
+    # The reference errs in the same direction. The observed order gives its error, which is added.
     scale = 1.0 / (1.0 - (out["points"] / finest) ** REFERENCE_ORDER) if finest else 1.0
     for name in QUANTITIES:
         errors = scale * one["error"].sel(quantity=name).values.astype(float)

@@ -201,12 +201,12 @@ def telling_factors(one: xr.Dataset) -> list[str]:
 
 
 def _shares_along(e: np.ndarray, along: Groups) -> np.ndarray:
-    """Return the share of good designs in every group, NaN where none rolls."""
+    """Return the share of good designs in every group, NaN for a group without rolling designs."""
     return np.array([_share(e[along.index == k]) for k in range(len(along))])
 
 
 def _share(e: np.ndarray) -> float:
-    """Return the share of good designs among those that roll, NaN if none does."""
+    """Return the share of good designs among the rolling ones, NaN without rolling designs."""
     e = e[~np.isnan(e)]
     return float(np.mean(e <= GOOD)) if e.size else np.nan
 

@@ -199,7 +199,7 @@ def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
 
 
 def _force_sentence(view: StudyView) -> str:
-    """State from which axial force on designs lift off; else what the contacts carry at the largest one."""
+    """State from which axial force designs lift off, or else the normal forces at the largest axial force."""
     lifted = lift_off(view)
     if lifted is not None:
         return lifted.text

@@ -50,7 +50,7 @@ def mark_unlimited(axes: Axes, height: float | None) -> None:
 
 
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
-    """Draw the legend under the axes, so that it never covers data: of looks, or of what is drawn by its label."""
+    """Draw the legend under the axes, where it covers no data; `entries` are texts with looks, or artists by label."""
     own = entries if isinstance(entries, Mapping) else {text: Line2D([], [], **look) for text, look in entries}
     figure.legend(own.values(), own, loc="outside lower left", ncols=columns, alignment="left")
 
