@@ -119,7 +119,8 @@ class Correction:
                 continue
             own, slot = rows[pick], _slots(rows[pick], side[pick])
             tolerance = CONVERGED["kalker"] if forces else TRACTION_TOLERANCE
-            settings, start = dataclasses.replace(self.settings, extrapolate=forces, tolerance=tolerance), None
+            wanted = {"extrapolate": forces, "between": forces, "tolerance": tolerance}
+            settings, start = dataclasses.replace(self.settings, **wanted), None
             if started:
                 settings = dataclasses.replace(settings, extrapolate=False)
                 before = self.store.get(slot)

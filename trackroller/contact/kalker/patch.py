@@ -93,13 +93,13 @@ def refined(
     ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings, coarse: PatchSolution
 ) -> PatchSolution:
     """Solve patches again on twice the elements of the solution `coarse`, from its tractions; see `solve_patch`."""
-    finer = replace(settings, elements=2 * settings.elements, extrapolate=False)
+    finer = replace(settings, elements=2 * settings.elements, extrapolate=False, between=False)
     return solve_patch(ellipse, creep, friction, elastic, finer, _on_half_elements(ellipse, coarse))
 
 
-def _integrals(ellipse: Ellipse | GridPatch, friction, found: batch.Found) -> tuple[np.ndarray, np.ndarray]:
+def _integrals(ellipse, friction, found: batch.Found, settings: KalkerSettings) -> tuple[np.ndarray, np.ndarray]:
     """Return the resultants (n, 3) and the share of the adhesion area (n,) of one grid: see `subgrid.integrals`."""
-    if not friction.size:
+    if not (settings.between and friction.size):
         return found.report.forces, found.report.stick_fraction
     finer = ellipse if ellipse.is_hertzian else ellipse.refined(subgrid.PARTS, subgrid.PARTS)
     between = cells(finer, subgrid.PARTS * found.traction.shape[-1])
@@ -117,11 +117,12 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
     found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = found.report
-    (value, stick), limit, error = _integrals(ellipse, friction, found), np.zeros((n, 4)), np.full((n, 3), np.nan)
+    value, stick = _integrals(ellipse, friction, found, settings)
+    limit, error = np.zeros((n, 4)), np.full((n, 3), np.nan)
     pressed = fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
-        other, stick_before = _integrals(ellipse, friction, coarse)
+        other, stick_before = _integrals(ellipse, friction, coarse, settings)
         error = value - other
         weight, report = extrapolation.weight(_fields(ellipse, found).used), coarse.report
         limit[:, :3] = weight[:, None] * error

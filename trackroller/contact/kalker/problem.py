@@ -24,6 +24,9 @@ class KalkerSettings:
         Limits of Newton steps and of the Krylov space of one step.
     extrapolate : bool
         Extrapolate the resultants from two grids, with `elements` and with half of them.
+    between : bool
+        Integrate resultants and adhesion area between the elements too. False, where tractions alone are asked for,
+        adds up the elements.
     profile_slip : bool
         Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x.
     law : FrictionLaw, optional
@@ -37,6 +40,7 @@ class KalkerSettings:
     steps: int = 60
     krylov: int = 80
     extrapolate: bool = True
+    between: bool = True
     profile_slip: bool = False
     law: FrictionLaw | None = None
     travel_speed: float = 1.0
