@@ -453,3 +453,7 @@ def test_results_of_an_earlier_default_model_are_kept(tmp_path, solved):
     assert sum(solved().values()) == 2 * count
     run(unnamed, tmp_path)
     assert sum(solved().values()) == 2 * count
+    run(unnamed | {"contact_model": ["sliding", "kalker"]}, tmp_path)
+    before = sum(solved().values())
+    run(unnamed, tmp_path)  # the list of the earlier file was no default
+    assert sum(solved().values()) == before

@@ -92,7 +92,8 @@ def check_default_model(study: Study, folder: StudyFolder) -> None:
         return
     option = OPTIONS["contact_model"]
     earlier = folder.earlier().get("contact_model", option.default)
-    if earlier != option.default:
+    # a list is a factor, which was never a default
+    if isinstance(earlier, str) and option.former.get(earlier, earlier) != option.default:
         raise InputError(
             "contact_model",
             option.default,
