@@ -279,7 +279,7 @@ def test_one_failed_row_costs_a_block_and_no_index_goes_to_zero():
 
 
 def test_full_slip_rows_are_left_out_counted_and_analysed_on_their_own():
-    """Rows in full slip carry another mechanism's numbers: they must not move the indices of the others."""
+    """Rows in full slip follow another mechanism and must not change the indices of the other rows."""
 
     def fake(design):
         x, mu = design["axial_force"].values, design["velocity"].values

@@ -234,7 +234,7 @@ def roller():
 
 @pytest.mark.parametrize("kind", ["sliding", "kalker"])
 def test_laws_in_the_roller(roller, kind):
-    """Constant is as without; slow travel is nearly constant; falling friction needs more slip and drills less."""
+    """A constant law changes nothing; falling friction takes more slip and lowers the spin moment, at slow travel hardly."""
     ds = roller[kind]
     assert np.all(ds.converged == 1)
     for name in ("lateral_force", "spin_moment", "rolling_radius_shift", "peak_stress"):
@@ -433,7 +433,7 @@ MEASURED = {"kind": "table", "speed": [0, 20, 100], "friction": [0.15, 0.12, 0.1
 
 
 def test_a_table_holds_as_measured_where_no_friction_coefficient_is_given():
-    """Else it is scaled to the one given, be it the default's number; other laws leave the default."""
+    """A given friction coefficient scales the table, even if it equals the default; other laws keep the default."""
     assert tr.Case(friction_law=MEASURED).friction_coefficient == 0.15
     assert tr.Case.from_dict({"friction_law": {**MEASURED, "friction": [0.15] * 3}}).friction_coefficient == 0.15
     assert tr.Case(friction_law=MEASURED, friction_coefficient=0.3).friction_coefficient == 0.3

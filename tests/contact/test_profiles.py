@@ -237,7 +237,7 @@ def test_points_in_other_units_are_refused_in_both_frames(factor):
 
 @pytest.mark.parametrize("body", ["guide_profile", "roller_profile"])
 def test_heights_in_micrometres_are_refused_where_x_is_in_mm(body):
-    """Nothing but a speck of such a curve is flat enough to bear."""
+    """Only a tiny part of such a curve is flat enough to carry pressure."""
     curve = [[u, -u * u / 14 * 1000] for u in np.linspace(-1, 1, 41).tolist()]
     with pytest.raises(tr.InputError, match=rf"{body}.*25 deg.*x and z in mm"):
         solve_sliding(tr.Case(**{body: {"points": curve, "frame": "contact"}}), normal="halfspace", outputs="forces")

@@ -128,7 +128,7 @@ def test_preview_serves_the_curve_by_table_and_the_profile_by_elements():
         )
         assert CONTACT_MODELS[int(rough.contact_model_used)] == model
         np.testing.assert_allclose(rough.lateral_force, fine.lateral_force, rtol=0.03)
-        # the slip of the profile leaves 0.5 %, the few elements as much again
+        # the slip of the profile is responsible for 0.5 %, the coarse elements for another 0.5 %
     assert float(rough.energy_residual) < 1.2e-2
 
 

@@ -429,7 +429,7 @@ def test_adding_keeps_comments_and_everything_else(user, text):
 
 
 def test_adding_leaves_the_other_lines_as_they_are(user):
-    """Quotes, order and layout of the user's own lines stay to the letter."""
+    """Quotes, order and layout of the user's own lines do not change."""
     path = user(COMMENTED)
     add_material(path, "new", like="PA6", tensile_strength=70)
     lines = path.read_text(encoding="utf-8").splitlines()

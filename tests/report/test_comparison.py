@@ -237,7 +237,7 @@ def test_the_patches_are_drawn_free_and_driven():
     fields = patch_fields(tr.Case(), PATCHES[1:])
     assert fields["motor_force"].values.tolist() == [0.0, -20.0, 0.0, -60.0]
     share = fields.stick_area_fraction.sel(contact_model="kalker").max("contact")
-    assert float(share[2]) > float(share[0])  # the exact theory has the more stick the more friction
+    assert float(share[2]) > float(share[0])  # in the exact theory, adhesion grows with friction
     labels = [axes.get_ylabel() for axes in patches(fields).axes]
     assert sum("driven −20 N" in text for text in labels) == 1 and sum("free rolling" in text for text in labels) == 2
 

@@ -141,7 +141,7 @@ STEEL = dict(radial_force=-200.0, friction_coefficient=0.2, roller_profile_radiu
 
 
 def test_a_roller_outside_the_table_settles_as_its_mirror_image():
-    """In a close groove the table's derivatives are rough; a small correction alone does not end the balance."""
+    """In a close groove the table's derivatives are inaccurate, so that a small correction does not prove balance."""
     (groove,) = some(("close groove",))
     case = groove.cases[groove.values.index(1e-4)]
     one, two = (tr.solve(c, ("forces",), contact_model="kalker", accuracy="preview") for c in (case, mirrored(case)))

@@ -44,7 +44,7 @@ def test_validity_flags_name_the_body():
 
 
 def test_only_what_is_asked_for():
-    """Groups bring their variables and no others."""
+    """Each group adds its own variables and no others."""
     ds = solve_sliding(tr.Case(), outputs="forces")
     assert "normal_force" in ds and "peak_stress" not in ds and "max_pressure" not in ds
 

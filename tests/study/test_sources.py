@@ -71,7 +71,7 @@ def test_solver_depends_on_late_imports_and_data():
 
 
 def test_every_shipped_data_file_belongs_to_a_module():
-    """A data file whose name stands nowhere would escape the digest."""
+    """The digest would leave out a data file that no module names."""
     found = {path for path in sources.source_files(["trackroller.cli.main", "trackroller.report.page"])}
     shipped = {path for paths in sources._data_files(sources.PACKAGE).values() for path in paths}
     assert {path for path in shipped if path.name != "py.typed"} <= found

@@ -138,11 +138,10 @@ def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> 
 
 
 def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:
-    """Compare designs that differ in one factor only.
+    """Compare designs that differ in one factor only; return None if there are too few pairs of designs.
 
-    Numbers are compared between their ends, categories between their most different levels.
-
-    Unlimited values count with their direction. None if there are too few pairs, or if the designs do not pair.
+    Numbers are compared between their ends, categories between their most different levels. Of a pair with an unlimited
+    value only the direction counts.
     """
     matrix, levels = pair_matrix(view, column, factor, rows)
     if 2 * len(matrix) < FEWEST_PAIRS or len(matrix) < 0.2 * rows.sum() / max(len(levels), 1):

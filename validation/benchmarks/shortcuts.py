@@ -2,8 +2,8 @@
 
     python -m validation.benchmarks.shortcuts [--cases N]
 
-Each scene is solved with and without shortcuts in turn in one process; the smallest of three times counts. Found are
-the ratio of both times and the largest relative difference of the numbers.
+Each scene is solved with and without shortcuts in turn in one process; the smallest of three times counts. The
+program returns the ratio of both times and the largest relative difference of the numbers.
 """
 
 from __future__ import annotations
