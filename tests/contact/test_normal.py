@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.special import gamma
 
 from trackroller.contact.cross_sections import Gap, arcs, parabola, with_edges
@@ -130,7 +131,7 @@ def test_patch_stops_at_the_grooves_edge_and_presses_there():
     cut = with_edges(arcs([-7.0], []), -3, 0.25)
     sharp = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), cut), 40).at(1e-3)
     soft = with_edges(arcs([-7.0], []), -3, 0.25, chamfer=0.8)
-    rounded = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), soft), 40).at(1e-3)
+    rounded = Family(straight_gap(with_edges(arcs([6.0], []), -3, 5), soft), 40, 4).at(1e-3)
     assert wide.box.high > 0.3 and not wide.reaches
     assert sharp.box.high == 0.25 and sharp.reaches
     across = sharp.shares.sum(axis=0)
@@ -163,3 +164,45 @@ def test_the_rim_of_one_end_does_not_come_out_at_the_other():
         means = rim_means(np.ascontiguousarray(field))
         assert means.sum() == pytest.approx(field.sum())
         np.testing.assert_allclose(means, field, atol=0.12)
+
+
+def rounded_punch(line_load, flat, radius):
+    """Return the largest pressure over E* of a flat punch with rounded corners (Ciavarella, Hills and Monno 1998).
+
+    `line_load` is over E* [mm], `flat` half the width of the flat and `radius` of the corners [mm].
+    """
+
+    def excess(s):
+        return 0.5 * ((0.5 * np.pi - s) / math.sin(s) ** 2 - 1.0 / math.tan(s)) * flat**2 / radius - line_load
+
+    s = brentq(excess, 1e-6, 0.5 * np.pi - 1e-9)  # sin(s) is the flat's share of the contact
+    t = np.concatenate([np.linspace(1e-6, s - 1e-6, 2000), np.linspace(s + 1e-6, 0.5 * np.pi - 1e-6, 2000)])
+    bent = np.sin(t) * np.log(np.abs(np.sin(t + s) / np.sin(t - s)))
+    bent += math.sin(s) * np.log(np.abs(np.tan(0.5 * (t + s)) * np.tan(0.5 * (t - s))))
+    shape = ((np.pi - 2.0 * s) * np.cos(t) + bent) / (np.pi - 2.0 * s - math.sin(2.0 * s))
+    return 2.0 / np.pi * shape.max() * line_load * math.sin(s) / flat
+
+
+@pytest.mark.parametrize(("radius", "load"), [(0.5, 1e-2), (2.0, 1e-2), (0.2, 2e-2)])
+def test_ridges_beside_a_flat_get_the_elements_that_they_need(radius, load):
+    """A contact much longer than wide is a punch line by line; square elements miss its pressure by up to 40 %."""
+    blended = arcs([radius, math.inf, radius], [-0.2, 0.2])
+    gap = Gap(blended, arcs([math.inf], []), math.radians(30), 1e4, math.inf)
+    factor = Family(gap, 24).finer_across(load)
+    off = []
+    for across in (1, factor):
+        node = Family(gap, 24, across).at(load)
+        *_, hx, hy = node.box.grid(*node.shares.shape)
+        middle = node.shares[11:13].mean(axis=0) * load / (hx * hy)
+        off.append(abs(middle.max() / rounded_punch(middle.sum() * hx, 0.2, radius) - 1.0))
+    assert factor > 1 and off[0] > 0.04 and off[1] < 5e-3
+
+
+def test_smooth_pressures_and_sharp_edges_keep_their_elements():
+    """Finer elements are for ridges only: no ridge without a blend in the patch, and none to resolve at an edge."""
+    blended = arcs([0.5, math.inf, 0.5], [-0.2, 0.2])
+    gap = straight_gap(blended, arcs([20.0], []))
+    assert Family(gap, 40).finer_across(2e-5) == 1
+    assert Family(gap, 40).finer_across(2e-3) > 1
+    cut = straight_gap(with_edges(arcs([6.0], []), -3, 5), with_edges(arcs([-7.0], []), -3, 0.25))
+    assert Family(cut, 40).finer_across(1e-3) == 1

@@ -391,6 +391,29 @@ def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
     assert np.all(off < 0.1) and np.all(off < rough.error_estimate)
 
 
+def test_a_flat_with_a_small_blend_is_as_accurate_as_a_smooth_profile():
+    """Reference numbers: 80 x 160 elements. With square elements p_max was 12 %, and the work 1.5 % off."""
+    arcs = [{"radius": 0.46328709, "to": -0.28140686}, {"radius": math.inf, "to": 0.28140686}, {"radius": 0.46328709}]
+    case = tr.Case(
+        contact_angle=41.743698223,
+        radial_force=-755.14179188,
+        axial_force=113.27126878,
+        motor_force=0.0,
+        friction_coefficient=0.38658001778,
+        guide_profile={"arcs": arcs},
+        roller_profile={"arc": 60.0},
+    )
+    outputs = ("forces", "contact", "friction_work", "peak_stress")
+    ds = tr.solve(case, outputs, contact_model="kalker", normal="halfspace")
+    np.testing.assert_allclose(ds.normal_force, [324.8701, 547.5090], rtol=5e-4)
+    capacity = 0.38658 * ds.normal_force
+    assert np.all(np.abs(ds.lateral_force - [-54.8479, 101.7052]) < 2e-3 * capacity)
+    np.testing.assert_allclose(ds.spin_moment, [23.9323, -43.7177], rtol=2e-3)
+    np.testing.assert_allclose(ds.friction_energy_per_distance, [0.9226, 1.6853], rtol=2e-3)
+    np.testing.assert_allclose(ds.max_pressure, [2357.0912, 3064.2577], rtol=3e-3)
+    np.testing.assert_allclose(ds.peak_stress, [[2096.97, 2099.89], [2728.29, 2732.23]], rtol=5e-3)
+
+
 def test_a_flat_pressure_is_not_stopped_by_the_bound_of_an_ellipse():
     """`stop_if` bounds the peak below a solved pressure by points of this pressure, not of a Hertzian ellipse."""
     flat = tr.Case(guide_profile={"parabola": 6.0, "edge": {"inner": 0.15, "outer": 0.15}}, friction_coefficient=0.0)

@@ -240,11 +240,6 @@ class Gap:
         (a, b), (c, d) = self.guide.limits, self.roller.limits
         return max(a, c), min(b, d)
 
-    @property
-    def is_rounded(self) -> bool:
-        """Return True if one of the bodies has a rounded edge."""
-        return max(self.guide.chamfer, self.roller.chamfer) > 0.0
-
     def lateral(self, x: np.ndarray) -> np.ndarray:
         """Return g_0(x) [mm]."""
         return -(self.guide.full_height(x) + self.roller.full_height(x))

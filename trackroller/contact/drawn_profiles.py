@@ -246,6 +246,12 @@ def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> 
         raise ShapeError(body, given, allowed, remedy + more)
 
 
+def has_details(text: str) -> bool:
+    """Return True if a profile in canonical JSON is more than one arc or parabola without edges."""
+    told = _parsed(text) if text else {}
+    return bool(told.keys() - {"arc", "parabola"})
+
+
 def treats_sides_alike(text: str) -> bool:
     """Return True if both contacts have the same profile, mirrored.
 

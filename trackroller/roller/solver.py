@@ -26,6 +26,7 @@ from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
+from trackroller.roller.stages.models import finer_across
 from trackroller.roller.stages.scene import Results
 
 if TYPE_CHECKING:
@@ -177,26 +178,30 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 def _solve_block(table: CaseTable, options: Options) -> Block:
     """Solve cases together that share a contact model, a friction law and profiles."""
     groups = list(_groups(table, options))
-    parts = [_solve_group(table.take(rows), options.changed(contact_model=model)) for model, rows in groups]
-    order = np.argsort(np.concatenate([rows for _, rows in groups]))
+    parts = [_solve_group(table.take(rows), options.changed(contact_model=model), n) for model, n, rows in groups]
+    order = np.argsort(np.concatenate([rows for *_, rows in groups]))
     return parts[0] if len(parts) == 1 else join(parts).take(order)  # one group has them in order
 
 
-def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, np.ndarray]]:
-    """Yield contact model and rows of cases that can be solved in one batch; frictionless cases are a batch alone."""
+def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.ndarray]]:
+    """Yield contact model, factor on the elements across, and rows of cases that can be solved in one batch.
+
+    Frictionless cases are a batch alone.
+    """
     bare = requirements.is_frictionless(table) & options.shortcuts
-    keys = list(zip(bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), strict=True))
+    across = finer_across(table, options)
+    keys = list(zip(bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), across.tolist(), strict=True))
     rows: dict[tuple, list[int]] = {}
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)
     for key, own in rows.items():
-        yield model_in_use(options, key[1]), np.array(own)
+        yield model_in_use(options, key[1]), key[-1], np.array(own)
     if not keys:
-        yield options.contact_model, np.arange(0)
+        yield options.contact_model, 1, np.arange(0)
 
 
-def _solve_group(table: CaseTable, options: Options) -> Block:
-    scene = stages.prepare(table, options)
+def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
+    scene = stages.prepare(table, options, across)
     results = Results.start(scene, balance(scene))
     wanted = set(options.outputs)
     stages.forces(results)

@@ -15,11 +15,15 @@ import numpy as np
 
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.hertz import exact_shape
-from trackroller.contact.normal.measure import Box, largest_pressure, patch_area, patch_box
+from trackroller.contact.normal.measure import Box, largest_pressure, patch_area, patch_box, roughness
 from trackroller.contact.normal.pressure import NormalSolution, displacement, solve_normal
 
 LATTICE = 1.6  # ratio of neighbouring lattice loads
-FINER = 4  # factor on the elements across for gaps with a rounded edge
+# `roughness` up to which elements across resolve the ridges of a pressure: first, then on finer elements, whose rims are
+# rougher. PROBE elements along the rolling direction are enough to see it.
+RESOLVED, RESOLVED_FINER = 0.15, 0.35
+FACTORS = 1, 2, 4, 8  # on the elements across
+PROBE = 8
 KEPT = 8  # number of solutions between lattice loads that are kept in memory
 OVERLAP = 1e-3  # overlap over the approach that counts as contact outside the box
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
@@ -59,6 +63,11 @@ class Node:
     residual: float = math.nan
 
 
+def nearest_lattice(load: float) -> float:
+    """Return the load of the lattice that is nearest to load/E* [mm^2]."""
+    return LATTICE ** round(math.log(load) / math.log(LATTICE))
+
+
 class Family:
     """All patches of one gap.
 
@@ -67,13 +76,14 @@ class Family:
     gap : Gap
         Gap of the undeformed bodies.
     elements : int
-        Number of elements along each side of the box. A gap with a rounded edge, which is narrow, has FINER times as
-        many elements across.
+        Number of elements along the rolling direction of the box.
+    across : int
+        Factor on this number for the elements across, see `finer_across`.
     """
 
-    def __init__(self, gap: Gap, elements: int) -> None:
+    def __init__(self, gap: Gap, elements: int, across: int = 1) -> None:
         self.gap = gap
-        self.shape = elements, elements * (FINER if gap.is_rounded else 1)
+        self.shape = elements, elements * across
         self.limits = gap.limits
         self._nodes: dict[int, Node] = {}
         self._asked: dict[float, Node] = {}
@@ -117,6 +127,25 @@ class Family:
         if k not in self._nodes:
             self._nodes[k] = self._solve(LATTICE**k)
         return self._nodes[k]
+
+    def finer_across(self, load: float) -> int:
+        """Return the factor on the elements across that ridges of the pressure under load/E* [mm^2] need.
+
+        Where the patch ends at an edge of the material the pressure is infinite on any elements; the factor is 1.
+        """
+        box = self._around(load)
+        for factor in FACTORS[:-1]:
+            pressure = self._pressure(box, load, (PROBE, factor * self.shape[1])).pressure
+            if self._reaches(pressure, box):
+                return 1
+            if roughness(pressure) <= (RESOLVED if factor == 1 else RESOLVED_FINER):
+                return factor
+        return FACTORS[-1]
+
+    def _reaches(self, pressure: np.ndarray, box: Box) -> bool:
+        """Return True if the patch ends at an edge of the material."""
+        at_low, at_high = box.low <= self.limits[0], box.high >= self.limits[1]
+        return bool((at_low and pressure[:, 0].any()) or (at_high and pressure[:, -1].any()))
 
     def _start(self, load: float) -> Box:
         """Return a first box by Hertz's theory, with the mean curvature of the gap over the width of the patch."""
@@ -168,10 +197,8 @@ class Family:
     def _node_of(self, solution, box: Box, load: float) -> Node:
         _, _, hx, hy = box.grid(*self.shape)
         p = solution.pressure
-        at_low, at_high = box.low <= self.limits[0], box.high >= self.limits[1]
-        reaches = bool((at_low and p[:, 0].any()) or (at_high and p[:, -1].any()))
         top, area = largest_pressure(p), patch_area(p, hx, hy)
-        return Node(box, p * (hx * hy / load), top, solution.approach, area, reaches, solution.residual)
+        return Node(box, p * (hx * hy / load), top, solution.approach, area, self._reaches(p, box), solution.residual)
 
     def _beyond(self, solution, box: Box) -> Box:
         """Return the box, wider by 1.2 elements on each side where the bodies would overlap just outside it."""

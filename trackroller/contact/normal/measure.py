@@ -95,3 +95,19 @@ def largest_pressure(pressure: np.ndarray) -> float:
             slope, curve = 0.5 * (line[k + 1] - line[k - 1]), line[k + 1] - 2 * line[k] + line[k - 1]
             gain += -0.5 * slope * slope / curve if curve < 0 else 0.0
     return math.sqrt(top + gain)
+
+
+def roughness(pressure: np.ndarray) -> float:
+    """Return the largest second difference across of p^2 over its maximum [1]; it is small where elements resolve p.
+
+    In Hertz's theory p^2 is a parabola, and the result is 8 over the square of the number of elements.
+
+    Parameters
+    ----------
+    pressure : numpy.ndarray, shape (ny, nx)
+        Element pressures; only elements between loaded ones count.
+    """
+    square = pressure**2
+    bend = np.abs(square[:, 2:] - 2.0 * square[:, 1:-1] + square[:, :-2])
+    inside = (pressure[:, 2:] > 0.0) & (pressure[:, :-2] > 0.0)
+    return float(np.max(bend, where=inside, initial=0.0) / square.max())

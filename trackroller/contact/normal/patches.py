@@ -62,6 +62,8 @@ class Patches:
         Contact modulus E* of the rollers [MPa].
     elements : int
         Number of elements along the rolling direction of the box around a patch.
+    across : int
+        Factor on this number for the elements across.
 
     Raises
     ------
@@ -69,7 +71,7 @@ class Patches:
         If no roller has both gaps. If some rollers have both gaps, the patches of the other rollers are NaN.
     """
 
-    def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int) -> None:
+    def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int, across: int = 1) -> None:
         self.modulus, self.elements = modulus, elements
         families: dict[tuple, Family | None] = {}
         self._places: dict[tuple[int, int], Family | None] = {}
@@ -79,7 +81,7 @@ class Patches:
                 key, make = gaps(row, side)
                 if key not in families:
                     try:
-                        families[key] = Family(make(), elements)
+                        families[key] = Family(make(), elements, across)
                     except ShapeError as error:
                         families[key], problem = None, error
                 self._places[row, side] = families[key]

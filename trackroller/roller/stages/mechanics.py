@@ -28,13 +28,14 @@ SIGN_CONVENTIONS = (
 MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
 
 
-def prepare(table: CaseTable, options: Options) -> Scene:
+def prepare(table: CaseTable, options: Options, across: int = 1) -> Scene:
     """Compute curvatures, Hertz shape, contact model and loads of a block.
 
     Parameters
     ----------
     table : n cases that share their friction law
     options : contact model, normal problem, slip terms, accuracy and shortcuts
+    across : factor on the elements across solved patches, see `models.finer_across`
     """
     alpha, r_a, k_x, k_y = contact_geometry(vars(table))
     hertz = shape(k_x, k_y, contact_modulus(*bodies(table)), options.hertz)
@@ -44,7 +45,7 @@ def prepare(table: CaseTable, options: Options) -> Scene:
         # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and the row fails
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     law = law_of(table.friction_law[0] if len(table) else None)
-    model = model_of(table, options, r_a, law, table.velocity * MM_PER_S)
+    model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across)
     loads = eq.Loads(
         table.radial_force,
         table.axial_force,

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.contact.common import Elastic
-from trackroller.contact.drawn_profiles import gap, treats_sides_alike
+from trackroller.contact.drawn_profiles import gap, has_details, treats_sides_alike
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.models import contact_model
-from trackroller.contact.normal.patches import Patches
+from trackroller.contact.normal.family import Family, nearest_lattice
+from trackroller.contact.normal.patches import GapOf, Patches
 from trackroller.contact.protocol import ContactModel
+from trackroller.errors import ShapeError
 from trackroller.roller.case import CaseTable
+from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.options import Options
 
 
@@ -22,7 +25,12 @@ def bodies(table: CaseTable) -> tuple[np.ndarray, ...]:
 
 
 def model_of(
-    table: CaseTable, options: Options, rolling_radius: np.ndarray, law: FrictionLaw, travel_speed: np.ndarray
+    table: CaseTable,
+    options: Options,
+    rolling_radius: np.ndarray,
+    law: FrictionLaw,
+    travel_speed: np.ndarray,
+    across: int = 1,
 ) -> ContactModel:
     """Make the contact model that the options ask for.
 
@@ -33,15 +41,15 @@ def model_of(
     rolling_radius : r_A, (n,) [mm]
     law : friction law that the cases share
     travel_speed : of the rollers, (n,) [mm/s]
+    across : factor on the elements across solved patches, see `finer_across`
     """
     elastic = Elastic.of_pair(*bodies(table))
-    patches = None if options.normal == "hertz" else _patches(table, options, rolling_radius)
+    patches = None if options.normal == "hertz" else _patches(table, options, rolling_radius, across)
     name, settings, terms = options.contact_model, options.settings, options.slip_terms
     return contact_model(name, settings, elastic, options.spin_model, law, travel_speed, terms, patches)
 
 
-def _patches(table: CaseTable, options: Options, rolling_radius: np.ndarray) -> Patches:
-    """Make the solver of the normal problem; contacts with the same gap share their solutions."""
+def _gaps(table: CaseTable, rolling_radius: np.ndarray) -> GapOf:
     alpha = np.deg2rad(table.contact_angle)
     radii = (table.guide_profile_radius, table.roller_profile_radius, alpha, rolling_radius, table.guide_curve_radius)
     columns = np.stack(radii, axis=1).tolist()
@@ -53,5 +61,43 @@ def _patches(table: CaseTable, options: Options, rolling_radius: np.ndarray) -> 
         key = (guide, roller, *columns[row], side)
         return key, lambda: gap(*key)
 
-    even = 2 * -(-options.settings.on_grids // 2)
-    return Patches(gaps, contact_modulus(*bodies(table)), even)
+    return gaps
+
+
+def _elements(options: Options) -> int:
+    return 2 * -(-options.settings.on_grids // 2)
+
+
+def _patches(table: CaseTable, options: Options, rolling_radius: np.ndarray, across: int) -> Patches:
+    """Make the solver of the normal problem; contacts with the same gap share their solutions."""
+    gaps = _gaps(table, rolling_radius)
+    return Patches(gaps, contact_modulus(*bodies(table)), _elements(options), across)
+
+
+def finer_across(table: CaseTable, options: Options) -> np.ndarray:
+    """Return the factor on the elements across that ridges of the pressures need in each case, (n,) of int.
+
+    The loads are those of the balance without friction. Cases with Hertzian patches have the factor 1.
+    """
+    out = np.ones(len(table), int)
+    if options.normal == "hertz":
+        return out
+    alpha, radius, *_ = contact_geometry(vars(table))
+    gaps, modulus = _gaps(table, radius), contact_modulus(*bodies(table))
+    mean, tilt = np.abs(table.radial_force) / np.cos(alpha), table.axial_force / np.sin(alpha)
+    known: dict[tuple, int] = {}
+    for row in range(len(table)):
+        if not (has_details(str(table.guide_profile[row])) or has_details(str(table.roller_profile[row]))):
+            continue
+        for side, load in ((1, mean[row] - tilt[row]), (2, mean[row] + tilt[row])):
+            if load <= 0.0:
+                continue
+            key, make = gaps(row, side)
+            scaled = nearest_lattice(0.5 * load / modulus[row])
+            if (key, scaled) not in known:
+                try:
+                    known[key, scaled] = Family(make(), _elements(options)).finer_across(scaled)
+                except ShapeError:  # the patches of this case cannot be solved, which the solution reports
+                    known[key, scaled] = 1
+            out[row] = max(out[row], known[key, scaled])
+    return out
