@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import itertools
+import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +17,7 @@ from trackroller.report.choices import pareto
 from trackroller.report.decisions import robust_tables
 from trackroller.report.effects import effect_of
 from trackroller.report.findings import best_design, occurrence, ranked, valid_designs
-from trackroller.report.flags import friction_error, full_sliding
+from trackroller.report.flags import SLIDING_ERROR, friction_error, full_sliding
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.page import contents
 from trackroller.report.tables import validity_table
@@ -126,6 +129,12 @@ def test_full_sliding_is_told_where_no_friction_work_tells_its_error():
     assert found is not None and found.values == {"count": 30} and "kalker" in found.text
     exact = forces.assign(contact_model_used=("case", np.full(60, 2)))
     assert full_sliding(StudyView.of(whole)) is None and full_sliding(StudyView.of(exact)) is None
+
+
+def test_error_of_full_sliding_that_is_told_is_the_measured_one():
+    told = [float(n) for n in re.findall(r"[0-9]+", SLIDING_ERROR)]
+    found = json.loads((Path(__file__).parents[2] / "docs/data/contact_spin.json").read_text())["all"]["friction_force"]
+    assert told == [round(100 * found["median"]), found["designs"]]
 
 
 @pytest.mark.parametrize(("middle", "told"), [(1.27, True), (0.03, False)])
