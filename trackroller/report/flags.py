@@ -55,7 +55,7 @@ WORDS: dict[str, tuple[str, str]] = {
 }
 OF_BODY = ("yield", "static", "deep_life", "half_space")  # flags that may hold for one body alone
 SLIDING_ERROR = "Its friction forces err by 38 % of mu F_N in the median of 492 measured rollers."
-_SLIDING, _ROLLING = CONTACT_MODELS.index("sliding"), REGIMES.index("rolling")
+_ROLLING = REGIMES.index("rolling")
 KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
 
@@ -99,7 +99,7 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     if residual > KNOWN_ERROR:
         text = f"Friction energy and power differ from the work put in by {percent(residual)}."
         found.append(Flag("energy_residual", text, exact))
-    if "energy_residual" not in ds and int(ds["contact_model_used"]) == _SLIDING and int(ds["regime"]) == _ROLLING:
+    if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
         found.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
     return found
 
@@ -124,7 +124,7 @@ def full_sliding(view: StudyView) -> Sentence | None:
 
     Return None if the study holds the friction work: another sentence then states the error measured in this study.
     """
-    rows = view.rolling & (view.column("contact_model_used") == _SLIDING)
+    rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
     if not rows.any() or np.isfinite(view.column("energy_residual")).any():
         return None
     cases = int(rows.sum())

@@ -105,7 +105,8 @@ def as_json(ds: xr.Dataset) -> str:
         for name, variable in ds.variables.items()
     }
     for name, words in (("regime", REGIMES), ("contact_model_used", CONTACT_MODELS)):
-        told[name]["meaning"] = np.array(words)[ds[name].values].tolist()
+        if name in told:
+            told[name]["meaning"] = np.array(words)[ds[name].values].tolist()
     if "case" in ds.attrs:
         inputs = inputs_of(ds)
         told["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
