@@ -19,8 +19,8 @@ from trackroller.contact.normal.measure import Box, largest_pressure, patch_area
 from trackroller.contact.normal.pressure import NormalSolution, displacement, solve_normal
 
 LATTICE = 1.6  # ratio of neighbouring lattice loads
-# `roughness` up to which elements across resolve the ridges of a pressure: first, then on finer elements, whose rims are
-# rougher. PROBE elements along the rolling direction are enough to see it.
+# `roughness` up to which elements across resolve the ridges of a pressure: first, then on finer elements, whose rims
+# are rougher. PROBE elements along the rolling direction are enough to see it.
 RESOLVED, RESOLVED_FINER = 0.15, 0.35
 FACTORS = 1, 2, 4, 8  # on the elements across
 PROBE = 8
