@@ -21,7 +21,7 @@ from trackroller.contact.common import Elastic, Resultants
 from trackroller.contact.linear import chebyshev
 from trackroller.contact.protocol import Patch
 from trackroller.contact.table.coordinates import HALF_WAY, Rolling, coordinates
-from trackroller.numerics.compiled import compiled
+from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.knots import interval
 from trackroller.numerics.threads import share_rows
 
@@ -75,7 +75,7 @@ def _basis(knots, x, out):
     return low - 3
 
 
-@compiled
+@fast
 def evaluate(spline, place, basis, line, out):
     """Write the values of a `Spline` at a place (4,) between its outer knots into `out` (fields,).
 
@@ -89,10 +89,11 @@ def evaluate(spline, place, basis, line, out):
     line[:] = 0.0
     for p in range(4):
         for q in range(4):
-            for r in range(4):
-                w, row = basis[0, p] * basis[1, q] * basis[2, r], rows[h + p, i + q, j + r]
-                for k in range(line.size):
-                    line[k] += w * row[first + k]
+            w = basis[0, p] * basis[1, q]
+            w0, w1, w2, w3 = w * basis[2, 0], w * basis[2, 1], w * basis[2, 2], w * basis[2, 3]
+            block = rows[h + p, i + q, j : j + 4, first : first + line.size]
+            for k in range(line.size):
+                line[k] += w0 * block[0, k] + w1 * block[1, k] + w2 * block[2, k] + w3 * block[3, k]
     for f in range(fields):
         out[f] = 0.0
         for k in range(4):
