@@ -56,14 +56,14 @@ def test_whole_equilibria_agree_with_contact(name, change, terms):
     np.testing.assert_allclose(ds.driving_force, record["driving_force"], rtol=1e-2)
     # in free rolling the shift is a small difference of larger terms; CONTACT's own grids differ by more
     assert float(ds.rolling_radius_shift) == pytest.approx(record["rolling_radius_shift"], rel=1e-2, abs=1.5e-5)
-    # the tangent's work, in which CONTACT's resultants were summed up too
+    # the work on the slip in the tangent plane; CONTACT's resultants were summed in this plane too
     np.testing.assert_allclose(ds.friction_energy_balance, record["friction_power_per_speed"], rtol=3e-3)
     # the drive torque has the lever arms of the tangent, which the slip of the profile has not
     assert float(ds.energy_residual) < (6e-3 if "profile" in terms else 5e-4)
 
 
 def test_curve_puts_its_work_in_beside_the_motor():
-    """The drilling torque works on the turning too: without that the balance would miss a sixth."""
+    """The drilling torque also does work on the rotation of the roller in the curve, a sixth of the balance."""
     ds = tr.solve(tr.Case(**TIGHT), outputs=OUTPUTS, contact_model="kalker", slip_terms=("curve",))
     turning = 1.0 / (39.5 + 6.0 * np.cos(np.deg2rad(30.0)))
     motor = 30.0 - (1.0 + float(ds.slip)) * float(ds.transmitted_force)

@@ -112,7 +112,7 @@ def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def factor_names(ds: xr.Dataset, dims: list[str], table: pd.DataFrame) -> list[str]:
-    """Name the factors: dimensions of a grid, or columns along `case` that vary and follow from no others."""
+    """Name the factors: dimensions of a grid, or columns along `case` that vary and are not derived."""
     names = [d for d in dims if d != "case" and ds.sizes[d] > 1]
     if "case" not in dims:
         return names

@@ -58,7 +58,7 @@ class Frame:
 
 
 def axis_name(view: StudyView) -> str | None:
-    """Choose the factor along the axis: friction, else the first with an order, else any."""
+    """Choose the factor along the axis: friction, or else the first factor with an order, or else the first factor."""
     if FRICTION in view.factors:
         return FRICTION
     return next((n for n in view.factors if view.ordered(n)), next(iter(view.factors), None))
@@ -67,8 +67,8 @@ def axis_name(view: StudyView) -> str | None:
 def frame(ds: xr.Dataset, name: str | None = None, hold: bool = False, split: bool = True) -> Frame | None:
     """Return the frame of a figure over `name`; None if no factor varies.
 
-    `hold`: of a grid, only designs with all other factors at the base's level (else the middle one); where none of
-    them rolls, all designs. `split`: a column a drive.
+    With `hold`, the frame of a grid has only the designs whose other factors are at the level of the base, or else at
+    their middle level; if no such design rolls, it has all designs. With `split` it has a column for each drive.
     """
     view = designs(ds)
     x = name or axis_name(view)

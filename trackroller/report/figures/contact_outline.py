@@ -13,7 +13,7 @@ SLIGHT = 1e-3  # of the largest pressure: less is left over from the solution, n
 
 
 class Patch:
-    """One contact: x (nx), y (ny) [mm], fields (ny, nx), and where the material bears."""
+    """One contact: x (nx), y (ny) [mm], fields (ny, nx), and where it carries pressure."""
 
     def __init__(self, ds: xr.Dataset, contact: int) -> None:
         self.contact = contact
@@ -113,7 +113,7 @@ def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
 
 
 def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
-    """Return the strips [mm] along 'x' or 'y' in which one contact `part` bears.
+    """Return the strips [mm] along 'x' or 'y' in which the contact `part` carries pressure.
 
     The list is empty if that is not known.
     """
