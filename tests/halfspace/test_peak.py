@@ -213,5 +213,7 @@ def test_ridge_points_lie_where_sliding_begins():
     assert radius - 2.0 * np.sqrt(2.0) / n < r.min() and r.max() < radius
     assert np.histogram(angle, 12, (-np.pi, np.pi))[0].min() > 0.5 * MOST_ON_RIDGE / 12
     assert (points[0, :, 2] == 0.0).all() and len(np.unique(points[0], axis=0)) == MOST_ON_RIDGE
+    finer = np.repeat(np.repeat(fields[:1], 2, axis=2), 2, axis=3)  # a finer grid has more points on the line
+    assert ridge_points(finer).shape == (1, 2 * MOST_ON_RIDGE, 3)
     few = ridge_points(fields[:1, :, ::4, ::4])  # no more points than the line has
     assert len(np.unique(few[0], axis=0)) == few.shape[1] < MOST_ON_RIDGE

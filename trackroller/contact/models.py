@@ -13,7 +13,7 @@ import numpy as np
 from trackroller.contact import fastsim, kalker, sliding
 from trackroller.contact.common import Elastic, Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.kalker.correction import Correction
+from trackroller.contact.kalker.correction import TRACTION_TOLERANCE, Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.linear import LARGEST_RATIO
 from trackroller.contact.normal.models import GridFastsimModel, GridKalkerModel, GridSlidingModel
@@ -24,6 +24,7 @@ from trackroller.contact.table.model import TableModel
 from trackroller.errors import check_names
 
 LEAST_UNDER_LAW = 20  # elements across a patch that resolve steeply falling friction
+FINER_PARTS = 6  # points of the traction along each side of an element of a refined patch
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models
 MOST_SLENDER = 0.99 * LARGEST_RATIO  # axis ratio up to which FASTSIM has flexibilities
 
@@ -95,12 +96,12 @@ class KalkerModel(ContactModel):
     def finer_shares(self, ellipse, slip, friction, rows):
         if self.correction is None:
             return None
-        settings = dataclasses.replace(self.correction.settings, tolerance=CONVERGED[self.name])
+        settings = dataclasses.replace(self.correction.settings, tolerance=TRACTION_TOLERANCE)
         elastic = self.given.elastic.take(rows)
         creep = kalker.Creepage.of_slip(slip, settings.profile_slip)
         coarse = self._solution(ellipse, slip, friction, rows)
         found = kalker.refined(ellipse, creep, friction, elastic, settings, coarse)
-        return (*kalker.shares(ellipse, found), found.converged)
+        return (*kalker.shares(ellipse, found, FINER_PARTS), found.converged)
 
     def power(self, ellipse, slip, friction, rows):
         if self.correction is not None:

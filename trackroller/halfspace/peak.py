@@ -125,6 +125,8 @@ def _with_ridges(patches: Patches, points: np.ndarray, values: np.ndarray, rule:
 
 def _rough(fields: np.ndarray) -> np.ndarray:
     """Return fields with at most ROUGH elements along each axis for the first climbs: these stay in the fast caches."""
+    while min(fields.shape[-2:]) > 4 * ROUGH:  # neighbours of so fine a grid hardly differ
+        fields = fields[..., ::2, ::2]
     while min(fields.shape[-2:]) > ROUGH and not (fields.shape[-1] % 2 or fields.shape[-2] % 2):
         fields = np.ascontiguousarray(_merged(fields), FIELD)
     return fields

@@ -36,7 +36,7 @@ SCAN = _scan_points(
 # For tractions with adhesion: in random designs the peaks lie below the centre, or on the surface far from the rim.
 SCAN_ADHESION = _scan_points(((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3, ((0.6, 5),)), *_DEEP))
 
-MOST_ON_RIDGE = 128  # points on the line where sliding begins
+MOST_ON_RIDGE, OF_GRID = 128, 84  # points on the line where sliding begins, for each OF_GRID points of the grid
 STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
 NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
 
@@ -74,7 +74,7 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
 
 
 def ridge_points(fields: np.ndarray) -> np.ndarray:
-    """Return surface points on the line where sliding begins, (n, m, 3) with m <= MOST_ON_RIDGE.
+    """Return surface points on the line where sliding begins, (n, m, 3); m grows with the grid.
 
     A patch with fewer points than others has rows of NaN after them.
 
@@ -96,7 +96,7 @@ def ridge_points(fields: np.ndarray) -> np.ndarray:
     beside[:, :, :-1] |= slides[:, :, 1:]
     beside &= ~slides & (x**2 + y[:, None] ** 2 < NEAR_RIM**2)
     lines = [np.flatnonzero(line) for line in beside]
-    most = min(max((places.size for places in lines), default=0), MOST_ON_RIDGE)
+    most = min(max((places.size for places in lines), default=0), MOST_ON_RIDGE * max(1, nx // OF_GRID))
     out = np.full((n, most, 3), np.nan)
     for points, places in zip(out, lines, strict=True):
         if places.size > most:

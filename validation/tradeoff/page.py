@@ -20,7 +20,7 @@ from trackroller.roller.accuracy import (
     read_ladders,
     rounded_up,
 )
-from trackroller.roller.stages.ellipse_stresses import REFINED_ERROR
+from trackroller.roller.stages.ellipse_stresses import refined_above
 from trackroller.study.files import write_whole
 from validation.pages import Block, page_html
 from validation.tradeoff.errors import QUANTITIES
@@ -178,10 +178,10 @@ def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
         f"and {GRID_ELEMENTS[name]} in `fastsim`"
         for name, (peak, force) in PROMISES.items()
     )
-    promises += (
-        f". At `standard` and `reference`, `kalker` solves a patch on twice the elements where its peak may err by "
-        f"more than {100 * REFINED_ERROR:g} %"
+    limits = " and ".join(
+        f"{100 * refined_above(ELEMENTS[name]):.2g} % at `{name}`" for name in ("standard", "reference")
     )
+    promises += f". `kalker` solves a patch on twice the elements where its peak may err by more than {limits}"
     heads = (
         "preset",
         "model",

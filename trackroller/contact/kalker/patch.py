@@ -84,9 +84,9 @@ def _fields(ellipse: Ellipse | GridPatch, found: batch.Found | PatchSolution) ->
     return subgrid.Fields(height, found.traction, found.slip, found.own_slip, found.factor)
 
 
-def shares(ellipse: Ellipse | GridPatch, solution: PatchSolution) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tractions over mu p between the elements, and the same for elements of twice the size."""
-    return subgrid.both_shares(_fields(ellipse, solution))
+def shares(ellipse, solution: PatchSolution, parts: int = subgrid.PARTS) -> tuple[np.ndarray, np.ndarray]:
+    """Return the tractions over mu p at `parts` points a side of each element, and for elements of twice the size."""
+    return subgrid.both_shares(_fields(ellipse, solution), parts)
 
 
 def refined(

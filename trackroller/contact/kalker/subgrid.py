@@ -109,13 +109,13 @@ def shares(fields: Fields, parts: int = PARTS) -> np.ndarray:
     return _between(fields.before_law(), fields, parts)
 
 
-def both_shares(fields: Fields) -> tuple[np.ndarray, np.ndarray]:
+def both_shares(fields: Fields, parts: int = PARTS) -> tuple[np.ndarray, np.ndarray]:
     """Return `shares`, and those of elements of twice the size whose z is the mean of four, (n, 2, ., .) each."""
     z, factor = fields.before_law(), fields.factor
     if factor.shape[1:] != (1, 1):
         factor = _of_four(factor)
     twice = fields._replace(height=_of_four(fields.height), factor=factor)
-    return _between(z, fields, PARTS), _between(_of_four(z), twice, PARTS)
+    return _between(z, fields, parts), _between(_of_four(z), twice, parts)
 
 
 def _of_four(field: np.ndarray) -> np.ndarray:

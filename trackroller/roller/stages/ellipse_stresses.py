@@ -24,20 +24,29 @@ from trackroller.roller.stages.scene import surface_tractions
 SECTION_ORDER = 24  # quadrature points of sections: they meet the rim exactly, where the quadrature is hardest
 SEEDS, FINALISTS = 5, 2  # least effort of the search under tractions with adhesion
 PIECE = 256  # patches whose tractions on grids are held at once
-# Estimated relative error of a peak above which the patch is solved again on twice the elements. Stresses have narrow
-# ridges where sliding begins; about 1 of 12 patches of random designs is solved again because of such a ridge.
-REFINED_ERROR = 2.5e-2
+# Estimated relative error of a peak above which the patch is solved again on twice the elements, and the number of
+# elements for which it holds; it falls with the area of an element. Stresses have narrow ridges where sliding begins,
+# which carry the peaks of such patches. Their search therefore takes finer rules and steps.
+REFINED_ERROR, REFINED_AT = 1.3e-2, 28
+FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004, "seeds": 3, "finalists": 2}
+FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
 
-def _pieces(count: int) -> list[slice]:
-    """Return pieces of `count` patches."""
-    return [slice(i, min(i + PIECE, count)) for i in range(0, count, PIECE)]
+def refined_above(elements: int) -> float:
+    """Return the estimated relative error of a peak above which a patch of `elements` along an axis is solved again."""
+    return REFINED_ERROR * (REFINED_AT / elements) ** 2
+
+
+def _pieces(count: int, size: int = PIECE) -> list[slice]:
+    """Return pieces of at most `size` of `count` patches."""
+    return [slice(i, min(i + size, count)) for i in range(0, count, size)]
 
 
 def _mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
     """Replace the fields (m, 2, ny, nx) of `rows` by their mirror images in x, in place, and return the fields."""
-    if fields is not None:
-        fields[rows] = fields[rows][..., ::-1] * np.array([-1.0, 1.0])[:, None, None]
+    if fields is not None and rows.any():
+        mirrored = fields[rows][..., ::-1]
+        fields[rows, 0], fields[rows, 1] = -mirrored[:, 0], mirrored[:, 1]
     return fields
 
 
@@ -122,14 +131,19 @@ class EllipseStresses(PatchStresses):
         for piece in _pieces(flat.size):
             fields = [_mirrored(part, second[piece]) for part in self.fields(flat[piece])]
             peak.put(piece, find_peaks(patches[piece], ratios[piece], settings, *fields))
-        rough = np.flatnonzero((peak.error.max(axis=1) > REFINED_ERROR) & (results.slides_along[flat] == 0))
-        for piece in _pieces(rough.size):
+        limit = refined_above(self.options.settings.elements)
+        rough = np.flatnonzero((peak.error.max(axis=1) > limit) & (results.slides_along[flat] == 0))
+        if settings.step > FINER_SEARCH["step"]:
+            settings = replace(settings, **FINER_SEARCH)
+        for piece in _pieces(rough.size, FINER_PIECE):
             rows = rough[piece]
             found = self._shares(flat[rows], results.scene.model.finer_shares)
             if found is None:
                 break
             fields, converged = [_mirrored(part, second[rows]) for part in found[:2]], found[2]
             finer = find_peaks(patches[rows], ratios[rows], settings, *fields)
+            # the change of the stress at one place can vanish by chance
+            finer.error[:] = np.maximum(finer.error, limit)
             peak.put(rows[converged], finer.take(converged))
             results.refined[flat[rows[converged]]] = True
         return peak
