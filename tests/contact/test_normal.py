@@ -12,7 +12,7 @@ from trackroller.contact.hertz import exact_shape
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.normal import TOLERANCE, displacement, solve_normal
 from trackroller.contact.normal.family import LATTICE, Family
-from trackroller.contact.normal.measure import largest_pressure, patch_area
+from trackroller.contact.normal.measure import largest_pressure, patch_area, roughness
 
 LOAD = 1e-3  # over the contact modulus [mm^2]
 
@@ -196,6 +196,15 @@ def test_ridges_beside_a_flat_get_the_elements_that_they_need(radius, load):
         middle = node.shares[11:13].mean(axis=0) * load / (hx * hy)
         off.append(abs(middle.max() / rounded_punch(middle.sum() * hx, 0.2, radius) - 1.0))
     assert factor > 1 and off[0] > 0.04 and off[1] < 5e-3
+
+
+def test_roughness_tells_an_ellipse_from_a_ridge():
+    """8/n^2 for p^2 = 1 - u^2 on n elements; a step between loaded elements counts fully."""
+    u = (2.0 * np.arange(40) + 1.0) / 40 - 1.0
+    smooth = np.sqrt(1.0 - u[None, :] ** 2) * np.ones((3, 1))
+    assert roughness(smooth) == pytest.approx(8.0 / 40**2, rel=2e-3)
+    smooth[1, 20] *= 2.0
+    assert roughness(smooth) == pytest.approx(1.5, rel=0.01)
 
 
 def test_smooth_pressures_and_sharp_edges_keep_their_elements():

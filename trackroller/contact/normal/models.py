@@ -18,11 +18,15 @@ from trackroller.contact.fastsim import grid as fastsim_grid
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import sliding as normal_sliding
+from trackroller.contact.normal.measure import roughness
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.contact.protocol import ContactModel, Patch
 from trackroller.contact.settings import Rolling
 
+# Error of the friction forces over mu F_N per `roughness` of the pressure. With the error of the elements it covers the
+# measured error of 79 of 80 contacts with flats beside small blends.
+RIDGE_ERROR = 0.01
 ROUNDS = 3  # solutions of the normal and of the tangential problem in turn, on unlike materials
 
 
@@ -134,11 +138,13 @@ class GridKalkerModel(GridModel):
 
     name = "kalker"
     refines = False
+    peak_error = 0.01  # of the elements that the tractions are solved on; measured on the same contacts
 
     def __init__(self, given: Rolling, patches: Patches) -> None:
         super().__init__(given, patches)
         settings = kalker.KalkerSettings(patches.elements, 1e-8, law=given.law, profile_slip=given.profile_slip)
         self._law = KalkerLaw(given.elastic, settings, given.travel_speed)
+        self._rough: dict[tuple[int, int], float] = {}
         self._per_stress = given.elastic.coupling / given.elastic.shear_modulus
 
     def law(self, patch, slip, friction, rows, fine) -> Resultants:
@@ -148,6 +154,8 @@ class GridKalkerModel(GridModel):
             return _known(self._law(grid, self._drawn(slip, rows), friction, rows, False), grid)
         grid = self.settled(patch, slip, friction, rows)
         self._remember(grid, slip, rows)
+        for row, sine, pressure in zip(rows.tolist(), slip.sine, grid.pressure, strict=True):
+            self._rough[row, int(sine < 0)] = roughness(pressure)
         return _known(self._solved(grid, slip, friction, rows).resultants, grid)
 
     def _solved(self, patch, slip, friction, rows):
@@ -181,6 +189,11 @@ class GridKalkerModel(GridModel):
     def stick(self, patch, slip, friction, rows) -> np.ndarray:
         """Return the share of the adhesion area in each rolling patch, (m,) [1]."""
         return self._solved(self.patch(patch, slip, rows), slip, friction, rows).stick_fraction
+
+    def force_error(self, n):
+        """Return the estimated error of the friction forces over mu F_N, (n, 2): of the elements and of ridges."""
+        rough = np.array([[self._rough.get((i, k), np.nan) for k in (0, 1)] for i in range(n)]).reshape(n, 2)
+        return self._law.error(n) + RIDGE_ERROR * rough
 
     def state(self, n):
         """Return the larger residual of both problems, and whether both are met, each (n,)."""
