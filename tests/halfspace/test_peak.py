@@ -102,6 +102,18 @@ def test_surface_is_the_limit_of_depth():
         assert np.ptp(v) < 5e-3 * v[0] + 5e-3
 
 
+@pytest.mark.parametrize("order", [8, 24, 72])
+@pytest.mark.parametrize(("a", "b"), [(1.0, 1.0), (430.0, 22.4), (1e-3, 0.02)])
+def test_stress_on_the_edge_under_tractions_on_a_grid_is_the_limit_from_inside(a, b, order):
+    """Rays to one side of a point on the edge have no length; in single precision they gave NaN."""
+    row, field = patch(a, b, 0.3), np.stack([np.full((28, 28), 0.6), np.full((28, 28), -0.8)])
+    on_edge = np.array([[0.0, b, 0.0], [a, 0.0, 0.0], [0.6 * a, 0.8 * b, 0.0]])
+    parts = [stress_parts(row, on_edge * (1.0 - inside), order, order, field) for inside in (0.0, 1e-10, 1e-6)]
+    assert np.all(np.isfinite(parts))
+    np.testing.assert_allclose(parts[0], parts[1], atol=1e-4 * np.abs(parts[1]).max())
+    np.testing.assert_allclose(parts[0], parts[2], atol=1e-2 * np.abs(parts[1]).max())
+
+
 def test_peaks_match_the_reference_maxima():
     """True maxima over the closed half-space within 0.25 % (the error of the reference is about 0.05 %)."""
     records = [c for c in published_cases() if c.get("exact_peak")]

@@ -32,6 +32,10 @@ from trackroller.halfspace.vectors import sine_cosine
 from trackroller.numerics.compiled import inner
 from trackroller.numerics.lanes import bilinear
 
+# Least length of a ray over the semi-axis. A ray from a point on the edge to its own side has none and would divide by
+# zero; in single precision the square of the shortest distance on it must stay above 1e-38.
+SHORTEST = 1e-9
+
 
 @inner
 def chord_angles(patch, px, py, rule, work):
@@ -65,10 +69,9 @@ def rays_of_chords(patch, px, py, count, work):
         sine, cosine = sine_cosine(work[ANGLE + k])
         along = px * cosine + py * sine
         root = math.sqrt(max(along * along + 1.0 - px * px - py * py, 0.0))
-        # a side without length (point on the edge) would divide by zero
         start = -along - root if outside else 0.0
-        far = root - along if outside else max(root - along, 1e-13)
-        near = -along - root if outside else min(-along - root, -1e-13)
+        far = root - along if outside else max(root - along, SHORTEST)
+        near = -along - root if outside else min(-along - root, -SHORTEST)
         ex, ey = a * cosine, b * sine
         length = math.sqrt(ex * ex + ey * ey)
         c, s = ex / length, ey / length
