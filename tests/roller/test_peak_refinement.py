@@ -72,6 +72,18 @@ def test_sharp_ridges_come_near_the_peaks_of_224_elements(monkeypatch):
     assert told.min() >= ellipse_stresses.refined_above(ELEMENTS)
 
 
+def test_sharp_ridges_converge_with_first_order(monkeypatch):
+    """Without refinement: the cusp where sliding begins lies within an element of its place."""
+    monkeypatch.setattr(ellipse_stresses, "REFINED_ERROR", np.inf)
+    designs, errors = random_designs(27, 3)[26:], []
+    for elements in (ELEMENTS, 2 * ELEMENTS, 4 * ELEMENTS):
+        settings = dataclasses.replace(PRESETS["reference"], elements=elements)
+        found = tr.solve(designs, ("contact", "peak_stress"), contact_model="kalker", accuracy=settings)
+        errors.append(np.abs((found.peak_stress / found.max_pressure).values[0, 0] / SHARP[26] - 1.0).mean())
+    orders = -np.diff(np.log2(errors))
+    assert 0.7 < orders.min() and orders.max() < 1.8
+
+
 def test_finer_elements_refine_smaller_errors():
     limits = [ellipse_stresses.refined_above(PRESETS[name].elements) for name in ("standard", "reference")]
     assert limits[0] == pytest.approx(4.0 * limits[1])
