@@ -17,11 +17,12 @@ os.environ["NUMBA_NUM_THREADS"] = "1"
 
 import trackroller as tr
 from validation.benchmarks.command import run
-from validation.benchmarks.kalker_cost import OUTPUTS, cost
+from validation.benchmarks.kalker_cost import OUTPUTS, costs
 from validation.benchmarks.published_transcription import time_transcription
 from validation.benchmarks.samples import geometry_study
 
 FORCES = ("forces", "contact")
+YARDSTICK: dict[str, dict[str, Any]] = {"sliding": {"contact_model": "sliding"}}
 QUICK: dict[str, dict[str, Any]] = {
     "sliding, forces": {"contact_model": "sliding", "outputs": FORCES},
     "sliding, preview": {"contact_model": "sliding", "accuracy": "preview"},
@@ -44,14 +45,14 @@ STYLES = ("printed", "reused")  # of the transcription; "reused" is some twenty 
 def measure(cases: int = 100, seed: int = 1, slow: int = 8) -> dict[str, Any]:
     """Return the yardstick [ms] and the ratios of all rows to it."""
     sample = geometry_study(cases, seed)
-    yardstick = cost(sample, contact_model="sliding")
-    found = {name: cost(sample, **options) / yardstick for name, options in QUICK.items()}
-    few = sample[: min(slow, cases)]
-    own = cost(few, contact_model="sliding")
-    found |= {name: cost(few, repeats=1, **options) / own for name, options in SLOW.items()}
+    spent = costs(sample, YARDSTICK | QUICK)
+    yardstick, few = spent["sliding"], sample[: min(slow, cases)]
+    own = costs(few, YARDSTICK)["sliding"]
+    found = {name: spent[name] / yardstick for name in QUICK}
+    found |= {name: value / own for name, value in costs(few, SLOW, repeats=1).items()}
     for style in STYLES:
-        spent = time_transcription(tr.Case(motor_force=0), style=style)["cpu_seconds_per_case"]
-        found[f"published equations, {style}"] = spent / yardstick
+        published = time_transcription(tr.Case(motor_force=0), style=style)["cpu_seconds_per_case"]
+        found[f"published equations, {style}"] = published / yardstick
     return {"yardstick_ms": 1e3 * yardstick, "outputs": OUTPUTS, "ratios": found}
 
 
