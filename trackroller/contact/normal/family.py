@@ -28,6 +28,7 @@ KEPT = 8  # number of solutions between lattice loads that are kept in memory
 OVERLAP = 1e-3  # overlap over the approach that counts as contact outside the box
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
 BOX_TOLERANCE = 3e-3  # relative change of the sides of the box at which it counts as found
+TOUCHES = 1e-9  # distance from an edge over the width of the box that counts as none
 MARGIN = 0.08  # margin over the sides of the box, for patches that shear moves
 SAMPLES = 401  # points across for the first box and for the search of contact outside the box
 
@@ -144,7 +145,8 @@ class Family:
 
     def _reaches(self, pressure: np.ndarray, box: Box) -> bool:
         """Return True if the patch ends at an edge of the material."""
-        at_low, at_high = box.low <= self.limits[0], box.high >= self.limits[1]
+        near = TOUCHES * (box.high - box.low)
+        at_low, at_high = box.low - near <= self.limits[0], box.high + near >= self.limits[1]
         return bool((at_low and pressure[:, 0].any()) or (at_high and pressure[:, -1].any()))
 
     def _start(self, load: float) -> Box:
