@@ -45,8 +45,7 @@ def _pieces(count: int, size: int = PIECE) -> list[slice]:
 def _mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
     """Replace the fields (m, 2, ny, nx) of `rows` by their mirror images in x, in place, and return the fields."""
     if fields is not None and rows.any():
-        mirrored = fields[rows][..., ::-1]
-        fields[rows, 0], fields[rows, 1] = -mirrored[:, 0], mirrored[:, 1]
+        fields[rows] = fields[rows][..., ::-1] * np.array([-1.0, 1.0])[:, None, None]
     return fields
 
 
