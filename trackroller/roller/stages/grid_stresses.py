@@ -7,6 +7,7 @@ from typing import cast
 import numpy as np
 
 from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.normal.measure import roughness
 from trackroller.halfspace.grid_peak import GridLoad, find_grid_peaks
 from trackroller.halfspace.peak import Peak
 from trackroller.halfspace.stress import FRICTION_SIGNS, body_stress, von_mises
@@ -18,6 +19,7 @@ from trackroller.roller.stages.scene import surface_tractions
 REFINED_ERROR, FINEST_ERROR = 4.0, 5e-3
 REFINEMENTS = 2, 4  # times the elements of the solved pressure
 LARGEST_GRID = 160  # largest number of elements across after a refinement
+RIDGE_ERROR = 0.02  # error of the solved pressure's stress per `roughness`, which no other tractions on it show
 RESOLVED = 0.95  # share of the largest pressure that means over 2 x 2 elements keep where the elements resolve it
 NEAR = 4.0  # elements of depth down to which subsurface stresses need the full grid
 # Points of the lower bound over the half sides and the smaller half side of the patch.
@@ -61,8 +63,10 @@ class GridStresses(PatchStresses):
         loads = [self.load(place) for place in flat.tolist()]
         seeds = max(2, options.settings.peak.finalists)
         peak = find_grid_peaks(loads, ratios, seeds)
+        ridges = RIDGE_ERROR * np.array([[roughness(load.pressure)] for load in loads]).reshape(-1, 1)
         patch = cast(GridPatch, results.patch)
         if not results.scene.model.refines:
+            peak.error[:] += ridges
             return peak
         # finer tractions do not help where the pressure is singular or its ridges are narrower than its elements
         allowed = (results.slides_along[flat] == 0) & ~patch.reaches_edge[flat] & (results.friction[flat] > 0)
@@ -74,6 +78,7 @@ class GridStresses(PatchStresses):
                 break
             finer = find_grid_peaks([self._refined(int(flat[i]), times) for i in rows], ratios[rows], seeds)
             peak.put(rows, finer)
+        peak.error[:] += ridges
         return peak
 
     def _refined(self, flat: int, times: int) -> GridLoad:
