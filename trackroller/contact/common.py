@@ -141,6 +141,11 @@ class Resultants(Rows):
         """Return the resultants of n patches as NaN."""
         return cls(*(np.full(n, np.nan) for _ in dataclasses.fields(cls)))
 
+    @property
+    def columns(self) -> np.ndarray:
+        """Return F_T, F_A and M_R as columns, (n, 3)."""
+        return np.stack([self.lateral_force, self.driving_force, self.spin_moment], axis=1)
+
     def replaced(self, rows: np.ndarray, other: Resultants) -> Resultants:
         """Return a copy in which the patches `rows` have the resultants of `other`."""
         parts = [np.array(getattr(self, field.name)) for field in dataclasses.fields(self)]

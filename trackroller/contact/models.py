@@ -13,7 +13,7 @@ import numpy as np
 from trackroller.contact import fastsim, kalker, sliding
 from trackroller.contact.common import Elastic, Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.kalker.correction import TRACTION_TOLERANCE, Correction
+from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.linear import LARGEST_RATIO
 from trackroller.contact.normal.models import GridFastsimModel, GridKalkerModel, GridSlidingModel
@@ -96,11 +96,8 @@ class KalkerModel(ContactModel):
     def finer_shares(self, ellipse, slip, friction, rows):
         if self.correction is None:
             return None
-        settings = dataclasses.replace(self.correction.settings, tolerance=TRACTION_TOLERANCE)
-        elastic = self.given.elastic.take(rows)
-        creep = kalker.Creepage.of_slip(slip, settings.profile_slip)
         coarse = self._solution(ellipse, slip, friction, rows)
-        found = kalker.refined(ellipse, creep, friction, elastic, settings, coarse)
+        found = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
         return (*kalker.shares(ellipse, found, FINER_PARTS), found.converged)
 
     def power(self, ellipse, slip, friction, rows):
@@ -109,7 +106,10 @@ class KalkerModel(ContactModel):
         return self._solution(ellipse, slip, friction, rows).works
 
     def force_error(self, n):
-        return self._law.error(n) if self.correction is None else self.correction.error.copy()
+        if self.correction is None:
+            return self._law.error(n)
+        # rollers that the corrected law has not balanced
+        return np.where(np.isnan(self.correction.error), self._law.error(n), self.correction.error)
 
     def state(self, n):
         return self._law.state(n) if self.correction is None else self.correction.state(n)

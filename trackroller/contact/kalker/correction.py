@@ -9,13 +9,14 @@ solved slip and keeps the table's derivatives elsewhere, so that one or two solu
 from __future__ import annotations
 
 import dataclasses
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
 from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Works
-from trackroller.contact.kalker.patch import solve_patch
+from trackroller.contact.kalker import extrapolation
+from trackroller.contact.kalker.patch import on_half_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
 from trackroller.contact.settings import CONVERGED
@@ -28,7 +29,13 @@ REACH = 2.0  # steps over which the derivative is trusted
 # Outside its range the table's derivatives are those at the end of the range, and a correction leaves a larger share
 # of its change for the next one. Changes there count this many times.
 OUTSIDE = 20.0
-TRACTION_TOLERANCE = 1e-3  # residual of the friction law over mu p_max where elements give tractions only
+# Residual of the friction law over mu p_max where elements give tractions only, and on twice the elements. A smaller
+# residual changes the forces of twice the elements by less than 1e-5 of mu F_N.
+TRACTION_TOLERANCE = 1e-3
+# Estimated error of the friction forces above which a patch is solved again on twice the elements. It is taken over
+# mu F_N, and as the change that it causes in F_N of the other contact, over this F_N. It holds for
+# `extrapolation.FITTED_AT` elements.
+REFINED_ERROR = 4e-3
 
 
 class Correction:
@@ -56,7 +63,7 @@ class Correction:
         self.error = np.full((n, 2), np.nan)  # of the friction forces over mu F_N, estimated
         self.beyond = np.zeros(n, bool)  # rollers outside the table's range
         self.count = 0  # of solved patches
-        self.store = Store(2 * n)
+        self.store, self.finer = Store(2 * n), Store(2 * n)  # solutions, and solutions on twice the elements
 
     def _table(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and its validity, (m,)."""
@@ -127,16 +134,57 @@ class Correction:
                 start = before.traction
             creep = Creepage.of_slip(slip.take(pick), settings.profile_slip)
             found = solve_patch(patch.take(pick), creep, friction[pick], self.elastic.take(own), settings, start)
-            exact[pick] = _columns(found.resultants) / scale[pick]
+            plain, value = found.resultants.columns - found.limit[:, :3], found.resultants.columns
             if started:
-                exact[pick] += self.limit[own, side[pick]]
                 found = found.extrapolated_as(before)
             else:
-                self.limit[own, side[pick]] = found.limit[:, :3] / scale[pick]
                 if forces:
-                    self.error[own, side[pick]] = found.force_error / scale[pick, 0]
+                    value, told = self._refined(patch.take(pick), slip.take(pick), friction[pick], own, found)
+                    self.error[own, side[pick]] = told / scale[pick, 0]
+                self.limit[own, side[pick]] = (value - plain) / scale[pick]
+            exact[pick] = plain / scale[pick] + self.limit[own, side[pick]]
             self.store.put(slot, found)
         return exact
+
+    def _refined(self, patch: Any, slip: Slip, friction, rows: np.ndarray, found: PatchSolution):
+        """Return the forces (m, 3) [N, N, N mm] of patches and their estimated error (m,) [N].
+
+        They are those of the solutions `found`, or of twice the elements where the error counts. In the balance an
+        error of F_T in one contact changes F_N of the other, see `stages.mechanics.force_error`.
+        """
+        value, told, side = found.resultants.columns, found.force_error.copy(), _side(slip)
+        normal = np.empty((len(self.error), 2))
+        normal[rows] = patch.normal_force[:, None]  # of mirror images only one contact is given
+        normal[rows, side] = patch.normal_force
+        other = 2.0 * np.abs(slip.sine * slip.cosine) * normal[rows, 1 - side]
+        least = np.minimum(friction * patch.normal_force, other)
+        rough = np.flatnonzero(told > REFINED_ERROR * (extrapolation.FITTED_AT / self.settings.elements) ** 1.5 * least)
+        if self.trusts_table or not rough.size:
+            return value, told
+        patch, slip, coarse = patch.take(rough), slip.take(rough), found.take(rough)
+        mu, rows = friction[rough], rows[rough]
+        finer = self.on_finer(patch, slip, mu, rows, coarse, forces=True)
+        self.finer.put(_slots(rows, side[rough]), finer)
+        self.count += rough.size
+        plain = finer.resultants.columns
+        change = plain - (value[rough] - coarse.limit[:, :3])
+        creep, good = Creepage.of_slip(slip, self.settings.profile_slip), finer.converged
+        _, limit = extrapolation.extrapolated(patch, creep, mu, self.elastic.take(rows), finer, plain, change)
+        error = extrapolation.force_error(patch, mu, finer.stick_fraction, change, finer.traction.shape[-1])
+        value[rough[good]], told[rough[good]] = (plain + limit)[good], error[good]
+        return value, told
+
+    def on_finer(
+        self, patch: Any, slip: Slip, friction, rows: np.ndarray, coarse: PatchSolution, forces: bool = False
+    ) -> PatchSolution:
+        """Solve patches on twice the elements of the solutions `coarse`, arrays (m,), from the tractions at hand."""
+        slot, creep = _slots(rows, _side(slip)), Creepage.of_slip(slip, self.settings.profile_slip)
+        start, known = on_half_elements(patch, coarse), self.finer.known[slot]
+        if known.any():
+            start[known] = self.finer.get(slot[known]).traction
+        settings = dataclasses.replace(self.settings, elements=start.shape[-1], tolerance=TRACTION_TOLERANCE)
+        settings = dataclasses.replace(settings, extrapolate=False, between=forces)
+        return solve_patch(patch, creep, friction, self.elastic.take(rows), settings, start)
 
     def solution(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
         """Return the last solutions of patches, arrays (m,); patches without one are solved."""
@@ -162,7 +210,9 @@ class Correction:
 
     def forget(self, rows: np.ndarray) -> None:
         """Drop the solutions of the rollers `rows`, so that their patches are solved again when asked for."""
-        self.store.known[np.concatenate([2 * rows, 2 * rows + 1])] = False
+        slots = np.concatenate([2 * rows, 2 * rows + 1])
+        self.store.known[slots] = self.finer.known[slots] = False
+        self.error[rows] = np.nan
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the larger residual of the friction law in both patches of n rollers, and whether it is met, (n,)."""
@@ -176,10 +226,6 @@ def _side(slip: Slip) -> np.ndarray:
 
 def _slots(rows: np.ndarray, side: np.ndarray) -> np.ndarray:
     return 2 * rows + side
-
-
-def _columns(r: Resultants) -> np.ndarray:
-    return np.stack([r.lateral_force, r.driving_force, r.spin_moment], axis=1)
 
 
 def _scale(patch: Patch, friction: np.ndarray) -> np.ndarray:

@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+
+from trackroller.contact.common import Elastic, Ellipse
+from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.kalker import subgrid
+from trackroller.contact.slip import Creepage
 
 # The forces converge with order 2 where the patch slides, and with order 1 where much of it sticks: the traction is
 # singular at the trailing edge of full adhesion, and the displacement has a kink at the leading edge.
 SLIDING, ADHESION = 1.0 / 3.0, 1.0
-EARLY = 16  # power of the used share of the bound: a small adhesion area decides the order already
-FITTED, FITTED_AT, SLENDER = 0.077, 28, 0.6  # factor, elements and power of the axis ratio of `force_error`
+EARLY = 24  # power of the used share of the bound: a small adhesion area decides the order already
+# Patches that are long in the rolling direction converge faster by this power of b/a, if the elements see adhesion at
+# all: if more than SEEN_USED of the bound is unused.
+LONG, SEEN_USED = 0.42, 1e-4
+UNLIKE = 3.4  # on unlike bodies K/mu counts squared: the patch slides at the leading edge, where like bodies stick
+FITTED, FITTED_AT, SLENDER = 0.054, 28, 0.9  # factor, elements and power of the axis ratio of `force_error`
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
 FEW = 5.0  # elements in an adhesion area of which half the change between the grids is chance
 # Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and spins of an element at which the adhesion area
@@ -16,12 +27,19 @@ FEW = 5.0  # elements in an adhesion area of which half the change between the g
 UNSEEN, UNSEEN_POWER, RATIOS, SEEN, SMALL = 0.62, 0.8, (0.25, 3.5), 0.57, 5.0
 
 
-def weight(used: np.ndarray) -> np.ndarray:
-    """Return the weight of patches, (n,), by the tractions over their bounds in the mean.
+def weight(used: np.ndarray, ratio: np.ndarray, coupling: np.ndarray) -> np.ndarray:
+    """Return the weight of patches, (n,). Its factors were fitted to random designs.
 
-    The adhesion area, which is made of whole elements, would carry its jumps into the forces.
+    Parameters
+    ----------
+    used : tractions over their bounds in the mean, (n,). The adhesion area is made of whole elements, so that it would
+        carry its jumps into the forces.
+    ratio : b/a, (n,)
+    coupling : K/mu, (n,); 0 for like bodies
     """
-    return SLIDING + (ADHESION - SLIDING) * (1.0 - used**EARLY)
+    seen = 1.0 - np.exp((used - 1.0) / SEEN_USED)
+    sliding = SLIDING * np.maximum(ratio, 1.0) ** (-LONG * seen)
+    return sliding + (ADHESION - sliding) * (1.0 - used**EARLY) / (1.0 + UNLIKE * coupling**2)
 
 
 def unseen_adhesion(spin: np.ndarray, ratio: np.ndarray, pole: np.ndarray, elements: int) -> np.ndarray:
@@ -43,8 +61,44 @@ def unseen_adhesion(spin: np.ndarray, ratio: np.ndarray, pole: np.ndarray, eleme
     return inside * share / (1.0 + (SEEN / of_element) ** 6) / (1.0 + of_element / SMALL)
 
 
+def extrapolated(
+    ellipse: Ellipse | GridPatch,
+    creep: Creepage,
+    friction,
+    elastic: Elastic,
+    found: Any,
+    value: np.ndarray,
+    change: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Extrapolate the resultants `value` (n, 3) of `found`; `change` (n, 3) came with the last halving of elements.
+
+    `found` is a solution or a grid of it.
+
+    Returns
+    -------
+    The weight (n,) and what the resultants lack (n, 3) [N, N, N mm].
+    """
+    unlike = elastic.coupling / np.where(friction > 0.0, friction, np.inf)
+    share = weight(subgrid.fields_of(ellipse, found).used, _ratio(ellipse), unlike)
+    limit = share[:, None] * change
+    if ellipse.is_hertzian and found.factor.shape[1:] == (1, 1):  # the formula was fitted to constant friction
+        limit[:, 0] += np.sign(value[:, 0]) * _unseen(ellipse, creep, friction, elastic, found.traction.shape[-1])
+    return share, limit
+
+
+def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
+    """Return what |F_T| lacks by `unseen_adhesion`, (n,) [N]."""
+    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+    with np.errstate(divide="ignore", invalid="ignore"):
+        spin = np.abs(creep.spin) * np.sqrt(a * b) * elastic.shear_modulus / (friction * ellipse.max_pressure)
+        pole = np.abs(creep.longitudinal / creep.spin) / a
+        share = unseen_adhesion(spin, _ratio(ellipse), pole, elements)
+    known = np.isfinite(share) & (creep.lateral == 0.0)
+    return np.where(known, share, 0.0) * friction * ellipse.normal_force
+
+
 def force_error(
-    change: np.ndarray, capacity: np.ndarray, stick: np.ndarray, ratio: np.ndarray, elements: int
+    ellipse: Ellipse | GridPatch, friction, stick: np.ndarray, change: np.ndarray, elements: int
 ) -> np.ndarray:
     """Return the estimated error of extrapolated friction forces, (n,) [N].
 
@@ -54,15 +108,20 @@ def force_error(
 
     Parameters
     ----------
-    change : of F_T, F_A (and M_R) from elements of twice the size, (n, 3) [N]
-    capacity : mu F_N, (n,) [N]
+    ellipse : patches, arrays (n,); the elements of slender patches are slender too
+    friction : mu, (n,)
     stick : share of the adhesion area, (n,)
-    ratio : b/a, (n,); the elements of slender patches are slender too
+    change : of F_T, F_A (and M_R) from elements of twice the size, (n, 3) [N]
     elements : along each axis
     """
+    ratio, capacity = _ratio(ellipse), friction * ellipse.normal_force
     finer, largest = (FITTED_AT / elements) ** 1.5, np.abs(change[:, :2]).max(axis=1)
     factor = FITTED * np.maximum(ratio, 1.0 / ratio) ** SLENDER * np.cbrt(stick + 3e-3)
     return factor * np.sqrt(finer * capacity * (largest + 1e-3 * finer * capacity))
+
+
+def _ratio(ellipse: Ellipse | GridPatch) -> np.ndarray:
+    return ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
 
 
 def adhesion(fine: np.ndarray, coarse: np.ndarray, weight: np.ndarray, elements: int) -> np.ndarray:

@@ -8,7 +8,6 @@ traction.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -69,32 +68,19 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
         first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
     found = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
-        traction[:] = _on_half_elements(ellipse, found)
+        traction[:] = on_half_elements(ellipse, found)
     return found
 
 
-def _on_half_elements(ellipse: Ellipse | GridPatch, coarse: batch.Found | PatchSolution) -> np.ndarray:
+def on_half_elements(ellipse: Ellipse | GridPatch, coarse: batch.Found | PatchSolution) -> np.ndarray:
     """Return the tractions of a solution, interpolated to elements of half the size."""
     height, _ = cells(ellipse, 2 * coarse.traction.shape[-1])
-    return subgrid.shares(_fields(ellipse, coarse), 2) * (height if height.ndim == 2 else height[:, None])
-
-
-def _fields(ellipse: Ellipse | GridPatch, found: batch.Found | PatchSolution) -> subgrid.Fields:
-    height, _ = cells(ellipse, found.traction.shape[-1])
-    return subgrid.Fields(height, found.traction, found.slip, found.own_slip, found.factor)
+    return subgrid.shares(subgrid.fields_of(ellipse, coarse), 2) * (height if height.ndim == 2 else height[:, None])
 
 
 def shares(ellipse, solution: PatchSolution, parts: int = subgrid.PARTS) -> tuple[np.ndarray, np.ndarray]:
     """Return the tractions over mu p at `parts` points a side of each element, and for elements of twice the size."""
-    return subgrid.both_shares(_fields(ellipse, solution), parts)
-
-
-def refined(
-    ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings, coarse: PatchSolution
-) -> PatchSolution:
-    """Solve patches again on twice the elements of the solution `coarse`, from its tractions; see `solve_patch`."""
-    finer = replace(settings, elements=2 * settings.elements, extrapolate=False, between=False)
-    return solve_patch(ellipse, creep, friction, elastic, finer, _on_half_elements(ellipse, coarse))
+    return subgrid.both_shares(subgrid.fields_of(ellipse, solution), parts)
 
 
 def _integrals(ellipse, friction, found: batch.Found, settings: KalkerSettings) -> tuple[np.ndarray, np.ndarray]:
@@ -105,7 +91,7 @@ def _integrals(ellipse, friction, found: batch.Found, settings: KalkerSettings) 
     between = cells(finer, subgrid.PARTS * found.traction.shape[-1])
     bound = (friction * ellipse.max_pressure)[:, None]
     sides = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    forces, adhesion = subgrid.integrals(_fields(ellipse, found), between, *sides)
+    forces, adhesion = subgrid.integrals(subgrid.fields_of(ellipse, found), between, *sides)
     return bound * forces, np.where(found.report.products > 0, adhesion, 0.0)  # patches without friction have none
 
 
@@ -118,22 +104,20 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = found.report
     value, stick = _integrals(ellipse, friction, found, settings)
-    limit, error = np.zeros((n, 4)), np.full((n, 3), np.nan)
-    pressed = fine.pressure_work
+    limit, change = np.zeros((n, 4)), np.full((n, 3), np.nan)
+    told, pressed = np.full(n, np.nan), fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
         other, stick_before = _integrals(ellipse, friction, coarse, settings)
-        error = value - other
-        weight, report = extrapolation.weight(_fields(ellipse, found).used), coarse.report
-        limit[:, :3] = weight[:, None] * error
+        change, report = value - other, coarse.report
+        weight, limit[:, :3] = extrapolation.extrapolated(ellipse, creep, friction, elastic, found, value, change)
+        told = extrapolation.force_error(ellipse, friction, stick, change, elements)
         limit[:, 3] = extrapolation.adhesion(stick, stick_before, weight, elements) - stick
-        limit[:, 0] += np.sign(value[:, 0]) * _unseen(ellipse, creep, friction, elastic, settings)
         pressed = pressed + weight * (pressed - report.pressure_work)
         work = work + weight * (work - report.work - report.pressure_work)
         # observed to be of second order wherever a part of the patch slides
         energy = extrapolation.energy(energy, report.energy_residual)
-    value, ratio = value + limit[:, :3], ellipse.semi_axis_rolling / ellipse.semi_axis_lateral
-    told = extrapolation.force_error(error, friction * ellipse.normal_force, fine.stick_fraction, ratio, elements)
+    value = value + limit[:, :3]
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
@@ -147,7 +131,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         pressed,
         energy,
         limit,
-        np.abs(error),
+        np.abs(change),
         told,
         fine.own_slip,
         fine.residual,
@@ -155,19 +139,6 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         fine.products,
         fine.residual <= settings.tolerance,
     )
-
-
-def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, settings: KalkerSettings) -> np.ndarray:
-    """Return what |F_T| lacks by `extrapolation.unseen_adhesion`, (n,) [N]; 0 where the formula was not fitted."""
-    if not (ellipse.is_hertzian and settings.law_in_use.is_constant):
-        return np.zeros(friction.size)
-    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    with np.errstate(divide="ignore", invalid="ignore"):
-        spin = np.abs(creep.spin) * np.sqrt(a * b) * elastic.shear_modulus / (friction * ellipse.max_pressure)
-        pole = np.abs(creep.longitudinal / creep.spin) / a
-        share = extrapolation.unseen_adhesion(spin, b / a, pole, settings.elements)
-    known = np.isfinite(share) & (creep.lateral == 0.0)
-    return np.where(known, share, 0.0) * friction * ellipse.normal_force
 
 
 def _full(value, n: int) -> np.ndarray:

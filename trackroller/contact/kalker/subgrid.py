@@ -9,10 +9,11 @@ slip that an element's own traction causes, a stick area smaller than an element
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from trackroller.contact.kalker.cells import cells
 from trackroller.numerics.compiled import compiled
 
 PARTS = 3  # points along each side of an element
@@ -104,6 +105,12 @@ class Fields(NamedTuple):
         return np.clip(finer, low, high)
 
 
+def fields_of(patch: Any, found: Any) -> Fields:
+    """Return the fields of a solution, or of one grid of it, on n patches."""
+    height, _ = cells(patch, found.traction.shape[-1])
+    return Fields(height, found.traction, found.slip, found.own_slip, found.factor)
+
+
 def shares(fields: Fields, parts: int = PARTS) -> np.ndarray:
     """Return the traction over mu p at rest on `parts` times the elements, (n, 2, parts m, parts m)."""
     return _between(fields.before_law(), fields, parts)
@@ -176,16 +183,16 @@ def _adhesion(z, share):
 
 
 def integrals(
-    fields: Fields, cells: tuple[np.ndarray, np.ndarray], a: np.ndarray, b: np.ndarray
+    fields: Fields, finer: tuple[np.ndarray, np.ndarray], a: np.ndarray, b: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return F_T, F_A and M_R over mu p_max, (n, 3), and the share of the adhesion area, (n,).
 
-    `cells` are the mean pressure over the largest, and the share inside the patch, of PARTS times the elements, each
+    `finer` are the mean pressure over the largest, and the share inside the patch, of PARTS times the elements, each
     (., .) or (n, ., .); a, b (n,) are the half sides of the patches [mm]. In full adhesion the traction is singular at
     the trailing edge, where an element holds its mean and no smooth field does. So the elements' own tractions count
     the more, the less of the bound is used.
     """
-    height, share = cells
+    height, share = finer
     fine = _finer(fields.before_law(), PARTS)
     within = np.broadcast_to(share, (len(fine), *share.shape[-2:]))
     adhesion = np.array([_adhesion(z, own) for z, own in zip(fine, within, strict=True)])
