@@ -6,7 +6,7 @@ A model gives the contact law of the equilibrium, and the tractions of given pat
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 
 import numpy as np
 
@@ -160,13 +160,13 @@ class FastsimModel(ContactModel):
         return Works.of_friction(work)
 
 
-# by name: on Hertz's ellipses, and on solved patches
-MODELS: dict[str, tuple[Callable[..., ContactModel], Callable[..., ContactModel] | None]] = {
-    "sliding": (SlidingModel, GridSlidingModel),
-    "fastsim": (FastsimModel, GridFastsimModel),
-    "kalker": (KalkerModel, GridKalkerModel),
-    "kalker_table": (lambda given, settings: TableModel(given.elastic, KalkerModel(given, settings, True)), None),
+ON_ELLIPSES: dict[str, Callable[..., ContactModel]] = {
+    "sliding": SlidingModel,
+    "fastsim": FastsimModel,
+    "kalker": KalkerModel,
+    "kalker_table": lambda given, settings: TableModel(given.elastic, KalkerModel(given, settings, True)),
 }
+ON_SOLVED_PATCHES = {"sliding": GridSlidingModel, "fastsim": GridFastsimModel, "kalker": GridKalkerModel}
 
 
 def contact_model(
@@ -212,11 +212,11 @@ def contact_model(
     InputError
         For an unknown name.
     """
-    check_names("contact_model", [name], [known for known, made in MODELS.items() if patches is None or made[1]])
+    models: Mapping[str, Callable[..., ContactModel]] = ON_ELLIPSES if patches is None else ON_SOLVED_PATCHES
+    check_names("contact_model", [name], list(models))
     travel = np.array(np.broadcast_to(np.asarray(travel_speed, float), np.shape(elastic.shear_modulus)))
     given = Rolling(elastic, law or constant(), travel, spin_model, "profile" in slip_terms)
-    elliptical, solved = MODELS[name]
-    return elliptical(given, settings) if patches is None or solved is None else solved(given, patches)
+    return models[name](given, settings if patches is None else patches)
 
 
 def traction_share(surface: SurfaceTractions, friction: np.ndarray) -> np.ndarray:
