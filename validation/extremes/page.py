@@ -53,6 +53,7 @@ RANDOM_WORDS = (
 def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
     """Return the page as headings, paragraphs, tables and figures."""
     scenes, broken = _scenes(record), _broken(record)
+    settings = ", ".join(f"`{model}` at `{accuracy}`" for model, accuracy in record["accuracies"].items())
     claims = [f["holds"] for row in record["scenes"] for f in row["findings"]]
     return [
         ("h1", "At the ends of the parameters"),
@@ -63,6 +64,7 @@ def blocks(record: Record, figures: Sequence[dict[str, str]]) -> list[Block]:
             "solved, the residual is small, other units and a mirrored roller give the same result, the problem is "
             "well conditioned, results are monotone where physics demands it, they are continuous across borders of "
             "regimes and towards limits, and peaks lie within the estimated error. "
+            f"Settings: {settings}. "
             "`snakemake -s validation/Snakefile --cores all extremes` makes this page.",
         ),
         *[("figure", f) for f in figures],
