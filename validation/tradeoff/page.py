@@ -10,6 +10,7 @@ from typing import Any
 
 import xarray as xr
 
+from trackroller.contact.kalker import correction
 from trackroller.errors import InputError
 from trackroller.roller.accuracy import (
     ELEMENTS,
@@ -20,7 +21,7 @@ from trackroller.roller.accuracy import (
     read_ladders,
     rounded_up,
 )
-from trackroller.roller.stages.ellipse_stresses import refined_above
+from trackroller.roller.stages import ellipse_stresses
 from trackroller.study.files import write_whole
 from validation.pages import Block, page_html
 from validation.tradeoff.errors import QUANTITIES
@@ -179,7 +180,9 @@ def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
         for name, (peak, force) in PROMISES.items()
     )
     limits = " and ".join(
-        f"{100 * refined_above(ELEMENTS[name]):.2g} % at `{name}`" for name in ("standard", "reference")
+        f"{100 * ellipse_stresses.refined_above(ELEMENTS[name]):.2g} % or its friction force by "
+        f"{100 * correction.refined_above(ELEMENTS[name]):.2g} % of mu F_N at `{name}`"
+        for name in ("standard", "reference")
     )
     promises += f". `kalker` solves a patch on twice the elements where its peak may err by more than {limits}"
     heads = (

@@ -38,6 +38,11 @@ TRACTION_TOLERANCE = 1e-3
 REFINED_ERROR = 4e-3
 
 
+def refined_above(elements: int) -> float:
+    """Return `REFINED_ERROR` for patches of `elements` along each axis."""
+    return REFINED_ERROR * (extrapolation.FITTED_AT / elements) ** 1.5
+
+
 class Correction:
     """The corrected law of n rollers and the solutions behind it.
 
@@ -158,7 +163,7 @@ class Correction:
         normal[rows, side] = patch.normal_force
         other = 2.0 * np.abs(slip.sine * slip.cosine) * normal[rows, 1 - side]
         least = np.minimum(friction * patch.normal_force, other)
-        rough = np.flatnonzero(told > REFINED_ERROR * (extrapolation.FITTED_AT / self.settings.elements) ** 1.5 * least)
+        rough = np.flatnonzero(told > refined_above(self.settings.elements) * least)
         if self.trusts_table or not rough.size:
             return value, told
         patch, slip, coarse = patch.take(rough), slip.take(rough), found.take(rough)
