@@ -159,7 +159,7 @@ def _iterate(law, work, at, tolerance, limit):
     while largest > tolerance and iteration < limit:
         iteration += 1
         # Far from the solution a rough linear solution is enough. Near it, a precise one gives quadratic convergence.
-        inner = max(0.3 * tolerance / largest, min(0.03, 0.1 * largest))
+        inner = max(0.3 * tolerance / largest, min(0.1, 0.3 * largest))
         leap = short >= SHORT and left == 0
         if leap:
             leap = find_slits(reals(at[0]), reals(at[1]), work.room.bound, law.rho, work.room.held) > 0

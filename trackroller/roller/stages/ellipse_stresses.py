@@ -27,7 +27,7 @@ PIECE = 256  # patches whose tractions on grids are held at once
 # Estimated relative error of a peak above which the patch is solved again on twice the elements, and the number of
 # elements for which it holds; it falls with the area of an element. Stresses have narrow ridges where sliding begins,
 # which carry the peaks of such patches. Their search therefore takes finer rules and steps.
-REFINED_ERROR, REFINED_AT = 1.3e-2, 28
+REFINED_ERROR, REFINED_AT = 1.5e-2, 28
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
