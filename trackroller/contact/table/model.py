@@ -62,7 +62,7 @@ class TableModel(ContactModel):
     def stick(self, patch: Any, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""
         found = self._table(patch, slip, friction, rows)
-        share, rest = found.stick_fraction, np.flatnonzero(~found.known)
+        share, rest = np.where(friction > 0.0, found.stick_fraction, 0.0), np.flatnonzero(~found.known)
         if rest.size:
             share[rest] = self.exact.stick(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
         return share
