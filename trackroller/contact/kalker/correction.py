@@ -40,7 +40,7 @@ REFINED_ERROR = 4e-3
 
 def refined_above(elements: int) -> float:
     """Return `REFINED_ERROR` for patches of `elements` along each axis."""
-    return REFINED_ERROR * (extrapolation.FITTED_AT / elements) ** 1.5
+    return REFINED_ERROR * extrapolation.error_scale(elements)
 
 
 class Correction:
@@ -131,16 +131,14 @@ class Correction:
                 continue
             own, slot = rows[pick], _slots(rows[pick], side[pick])
             tolerance = CONVERGED["kalker"] if forces else TRACTION_TOLERANCE
-            wanted = {"extrapolate": forces, "between": forces, "tolerance": tolerance}
-            settings, start = dataclasses.replace(self.settings, **wanted), None
-            if started:
-                settings = dataclasses.replace(settings, extrapolate=False)
-                before = self.store.get(slot)
-                start = before.traction
+            wanted = {"extrapolate": forces and not started, "between": forces, "tolerance": tolerance}
+            settings = dataclasses.replace(self.settings, **wanted)
+            before = self.store.get(slot) if started else None
+            start = None if before is None else before.traction
             creep = Creepage.of_slip(slip.take(pick), settings.profile_slip)
             found = solve_patch(patch.take(pick), creep, friction[pick], self.elastic.take(own), settings, start)
             plain, value = found.resultants.columns - found.limit[:, :3], found.resultants.columns
-            if started:
+            if before is not None:
                 found = found.extrapolated_as(before)
             else:
                 if forces:
@@ -187,9 +185,9 @@ class Correction:
         start, known = on_half_elements(patch, coarse), self.finer.known[slot]
         if known.any():
             start[known] = self.finer.get(slot[known]).traction
-        settings = dataclasses.replace(self.settings, elements=start.shape[-1], tolerance=TRACTION_TOLERANCE)
-        settings = dataclasses.replace(settings, extrapolate=False, between=forces)
-        return solve_patch(patch, creep, friction, self.elastic.take(rows), settings, start)
+        wanted = {"elements": start.shape[-1], "tolerance": TRACTION_TOLERANCE, "extrapolate": False, "between": forces}
+        elastic, settings = self.elastic.take(rows), dataclasses.replace(self.settings, **wanted)
+        return solve_patch(patch, creep, friction, elastic, settings, start)
 
     def solution(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
         """Return the last solutions of patches, arrays (m,); patches without one are solved."""

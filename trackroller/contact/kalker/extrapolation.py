@@ -14,7 +14,9 @@ from trackroller.contact.slip import Creepage
 # The forces converge with order 2 where the patch slides, and with order 1 where much of it sticks: the traction is
 # singular at the trailing edge of full adhesion, and the displacement has a kink at the leading edge.
 SLIDING, ADHESION = 1.0 / 3.0, 1.0
-EARLY = 24  # power of the used share of the bound: a small adhesion area decides the order already
+# Power of the mean traction over its bound in `weight`. It is high, because even a small adhesion area lowers the order
+# with which the forces converge.
+EARLY = 24
 # Patches that are long in the rolling direction converge faster by this power of b/a, if the elements see adhesion at
 # all: if more than SEEN_USED of the bound is unused.
 LONG, SEEN_USED = 0.42, 1e-4
@@ -97,6 +99,11 @@ def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int)
     return np.where(known, share, 0.0) * friction * ellipse.normal_force
 
 
+def error_scale(elements: int) -> float:
+    """Return how the errors of forces grow from FITTED_AT to `elements` along each axis, a factor."""
+    return (FITTED_AT / elements) ** 1.5
+
+
 def force_error(
     ellipse: Ellipse | GridPatch, friction, stick: np.ndarray, change: np.ndarray, elements: int
 ) -> np.ndarray:
@@ -115,7 +122,7 @@ def force_error(
     elements : along each axis
     """
     ratio, capacity = _ratio(ellipse), friction * ellipse.normal_force
-    finer, largest = (FITTED_AT / elements) ** 1.5, np.abs(change[:, :2]).max(axis=1)
+    finer, largest = error_scale(elements), np.abs(change[:, :2]).max(axis=1)
     factor = FITTED * np.maximum(ratio, 1.0 / ratio) ** SLENDER * np.cbrt(stick + 3e-3)
     return factor * np.sqrt(finer * capacity * (largest + 1e-3 * finer * capacity))
 
