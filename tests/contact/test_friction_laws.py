@@ -234,7 +234,7 @@ def roller():
 
 @pytest.mark.parametrize("kind", ["sliding", "kalker"])
 def test_laws_in_the_roller(roller, kind):
-    """A constant law changes nothing, slow travel little; falling friction takes more slip and less spin moment."""
+    """A constant law changes nothing, slow travel little. Falling friction gives more slip and less spin moment."""
     ds = roller[kind]
     assert np.all(ds.converged == 1)
     for name in ("lateral_force", "spin_moment", "rolling_radius_shift", "peak_stress"):

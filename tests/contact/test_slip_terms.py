@@ -134,7 +134,7 @@ def test_preview_serves_the_curve_by_table_and_the_profile_by_elements():
 
 @pytest.mark.parametrize("model", ["fastsim", "kalker"])
 def test_patches_solved_on_a_grid_take_the_contour_as_it_is_drawn(model):
-    """A contour drawn as a circle gives the friction forces of the Hertzian patch."""
+    """Patches solved on a grid have the friction forces of the ellipse if the contours are drawn as circles."""
     hertz = tr.solve(tr.Case(), outputs=OUTPUTS, contact_model=model, slip_terms=BOTH)
     grid = tr.solve(tr.Case(), outputs=OUTPUTS, contact_model=model, slip_terms=BOTH, normal="halfspace")
     np.testing.assert_allclose(grid.lateral_force, hertz.lateral_force, rtol=2e-2)

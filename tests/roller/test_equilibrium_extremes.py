@@ -46,7 +46,8 @@ def test_drilling_friction_that_nearly_stops_a_small_roller_is_balanced():
 
 
 def test_the_lateral_load_rests_on_the_contact_that_faces_it():
-    # above the friction of self-locking, the equations have a second solution that loads the other contact
+    # With more friction than self-locking needs, the equations have two solutions. In the wrong one the contact that
+    # faces away from the axial force carries more.
     cases = [
         tr.Case(contact_angle=11, friction_coefficient=0.49, radial_force=-200, axial_force=a, motor_force=0)
         for a in (-5.0, 5.0, -0.1, 0.1)

@@ -41,8 +41,8 @@ _WORDS = {
     "prcc": "partial rank correlation coefficient",
     "group_S1": "first-order Sobol index of the group, interactions inside the group included",
     "group_ST": "total Sobol index of the group",
-    "conditional_S1": "first-order Sobol index among the rows of one level",
-    "conditional_ST": "total Sobol index among the rows of one level",
+    "conditional_S1": "first-order Sobol index, computed from the rows of one level only",
+    "conditional_ST": "total Sobol index, computed from the rows of one level only",
     "conditional_rows": "rows, cells or blocks behind the indices of one level",
 }
 

@@ -54,7 +54,7 @@ WORDS: dict[str, tuple[str, str]] = {
     ),
 }
 OF_BODY = ("yield", "static", "deep_life", "half_space")  # flags that may hold for one body alone
-SLIDING_ERROR = "Its friction forces err by 38 % of mu F_N in the median of 492 measured rollers."
+SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 _ROLLING = REGIMES.index("rolling")
 KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 # Seconds of one core a case at preview, standard and reference; orders of magnitude. The processor time of one process
 # was measured on `random_designs` of `validation/benchmarks/samples.py`: 100 designs, 20 to 100 of them at reference, 2
 # to 8 of them on grids. It was divided by that of a complete case in sliding at standard, measured beside it, and
-# multiplied by the 1.9 ms that this case takes on a quiet 2-core machine. Ordinary designs take 60 to 90 % of it.
+# multiplied by the 1.9 ms that this case takes on a quiet 2-core machine. Ordinary designs take 60 to 90 % of these
+# times.
 _LEVELS = ("preview", "standard", "reference")
 _FORCES = {
     "sliding": (8e-4, 8e-4, 8e-4),

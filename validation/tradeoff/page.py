@@ -179,12 +179,14 @@ def _preset_blocks(summary: dict[str, Any]) -> list[Block]:
         f"and {GRID_ELEMENTS[name]} in `fastsim`"
         for name, (peak, force) in PROMISES.items()
     )
-    limits = " and ".join(
-        f"{100 * ellipse_stresses.refined_above(ELEMENTS[name]):.2g} % or its friction force by "
-        f"{100 * correction.refined_above(ELEMENTS[name]):.2g} % of mu F_N at `{name}`"
+    limits = ", ".join(
+        f"at `{name}` {100 * ellipse_stresses.refined_above(ELEMENTS[name]):.2g} % of the peak or "
+        f"{100 * correction.refined_above(ELEMENTS[name]):.2g} % of mu F_N in the friction force"
         for name in ("standard", "reference")
     )
-    promises += f". `kalker` solves a patch on twice the elements where its peak may err by more than {limits}"
+    promises += (
+        f". `kalker` solves a patch again on twice the elements where the estimated error exceeds a limit: {limits}"
+    )
     heads = (
         "preset",
         "model",

@@ -65,7 +65,7 @@ class Node:
 
 
 def nearest_lattice(load: float) -> float:
-    """Return the load of the lattice that is nearest to load/E* [mm^2]."""
+    """Return the power of LATTICE that is nearest to `load`, the normal force over E* [mm^2]."""
     return LATTICE ** round(math.log(load) / math.log(LATTICE))
 
 

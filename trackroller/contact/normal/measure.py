@@ -98,9 +98,10 @@ def largest_pressure(pressure: np.ndarray) -> float:
 
 
 def roughness(pressure: np.ndarray) -> float:
-    """Return the largest second difference across of p^2 over its maximum [1]; it is small where elements resolve p.
+    """Return the largest second difference of p^2 in the lateral direction, over the largest p^2 [1].
 
-    In Hertz's theory p^2 is a parabola, and the result is 8 over the square of the number of elements.
+    It is small where the elements resolve the pressure. In Hertz's theory p^2 is a parabola, and the result is 8 over
+    the square of the number of elements.
 
     Parameters
     ----------

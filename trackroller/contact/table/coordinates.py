@@ -29,7 +29,7 @@ from trackroller.numerics.compiled import compiled, formula
 HALF_WAY = 3.0  # r at rho = 1/2
 RATIOS = (0.05, 20.0)  # of b/a
 LARGEST_SLIP = 1e100  # creepages are cut off here; far below, the patch already slides completely
-LEAST_BEND = 1e-250  # smallest unit of the creepages
+LEAST_BEND = 1e-250  # creepages are divided by mu F_N/(G a b C11), or by this number if there is less friction
 
 
 @formula

@@ -69,7 +69,7 @@ def _elements(options: Options) -> int:
 
 
 def _patches(table: CaseTable, options: Options, rolling_radius: np.ndarray, across: int) -> Patches:
-    """Make the solver of the normal problem; contacts with the same gap share their solutions."""
+    """Return the solver of the normal problem. It solves contacts with the same gap only once."""
     gaps = _gaps(table, rolling_radius)
     return Patches(gaps, contact_modulus(*bodies(table)), _elements(options), across)
 
