@@ -12,9 +12,9 @@ from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
 from trackroller.report import decisions, summary
 from trackroller.report.view import StudyView
-from trackroller.study.config import parse_study
 from trackroller.study.design.saltelli import as_set, pairs_sharing, serves
 from trackroller.study.design.sampling import sample
+from trackroller.study.file.config import parse_study
 from validation.known_indices import functions
 
 G = functions()["g-function"]

@@ -12,8 +12,8 @@ from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
 from trackroller.report import sentences as words
-from trackroller.study.config import parse_study
 from trackroller.study.design.sampling import sample
+from trackroller.study.file.config import parse_study
 from trackroller.study.outputs import outputs
 
 PI = np.pi

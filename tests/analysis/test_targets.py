@@ -8,8 +8,8 @@ from trackroller.analysis.probability import bounds, probabilities
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
 from trackroller.report import choices
-from trackroller.study.config import parse_study
 from trackroller.study.design.grown_lhs import grown_lhs
+from trackroller.study.file.config import parse_study
 
 POINTS = {
     "name": "t",

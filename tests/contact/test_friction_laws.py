@@ -19,7 +19,7 @@ from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.case import to_table
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import Loads, solve_equilibrium
-from trackroller.study.config import parse_study
+from trackroller.study.file.config import parse_study
 
 MAPPINGS = [
     {"kind": "constant"},

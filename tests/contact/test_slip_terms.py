@@ -14,9 +14,9 @@ from trackroller.contact.slip import contour_over_tangent, rolling_slip, turning
 from trackroller.errors import InputError
 from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.case import to_table
+from trackroller.roller.explain import explain
 from trackroller.roller.options import Options
-from trackroller.study.config import parse_study
-from trackroller.study.explain import explain
+from trackroller.study.file.config import parse_study
 from trackroller.study.identity import fingerprints
 
 VARIANTS = json.loads((DATA / "contact.json").read_text(encoding="utf-8"))["variants"]

@@ -17,7 +17,7 @@ import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
 from trackroller.roller.accuracy import table_errors
 from trackroller.roller.options import Options, model_in_use
-from trackroller.study.config import parse_study
+from trackroller.study.file.config import parse_study
 from trackroller.study.plan import case_options
 
 ROOT = Path(__file__).parents[2]
@@ -79,9 +79,9 @@ import numpy as np
 import trackroller as tr
 from trackroller.roller.options import Options
 from trackroller.roller.case import to_table
-from trackroller.study.config import parse_study
+from trackroller.study.file.config import parse_study
 from trackroller.study.identity import fingerprints
-from trackroller.study.schema import schema
+from trackroller.study.file.schema import schema
 from trackroller.cli.case import case_of
 sys.path.insert(0, "docs")
 import generate

@@ -7,12 +7,12 @@ from reference_cases import solve_sliding
 import trackroller as tr
 from trackroller.roller import requirements
 from trackroller.roller.case import to_table
+from trackroller.roller.explain import explain
 from trackroller.roller.options import Options
 from trackroller.roller.stages import ellipse_stresses
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.scene import Results
-from trackroller.study.explain import explain
 
 EVERYTHING = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 

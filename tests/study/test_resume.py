@@ -17,7 +17,7 @@ from reference_cases import solve_sliding
 
 from trackroller.errors import InputError
 from trackroller.study import store
-from trackroller.study.config import parse_study
+from trackroller.study.file.config import parse_study
 from trackroller.study.files import WorkError, write_whole
 from trackroller.study.identity import chunk_name
 from trackroller.study.plan import identify, working_plan

@@ -6,11 +6,11 @@ from SALib.sample import sobol as salib
 
 from trackroller.errors import InputError
 from trackroller.numerics.expressions import comparisons, condition, evaluate, names
-from trackroller.study.config import parse_study
 from trackroller.study.design import arrays as designs
 from trackroller.study.design import saltelli
 from trackroller.study.design.factors import Factor, parse
 from trackroller.study.design.sampling import METHODS, sample
+from trackroller.study.file.config import parse_study
 
 MIXED = {
     "friction_coefficient": {"truncnormal": [0.2, 0.1, 0.05, 0.4]},

@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 import yaml
 
-from trackroller.study.config import load_study, parse_study
+from trackroller.study.file.config import load_study, parse_study
 from trackroller.study.files import WorkError
 from trackroller.study.plan import working_plan
 from trackroller.study.run import run_study

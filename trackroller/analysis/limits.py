@@ -11,7 +11,7 @@ from trackroller.errors import InputError, nearest
 from trackroller.numerics.expressions import condition
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.study.design.factors import readable
-from trackroller.study.goals import names_in
+from trackroller.study.file.goals import names_in
 from trackroller.study.outputs import flat, outputs, read_study, regimes
 
 Column = tuple[np.ndarray, str, str]  # values (n,), units, long name

@@ -14,7 +14,7 @@ from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign, current_name
-from trackroller.study.goals import names_in, statistic
+from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.outputs import case_dims, read_study, regimes
 
 

@@ -26,7 +26,7 @@ from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import readable
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
-from trackroller.study.goals import statistic
+from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import Output, case_dims, default_names, flat, outputs, read_study, regimes, settings
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)

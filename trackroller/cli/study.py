@@ -14,12 +14,12 @@ from trackroller.cli.case import case_of, is_study
 from trackroller.errors import InputError
 from trackroller.report.terminal import print_table
 from trackroller.roller.case import to_table
+from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options
-from trackroller.study.config import Study, load_study
 from trackroller.study.cost import bytes_a_case, duration
 from trackroller.study.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.explain import explain as stages_of
+from trackroller.study.file.config import Study, load_study
 from trackroller.study.files import StudyFolder
 from trackroller.study.plan import case_options, chunk_size, study_folder
 from trackroller.study.repeat import repeat_case

@@ -14,9 +14,9 @@ from typing import Any, TextIO
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials.file import find_user_file
-from trackroller.study.config import Study, load_study
 from trackroller.study.cost import duration
 from trackroller.study.design.build import table_path
+from trackroller.study.file.config import Study, load_study
 from trackroller.study.files import StudyFolder, WorkError
 from trackroller.study.plan import Plan, read_plan, study_folder, working_plan
 

@@ -18,7 +18,7 @@ from trackroller.report.numbers import capital, count, level_text, listing, perc
 from trackroller.report.sentences import HALF, INDEX_WORDS, index_text, of_output
 from trackroller.report.tables import Table, factor_cell
 from trackroller.report.view import StudyView
-from trackroller.study.goals import statistic
+from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import read_study, settings
 
 MAX_DESIGNS = 12  # rows of the table of the Pareto set

@@ -24,14 +24,14 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database, load_database
 from trackroller.materials.file import find_user_file
-from trackroller.study.config import load_study
 from trackroller.study.design.build import table_path
+from trackroller.study.file.config import load_study
 from trackroller.study.files import sha256, write_text, write_whole
 from trackroller.study.provenance import versions
 from trackroller.study.repeat import compare
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 METADATA = "ro-crate-metadata.json"
 INPUTS = "inputs"

@@ -22,7 +22,7 @@ from trackroller.study.inventory import Inventory
 from trackroller.study.plan import Plan, locate
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]

@@ -15,7 +15,7 @@ from trackroller.study import store
 from trackroller.study.files import StudyFolder
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 
 @dataclass

@@ -25,11 +25,11 @@ from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import to_table
 from trackroller.study import store
-from trackroller.study.config import check_name
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import build, case_columns, table_path
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.growth import with_history
+from trackroller.study.file.config import check_name
 from trackroller.study.files import (
     StudyFolder,
     Tell,
@@ -46,7 +46,7 @@ from trackroller.study.inventory import Inventory, check_default_model, forget_f
 from trackroller.study.sources import solver_digest
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: the start of a job (1-2 s) must remain a small part
 MOST_CHUNKS = 400

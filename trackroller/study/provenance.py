@@ -15,7 +15,7 @@ from trackroller.roller.dataset import file_attributes
 from trackroller.study.sources import solver_digest
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 _PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "SALib", "snakemake")
 

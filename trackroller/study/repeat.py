@@ -19,7 +19,7 @@ from trackroller.study.files import WorkError
 from trackroller.study.plan import case_options, locate, study_folder
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 
 @dataclass

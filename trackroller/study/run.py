@@ -15,7 +15,7 @@ from trackroller.study.plan import Plan, working_plan
 from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 
 def run_study(

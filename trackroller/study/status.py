@@ -12,16 +12,16 @@ import numpy as np
 from trackroller.errors import InputError, nearest
 from trackroller.materials.yaml_file import read_mapping
 from trackroller.parameters import REGIMES
-from trackroller.study.config import load_study, parse_study
 from trackroller.study.cost import study_rate
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
+from trackroller.study.file.config import load_study, parse_study
 from trackroller.study.inventory import check_default_model
 from trackroller.study.plan import locate, study_folder
 from trackroller.study.store import FAILED
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 
 @dataclass

@@ -24,8 +24,8 @@ import numpy as np
 import yaml
 
 from trackroller.study import store
-from trackroller.study.config import load_study
 from trackroller.study.design.build import MAX_CASES
+from trackroller.study.file.config import load_study
 from trackroller.study.plan import working_plan
 from trackroller.study.solve import load_cases, solve_cases
 from validation.benchmarks.command import run

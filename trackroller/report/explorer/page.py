@@ -25,8 +25,8 @@ from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count
 from trackroller.report.view import StudyView, load_analysis
+from trackroller.study.file.goals import statistic
 from trackroller.study.files import StudyFolder, write_text
-from trackroller.study.goals import statistic
 from trackroller.study.outputs import flat, read_study
 
 MODEL = "contact_model"  # a Pareto set compares designs solved with one model

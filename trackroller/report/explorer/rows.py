@@ -17,7 +17,7 @@ from trackroller.report.inputs import stored_materials
 from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, plain, unit_text
 from trackroller.report.view import BODIES, StudyView
 from trackroller.roller.record import setting_text
-from trackroller.study import goals
+from trackroller.study.file import goals
 from trackroller.study.outputs import Output, default_names, flat, outputs, read_study
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent

@@ -21,10 +21,10 @@ from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign, sample
-from trackroller.study.goals import check_scatter
+from trackroller.study.file.goals import check_scatter
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
 
 MAX_CASES = 10_000_000  # planned in about a minute; validation/benchmarks/million.py measures it
 _GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")

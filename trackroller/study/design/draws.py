@@ -19,11 +19,11 @@ from trackroller.errors import InputError, check_names
 from trackroller.materials.yaml_file import read_text
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
-from trackroller.study.csv_file import csv_lines
 from trackroller.study.design import correlation, saltelli
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 from trackroller.study.design.saltelli import all_groups
+from trackroller.study.file.csv import csv_lines
 
 MAX_ROWS = 50_000_000  # a larger number is a typing error
 Drawn = tuple[dict[str, np.ndarray], np.ndarray, dict[str, Any]]

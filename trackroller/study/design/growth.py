@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from trackroller.study.design.grown_lhs import check_sizes
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
+    from trackroller.study.file.config import Study
     from trackroller.study.files import StudyFolder
 
 SAME = ("factors", "rank_correlations", "design", "seed", "inner")  # keys that a grown sample must share

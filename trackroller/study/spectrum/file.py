@@ -34,7 +34,7 @@ from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
 from trackroller.roller.point_files import files_beside, find_beside
-from trackroller.study.csv_file import csv_lines
+from trackroller.study.file.csv import csv_lines
 
 LOAD_FIELDS = (
     "radial_force",

@@ -17,13 +17,13 @@ from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
 from trackroller.parameters import OPTIONS
 from trackroller.roller.point_files import files_beside, find_beside
 from trackroller.roller.stop import parse_condition
-from trackroller.study.checks import cross_check
 from trackroller.study.design import build
 from trackroller.study.design.correlation import check_entries
 from trackroller.study.design.entries import OPTION_FACTORS, base_value, choice, factor
 from trackroller.study.design.factors import Factor, parse
 from trackroller.study.design.sampling import METHODS, current_name
-from trackroller.study.goals import Analysis, comparisons, directions
+from trackroller.study.file.checks import cross_check
+from trackroller.study.file.goals import Analysis, comparisons, directions
 
 if TYPE_CHECKING:
     import xarray as xr

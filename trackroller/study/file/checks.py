@@ -13,11 +13,11 @@ from trackroller.study.design import build
 from trackroller.study.design.draws import check_listed
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.saltelli import serves
-from trackroller.study.goals import check
+from trackroller.study.file.goals import check
 
 if TYPE_CHECKING:
-    from trackroller.study.config import Study
     from trackroller.study.design.factors import Factor
+    from trackroller.study.file.config import Study
 
 
 GROUPED = ("grid", "saltelli")  # designs that give indices of groups of factors

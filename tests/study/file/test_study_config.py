@@ -14,10 +14,10 @@ from reference_cases import solve_sliding
 import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.materials.yaml_file import parse_mapping
-from trackroller.study import schema
-from trackroller.study.config import parse_study
+from trackroller.study.file import schema
+from trackroller.study.file.config import parse_study
 
-STUDIES = sorted((Path(__file__).parents[2] / "config" / "studies").glob("*.yaml"))
+STUDIES = sorted((Path(__file__).parents[3] / "config" / "studies").glob("*.yaml"))
 PAIR = ["1.7225-normalised", "PA6"]
 
 
@@ -205,7 +205,7 @@ def test_any_mapping_is_a_study_or_a_clean_error(data, factors):
 
 
 def test_schema_in_the_repository_is_that_of_the_code():
-    assert schema.FILE.read_text(encoding="utf-8") == schema.text(), "run: python -m trackroller.study.schema"
+    assert schema.FILE.read_text(encoding="utf-8") == schema.text(), "run: python -m trackroller.study.file.schema"
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda p: p.stem)

@@ -1,4 +1,4 @@
-"""JSON schema of a study file, for editors and documentation; `python -m trackroller.study.schema` writes it."""
+"""JSON schema of a study file, for editors and documentation; `python -m trackroller.study.file.schema` writes it."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
-from trackroller.study.config import IN_STUDY, NAME, StudyFile
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import DISTRIBUTIONS
 from trackroller.study.design.sampling import METHODS, OLD_NAMES
+from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 
-FILE = Path(__file__).resolve().parents[2] / "workflow" / "schemas" / "study.schema.json"
+FILE = Path(__file__).resolve().parents[3] / "workflow" / "schemas" / "study.schema.json"
 
 
 def _factor() -> dict[str, Any]:

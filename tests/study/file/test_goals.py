@@ -24,7 +24,7 @@ from trackroller.report.inputs import as_material
 from trackroller.report.numbers import share
 from trackroller.report.page import contents
 from trackroller.report.view import StudyView
-from trackroller.study.config import parse_study
+from trackroller.study.file.config import parse_study
 from trackroller.study.sources import source_files
 
 LHS = {
@@ -397,7 +397,7 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
 
 def test_every_source_of_an_analysis_is_an_input_of_its_rule():
     """Each rule names a module that exists; its sources include all code that draws designs or estimates indices."""
-    root = Path(__file__).parents[2]
+    root = Path(__file__).parents[3]
     text = (root / "workflow" / "rules" / "show.smk").read_text(encoding="utf-8")
     rules = dict(re.findall(r"rule (\w+):.*?code=digest_file\((.*?)\),\n    output", text, re.DOTALL))
     assert {"sensitivity", "figures", "report"} <= set(rules)
