@@ -45,6 +45,10 @@ class ShapeError(InputError):
     """
 
 
+class WorkError(RuntimeError):
+    """Report that the work failed for a reason outside the input, and what to do about it."""
+
+
 def nearest(name: str, options: Iterable[str]) -> str | None:
     """Return the option that is most similar to a name, or None if no option is similar."""
     options = list(options)

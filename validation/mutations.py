@@ -17,7 +17,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from trackroller.study.sources import source_files
+from trackroller.study.store.sources import source_files
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("trackroller", "tests", "validation", "workflow", "config", "docs", "pyproject.toml", "README.md", "Makefile")

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from trackroller.cli.main import app, run_app
 from trackroller.errors import InputError
-from trackroller.materials.yaml_file import parse_mapping
+from trackroller.files import parse_mapping
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
 

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.materials import load_database
-from trackroller.study.crate import damaged_files
+from trackroller.study.store.crate import damaged_files
 
 STUDY = """
 name: reported

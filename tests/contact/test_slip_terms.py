@@ -17,7 +17,7 @@ from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain
 from trackroller.roller.options import Options
 from trackroller.study.file.config import parse_study
-from trackroller.study.identity import fingerprints
+from trackroller.study.store.identity import fingerprints
 
 VARIANTS = json.loads((DATA / "contact.json").read_text(encoding="utf-8"))["variants"]
 PAPER, FREE = {}, {"motor_force": 0.0}

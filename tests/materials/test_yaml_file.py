@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trackroller.errors import InputError
-from trackroller.materials.yaml_file import parse_mapping, parse_yaml, read_text, write_yaml
+from trackroller.files import parse_mapping, parse_yaml, read_text, write_yaml
 
 
 @pytest.mark.parametrize(

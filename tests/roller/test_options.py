@@ -18,7 +18,7 @@ from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
 from trackroller.roller.accuracy import table_errors
 from trackroller.roller.options import Options, model_in_use
 from trackroller.study.file.config import parse_study
-from trackroller.study.plan import case_options
+from trackroller.study.store.plan import case_options
 
 ROOT = Path(__file__).parents[2]
 
@@ -80,7 +80,7 @@ import trackroller as tr
 from trackroller.roller.options import Options
 from trackroller.roller.case import to_table
 from trackroller.study.file.config import parse_study
-from trackroller.study.identity import fingerprints
+from trackroller.study.store.identity import fingerprints
 from trackroller.study.file.schema import schema
 from trackroller.cli.case import case_of
 sys.path.insert(0, "docs")

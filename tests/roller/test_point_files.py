@@ -6,7 +6,8 @@ import pytest
 from command_line import trackroller
 
 import trackroller as tr
-from trackroller.roller.point_files import files_beside, read_points
+from trackroller.files import files_beside
+from trackroller.roller.point_files import read_points
 
 ROWS = [[0.25 * k, (36.0 - (0.25 * k) ** 2) ** 0.5] for k in range(-18, 19)]
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.study.crate import METADATA, compare_results, damaged_files, read_crate
+from trackroller.study.store.crate import METADATA, compare_results, damaged_files, read_crate
 
 MATERIALS = """
 materials:

@@ -15,14 +15,14 @@ import pytest
 import xarray as xr
 from reference_cases import solve_sliding
 
-from trackroller.errors import InputError
-from trackroller.study import store
+from trackroller.errors import InputError, WorkError
+from trackroller.files import write_whole
 from trackroller.study.file.config import parse_study
-from trackroller.study.files import WorkError, write_whole
-from trackroller.study.identity import chunk_name
-from trackroller.study.plan import identify, working_plan
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
+from trackroller.study.store import chunks
+from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.plan import identify, working_plan
 
 HERE = Path(__file__).parents[1]
 LOADS = [float(v) for v in range(20, 50)]
@@ -195,8 +195,8 @@ def test_damaged_part_of_an_unfinished_chunk_is_found_named_and_solved_again(tmp
 
     with pytest.raises(Stopped):
         run_study(parse_study(data), tmp_path, solver=solver)
-    parts = sorted((tmp_path / "s" / "parts").glob("*.nc"), key=lambda path: len(store.check(path)))
-    assert [len(store.check(path)) for path in parts] == [64, 256]
+    parts = sorted((tmp_path / "s" / "parts").glob("*.nc"), key=lambda path: len(chunks.check(path)))
+    assert [len(chunks.check(path)) for path in parts] == [64, 256]
     damage(parts[0])
     _, ds, lines = run(data, tmp_path)
     assert sum(n - 1 for n in solved().values()) == 64, "the cases of the damaged part"
@@ -341,9 +341,9 @@ def test_really_full_disk_and_then_resume(tmp_path, solved):
 
 def test_block_survives_the_file_and_damage_never_does(tmp_path):
     cases = np.array([b"a" * 32, b"b" * 32])
-    block, sound = store.failure(cases, "reason"), tmp_path / f"{chunk_name(cases)}.nc"
-    store.write(sound, block)
-    xr.testing.assert_equal(store.read(sound), block)
+    block, sound = chunks.failure(cases, "reason"), tmp_path / f"{chunk_name(cases)}.nc"
+    chunks.write(sound, block)
+    xr.testing.assert_equal(chunks.read(sound), block)
     whole = sound.read_bytes()
     damaged = tmp_path / "damaged" / sound.name
     damaged.parent.mkdir()
@@ -352,8 +352,8 @@ def test_block_survives_the_file_and_damage_never_does(tmp_path):
         data = bytearray(whole)
         data[place] ^= 1 << int(rng.integers(8))
         damaged.write_bytes(data)
-        with pytest.raises(store.CorruptFile):
-            store.read(damaged)
+        with pytest.raises(chunks.CorruptFile):
+            chunks.read(damaged)
 
 
 def test_numbers_of_a_case_do_not_depend_on_its_neighbours():
@@ -387,7 +387,8 @@ def test_grids_of_different_sizes_are_joined_and_gathered_with_missing_ends(tmp_
         solver(xr.Dataset({n: ("case", [float(i)]) for n in DATA["factors"]}), spin_model=model)
         for i, model in enumerate(("edge", "skewed"))
     ]
-    joined = store.join(store.from_results(block, np.array([b"a", b"b"][i : i + 1])) for i, block in enumerate(blocks))
+    cases = np.array([b"a", b"b"])
+    joined = chunks.join(chunks.from_results(block, cases[i : i + 1]) for i, block in enumerate(blocks))
     assert joined.sizes == {"case": 2, "contact": 2, "x": 5} and int(joined["pressure"].isnull().sum()) == 2
 
 

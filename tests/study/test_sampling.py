@@ -5,7 +5,7 @@ import pytest
 from SALib.sample import sobol as salib
 
 from trackroller.errors import InputError
-from trackroller.numerics.expressions import comparisons, condition, evaluate, names
+from trackroller.parameters.expressions import comparisons, condition, evaluate, names
 from trackroller.study.design import arrays as designs
 from trackroller.study.design import saltelli
 from trackroller.study.design.factors import Factor, parse

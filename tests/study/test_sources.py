@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from trackroller.study import sources
+from trackroller.study.store import sources
 
 HERE = Path(__file__).parents[1]
 ROOT = sources.PACKAGE.parent

@@ -14,11 +14,11 @@ import pytest
 import xarray as xr
 import yaml
 
+from trackroller.errors import WorkError
 from trackroller.study.file.config import load_study, parse_study
-from trackroller.study.files import WorkError
-from trackroller.study.plan import working_plan
 from trackroller.study.run import run_study
 from trackroller.study.solve import solve_chunk
+from trackroller.study.store.plan import working_plan
 
 LOADS = [float(v) for v in range(20, 40)]
 DATA = {

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from trackroller.study.sources import source_files
+from trackroller.study.store.sources import source_files
 
 ROOT = Path(__file__).parents[2]
 SOLVER = {

@@ -18,7 +18,7 @@ from workflow_place import ROOT, command, copy_program, environment, lay_study, 
 
 from trackroller.cli.workflow import workflow_config, workflow_plan
 from trackroller.errors import InputError
-from trackroller.study.crate import damaged_files, read_crate
+from trackroller.study.store.crate import damaged_files, read_crate
 
 
 @pytest.fixture
@@ -85,7 +85,7 @@ def test_killed_study_goes_on_to_its_report_and_after_a_change_runs_only_what_de
     assert damaged_files(out) == {}
     assert list((out / "figures").glob("*.svg")) and list((out / "figures").glob("*.png"))
     time.sleep(1.1)
-    for name in ("roller/geometry.py", "analysis/sensitivity.py", "report/page.py", "study/crate.py"):
+    for name in ("roller/geometry.py", "analysis/sensitivity.py", "report/page.py", "study/store/crate.py"):
         replace_in(program / "trackroller" / name, '"""', '"""Other words. ')
     told = run("--quiet", "progress", "host")
     assert "Nothing to be done. Report: results/tiny/report.html" in told and "Building" not in told

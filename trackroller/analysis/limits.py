@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, nearest
-from trackroller.numerics.expressions import condition
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters.expressions import condition
 from trackroller.study.design.factors import readable
 from trackroller.study.file.goals import names_in
 from trackroller.study.outputs import flat, outputs, read_study, regimes

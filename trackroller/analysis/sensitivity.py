@@ -26,9 +26,9 @@ from trackroller.analysis.robustness import material_deviations, robustness
 from trackroller.analysis.sobol import sobol
 from trackroller.analysis.targets import targets
 from trackroller.errors import InputError
+from trackroller.files import write_whole
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.design.sampling import SampledDesign
-from trackroller.study.files import write_whole
 from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes, settings
 
 NEEDS = {

@@ -7,12 +7,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import InputError, unknown_name
-from trackroller.materials.yaml_file import parse_yaml, read_mapping
+from trackroller.errors import InputError, WorkError, unknown_name
+from trackroller.files import files_beside, parse_yaml, read_mapping, write_whole
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
-from trackroller.roller.point_files import files_beside
-from trackroller.study.files import WorkError, write_whole
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -147,8 +145,8 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
         drawn = plot_case(dataset, folder)
     else:
         from trackroller.report.figures.study import draw_all
-        from trackroller.study.plan import study_folder
         from trackroller.study.status import find_study
+        from trackroller.study.store.plan import study_folder
 
         place = study_folder(find_study(target, results).name, results)
         if not place.gathered.is_file():

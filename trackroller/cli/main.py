@@ -17,9 +17,9 @@ from typing import Annotated
 import typer
 
 from trackroller import __version__
-from trackroller.errors import InputError
+from trackroller.errors import InputError, WorkError
+from trackroller.files import disk_error
 from trackroller.parameters import options_text
-from trackroller.study.files import WorkError, disk_error
 
 app = typer.Typer(
     add_completion=False,

@@ -17,14 +17,14 @@ from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options
 from trackroller.study.cost import bytes_a_case, duration
-from trackroller.study.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.config import Study, load_study
-from trackroller.study.files import StudyFolder
-from trackroller.study.plan import case_options, chunk_size, study_folder
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import find_study, status_of
+from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.plan import case_options, chunk_size, study_folder
 
 MOST = 20_000  # --explain examines at most this many cases of a study
 

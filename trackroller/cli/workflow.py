@@ -12,13 +12,13 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, WorkError, unknown_name
 from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.design.build import table_path
 from trackroller.study.file.config import Study, load_study
-from trackroller.study.files import StudyFolder, WorkError
-from trackroller.study.plan import Plan, read_plan, study_folder, working_plan
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.plan import Plan, read_plan, study_folder, working_plan
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, check_names
+from trackroller.files import parse_yaml, read_text
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
-from trackroller.materials.yaml_file import parse_yaml, read_text
 
 BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"

@@ -50,7 +50,7 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     if "study" not in ds.attrs:
         return write_sheet(ds, path)
     from trackroller.report.build import build_report  # heavy: pandas and seaborn, for studies only
-    from trackroller.study.files import StudyFolder
+    from trackroller.study.store.folder import StudyFolder
 
     with tempfile.TemporaryDirectory() as place:
         folder = StudyFolder(Path(place))

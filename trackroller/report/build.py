@@ -11,8 +11,9 @@ import xarray as xr
 
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
+from trackroller.files import write_whole
 from trackroller.report.page import write_report
-from trackroller.study.files import StudyFolder, write_whole
+from trackroller.study.store.folder import StudyFolder
 
 log = logging.getLogger("trackroller")
 

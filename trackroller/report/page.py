@@ -14,6 +14,7 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.analysis.pareto import study_pareto
+from trackroller.files import write_text
 from trackroller.report import choices
 from trackroller.report import sentences as words
 from trackroller.report.aims import target_tables
@@ -29,7 +30,6 @@ from trackroller.report.tables import Table, best_table, cell, reason_table, reg
 from trackroller.report.view import StudyView, load_analysis
 from trackroller.report.workbook import export
 from trackroller.study.design.sampling import ARRAYS
-from trackroller.study.files import write_text
 
 log = logging.getLogger(__name__)
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.files import write_whole
 from trackroller.report import html
 from trackroller.report.tables import Table, cell
-from trackroller.study.files import write_whole
 
 
 def export(tables: Sequence[Table], folder: Path) -> list[Path]:

@@ -3,27 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
-from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError
+from trackroller.files import find_beside
 
 HEADINGS = 5  # largest number of heading lines before the first point
 _COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")  # a number with a decimal comma
-_beside: ContextVar[Path | None] = ContextVar("beside", default=None)
-
-
-@contextmanager
-def files_beside(path: Path | str | None) -> Iterator[None]:
-    """Look for files in the folder of the case or study file `path` first, while that file is read."""
-    token = _beside.set(None if path is None else Path(path).parent)
-    try:
-        yield
-    finally:
-        _beside.reset(token)
 
 
 def read_points(name: Any, field: str) -> list[list[float]]:
@@ -77,34 +63,6 @@ def read_points(name: Any, field: str) -> list[list[float]]:
                     "Decimal points; decimal commas only between semicolons, tabs or blanks; remarks after '#'.",
                 ) from None
     return rows
-
-
-def find_beside(name: Any, field: str) -> Path:
-    """Return the path of a file that a case, study or spectrum file names: the one rule for every such path.
-
-    Parameters
-    ----------
-    name : str
-        Path from the folder of the file that names it, or from the working directory.
-    field : str
-        The key that names it, for messages.
-
-    Raises
-    ------
-    InputError
-        If the path is absolute, holds '..', leads out of both folders, or names no file.
-    """
-    folders = [folder for folder in (_beside.get(), Path.cwd()) if folder is not None]
-    where = " or ".join(dict.fromkeys(f"below {folder.resolve()}" for folder in folders))
-    remedy = f"Put the file {where} and give its path from there."
-    path = Path(str(name))
-    if not isinstance(name, (str, Path)) or path.is_absolute() or ".." in path.parts or not str(name).strip():
-        raise InputError(field, str(name), "a relative path without '..'", remedy)
-    for folder in folders:
-        here = folder / path
-        if here.is_file() and here.resolve().is_relative_to(folder.resolve()):
-            return here
-    raise InputError(field, str(name), f"a file {where}", "Check its name, or put it there.")
 
 
 def _cells(line: str) -> list[str]:

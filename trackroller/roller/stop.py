@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
-from trackroller.numerics.expressions import Comparison, comparisons, condition, names
 from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.parameters.expressions import Comparison, comparisons, condition, names
 from trackroller.roller.dataset import VARIABLES
 
 STRENGTHS = {"R_m": "tensile_strength", "tensile_strength": "tensile_strength", "fatigue_limit": "fatigue_limit"}

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.errors import InputError
-from trackroller.study import store
+from trackroller.errors import InputError, WorkError
 from trackroller.study.cost import rate
-from trackroller.study.files import WorkError
 from trackroller.study.solve import Executor, solve_cases
+from trackroller.study.store import chunks
 
 BATCH_SECONDS = 2.0
 
@@ -84,7 +83,7 @@ def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset
                 for half in np.array_split(index, 2):
                     queue.add(submit(half))
             else:
-                yield store.failure(cases["case"].values[index], "killed its worker process")
+                yield chunks.failure(cases["case"].values[index], "killed its worker process")
         except (InputError, WorkError):
             raise
         except Exception as exc:

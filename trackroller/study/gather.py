@@ -12,14 +12,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.errors import WorkError
+from trackroller.files import write_whole
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.roller.dataset import file_attributes
-from trackroller.study import provenance, store
+from trackroller.study import provenance
 from trackroller.study.design.factors import Factor, readable
-from trackroller.study.files import StudyFolder, Tell, WorkError, record_checksum, write_whole
-from trackroller.study.inventory import Inventory
-from trackroller.study.plan import Plan, locate
+from trackroller.study.store import chunks
+from trackroller.study.store.folder import StudyFolder, Tell, record_checksum
+from trackroller.study.store.inventory import Inventory
+from trackroller.study.store.plan import Plan, locate
 
 if TYPE_CHECKING:
     from trackroller.study.file.config import Study
@@ -112,8 +115,8 @@ def _collect(
     numbers, start = np.unique(file[order], return_index=True)
     for number, rows in zip(numbers, np.split(order, start[1:]), strict=True):
         try:
-            block = store.read(found.paths[number])
-        except (store.CorruptFile, FileNotFoundError) as exc:
+            block = chunks.read(found.paths[number])
+        except (chunks.CorruptFile, FileNotFoundError) as exc:
             raise WorkError(f"corrupt results: {exc}. Start again: only its cases are solved.") from None
         attrs = block.attrs | attrs
         coords = {name: v.variable for name, v in block.coords.items() if name != "case"} | coords

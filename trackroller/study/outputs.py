@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.materials.yaml_file import parse_yaml
+from trackroller.files import parse_yaml
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
 
 BOOKKEEPING = {

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from trackroller import __version__
 from trackroller.roller.dataset import file_attributes
-from trackroller.study.sources import solver_digest
+from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.config import Study

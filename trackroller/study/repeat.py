@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, WorkError
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.record import solve_command
-from trackroller.study import store
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import with_history
-from trackroller.study.files import WorkError
-from trackroller.study.plan import case_options, locate, study_folder
+from trackroller.study.store import chunks
+from trackroller.study.store.plan import case_options, locate, study_folder
 
 if TYPE_CHECKING:
     from trackroller.study.file.config import Study
@@ -85,11 +84,11 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
         raise WorkError("this case is not solved yet: run the study first.")
     options, group = case_options(study, design)
     state = found.states.isel(case=place[[number]])
-    before = store.read(found.paths[state["file"].item()]).isel(case=state["row"].values)
+    before = chunks.read(found.paths[state["file"].item()]).isel(case=state["row"].values)
     row = design.drop_vars(list(design.coords)).isel(case=[number])
     solved = solve(row, database=study.materials, **options[group[number]])
-    again = store.from_results(solved, state["case"].values)
-    differences = compare(before, store.join([before.isel(case=[]), again]))  # a failed case lacks results of others
+    again = chunks.from_results(solved, state["case"].values)
+    differences = compare(before, chunks.join([before.isel(case=[]), again]))  # a failed case lacks results of others
     case = {name: row[name].values[0] for name in case_columns(row)}
     case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
     return Repeat(case, dict(options[group[number]]), differences)

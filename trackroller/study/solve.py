@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.errors import InputError, ShapeError
+from trackroller.errors import InputError, ShapeError, WorkError
 from trackroller.roller.case import to_table
-from trackroller.study import store
-from trackroller.study.files import StudyFolder, Tell, WorkError, locked
-from trackroller.study.identity import fingerprints
+from trackroller.study.store import chunks
+from trackroller.study.store.folder import StudyFolder, Tell, locked
+from trackroller.study.store.identity import fingerprints
 
 log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # a killed process loses at most the block that it works on
@@ -26,8 +26,8 @@ Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases
 
 
 def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
-    """Return the cases of a chunk with all fields along `case`; raise `store.CorruptFile` if the list is damaged."""
-    cases = store.read(folder.case_list(name))
+    """Return the cases of a chunk with all fields along `case`; raise `chunks.CorruptFile` if the list is damaged."""
+    cases = chunks.read(folder.case_list(name))
     return cases.map(lambda column: column if column.dims else column.broadcast_like(cases["case"]))
 
 
@@ -69,9 +69,9 @@ def solve_cases(cases: xr.Dataset, database: Any, solver: Solver | None = None) 
         part = pending.pop()
         names = part["case"].values
         try:
-            block = store.from_results(solver(part, database=database, **options), names)
+            block = chunks.from_results(solver(part, database=database, **options), names)
             if options.get("normal") == "halfspace" and len(names) > 1:
-                for i in np.flatnonzero(block["regime"] == store.FAILED):
+                for i in np.flatnonzero(block["regime"] == chunks.FAILED):
                     # among others, the solver does not say which shapes are wrong
                     block["reason"][i] = solve_cases(part.isel(case=[i]), database, solver)["reason"].values[0]
             blocks.append(block)
@@ -81,8 +81,8 @@ def solve_cases(cases: xr.Dataset, database: Any, solver: Solver | None = None) 
             if len(names) > 1:
                 pending += [part.isel(case=rows) for rows in np.array_split(np.arange(len(names)), 2)[::-1]]
             else:
-                blocks.append(store.failure(names, _reason(exc)))
-    return store.join(blocks).assign_attrs(seconds=time.perf_counter() - started)
+                blocks.append(chunks.failure(names, _reason(exc)))
+    return chunks.join(blocks).assign_attrs(seconds=time.perf_counter() - started)
 
 
 def _reason(exc: Exception) -> str:
@@ -147,21 +147,21 @@ def solve_chunk(
             cases = load_cases(folder, name)
             _check_identity(name, cases, database)
             corrupt: dict[Path, str] = {}
-            blocks = [block for _, block in store.read_sound(folder.parts(name), corrupt)]
-            store.remove_corrupt(corrupt, tell)
+            blocks = [block for _, block in chunks.read_sound(folder.parts(name), corrupt)]
+            chunks.remove_corrupt(corrupt, tell)
             finished = np.concatenate([np.empty(0, dtype="S32"), *(block["case"].values for block in blocks)])
             missing = cases.isel(case=~np.isin(cases["case"].values, finished))
             if progress is not None:
                 progress(len(finished))
             started = time.perf_counter()
             for block in executor(missing, database):
-                store.write_part(folder, name, block)
+                chunks.write_part(folder, name, block)
                 blocks.append(block)
                 if progress is not None:
                     progress(block.sizes["case"])
             spent = time.perf_counter() - started
-            chunk = store.join(blocks).sel(case=cases["case"].values)
-            store.write(folder.chunk(name), chunk, packed=True)
+            chunk = chunks.join(blocks).sel(case=cases["case"].values)
+            chunks.write(folder.chunk(name), chunk, packed=True)
             folder.mark(name).touch()
             for path in folder.parts(name):
                 path.unlink(missing_ok=True)
@@ -169,13 +169,13 @@ def solve_chunk(
     except FileNotFoundError:
         why = "is missing: the study was edited and planned anew by another process"
         raise WorkError(f"{folder.case_list(name)} {why}. Start again: every finished case is kept.") from None
-    except store.CorruptFile as exc:
+    except chunks.CorruptFile as exc:
         raise WorkError(f"corrupt case list: {exc}. Start again: its cases are planned anew.") from None
 
 
 def _summary(chunk: xr.Dataset, name: str, count: int, spent: float) -> str:
     speed = f", {count / spent:.0f} cases/s" if spent > 0 and count else ""
-    failed = int((chunk["regime"] == store.FAILED).sum())
+    failed = int((chunk["regime"] == chunks.FAILED).sum())
     return f"chunk {name}: {chunk.sizes['case']} cases, {count} solved now in {spent:.1f} s{speed}, {failed} failed"
 
 

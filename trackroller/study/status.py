@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.errors import InputError, nearest
-from trackroller.materials.yaml_file import read_mapping
+from trackroller.files import read_mapping
 from trackroller.parameters import REGIMES
 from trackroller.study.cost import study_rate
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import load_study, parse_study
-from trackroller.study.inventory import check_default_model
-from trackroller.study.plan import locate, study_folder
-from trackroller.study.store import FAILED
+from trackroller.study.store.chunks import FAILED
+from trackroller.study.store.inventory import check_default_model
+from trackroller.study.store.plan import locate, study_folder
 
 if TYPE_CHECKING:
     from trackroller.study.file.config import Study

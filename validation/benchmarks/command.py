@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.study.files import write_whole
+from trackroller.files import write_whole
 
 
 def plain(value: Any) -> Any:

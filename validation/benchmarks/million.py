@@ -23,11 +23,11 @@ from typing import Any
 import numpy as np
 import yaml
 
-from trackroller.study import store
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.file.config import load_study
-from trackroller.study.plan import working_plan
 from trackroller.study.solve import load_cases, solve_cases
+from trackroller.study.store import chunks
+from trackroller.study.store.plan import working_plan
 from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -72,7 +72,7 @@ def hand_out() -> None:
         if solved is None:
             solved = solve_cases(cases.isel(case=slice(2048)), made.study.materials)
         block = solved.isel(case=np.arange(cases.sizes["case"]) % solved.sizes["case"])
-        store.write(made.folder.chunk(name), block.assign_coords(case=cases["case"]), packed=True)
+        chunks.write(made.folder.chunk(name), block.assign_coords(case=cases["case"]), packed=True)
 
 
 def measured(words: list[str], place: Path) -> tuple[float, float, float]:

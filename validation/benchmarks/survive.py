@@ -24,8 +24,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.study import store
-from trackroller.study.files import StudyFolder
+from trackroller.study.store import chunks
+from trackroller.study.store.folder import StudyFolder
 from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -46,18 +46,18 @@ SPY = """
 import os
 if os.environ.get("SURVIVE_LOG"):
     import trackroller.study.solve as solve
-    import trackroller.study.store as store
+    import trackroller.study.store.chunks as chunks
     def told(mark, cases):
         with open(os.environ["SURVIVE_LOG"], "ab", buffering=0) as stream:
             stream.write(b"".join(mark + case + b"\\n" for case in cases.tolist()))
     def batch(cases, *more, inner=solve.solve_cases, **named):
         told(b"S", cases["case"].values)
         return inner(cases, *more, **named)
-    def part(folder, name, block, inner=store.write_part):
+    def part(folder, name, block, inner=chunks.write_part):
         path = inner(folder, name, block)
         told(b"W", block["case"].values)
         return path
-    solve.solve_cases, store.write_part = batch, part
+    solve.solve_cases, chunks.write_part = batch, part
 """
 FLOW, RUN, DASK = "snakemake", "run", "run --scheduler local"
 ALL, HEAD, WORKER = "everything", "the main process", "one worker"
@@ -118,7 +118,7 @@ def finished(place: Path) -> set[bytes]:
     found: set[bytes] = set()
     for path in StudyFolder(results(place)).solved_files():
         try:
-            found |= set(store.check(path).tolist())
+            found |= set(chunks.check(path).tolist())
         except FileNotFoundError:  # a process that is still alive has moved it
             continue
     return found

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.files import write_whole
 from trackroller.report.build import analyse_study, draw_study, report_study
 from trackroller.report.comparison import GOOD, errors, pairs
 from trackroller.report.comparison.words import sentences
@@ -22,7 +23,6 @@ from trackroller.report.figures import style
 from trackroller.roller.case import Case
 from trackroller.roller.solver import solve
 from trackroller.study.file.config import load_study
-from trackroller.study.files import write_whole
 from trackroller.study.run import run_study
 from validation.contact_models import patches as ladder_patches
 

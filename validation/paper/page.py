@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from trackroller.files import write_whole
 from trackroller.parameters import PARAMETERS
-from trackroller.study.files import write_whole
 from validation.pages import Block, page_html
 from validation.paper.compute import reference, results
 from validation.paper.figures import draw_all

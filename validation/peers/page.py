@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from trackroller.study.files import write_whole
+from trackroller.files import write_whole
 from validation.pages import Block, page_html
 from validation.peers.compare import compare
 

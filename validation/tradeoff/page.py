@@ -12,6 +12,7 @@ import xarray as xr
 
 from trackroller.contact.kalker import correction
 from trackroller.errors import InputError
+from trackroller.files import write_whole
 from trackroller.roller.accuracy import (
     ELEMENTS,
     GRID_ELEMENTS,
@@ -22,7 +23,6 @@ from trackroller.roller.accuracy import (
     rounded_up,
 )
 from trackroller.roller.stages import ellipse_stresses
-from trackroller.study.files import write_whole
 from validation.pages import Block, page_html
 from validation.tradeoff.errors import QUANTITIES
 from validation.tradeoff.figures import draw_all

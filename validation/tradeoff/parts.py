@@ -13,9 +13,9 @@ import xarray as xr
 import yaml
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.files import write_whole
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
-from trackroller.study.files import write_whole
 from trackroller.study.provenance import git_commit, versions
 from validation.tradeoff import settings
 from validation.tradeoff.measure import measure

@@ -69,7 +69,7 @@ rule crate:
         sensitivity=rules.sensitivity.output,
         figures=rules.figures.output,
         report=rules.report.output,
-        code=digest_file(f"{RESULTS}/code", "trackroller.study.crate"),
+        code=digest_file(f"{RESULTS}/code", "trackroller.study.store.crate"),
     output:
         f"{RESULTS}/ro-crate-metadata.json",
     log:

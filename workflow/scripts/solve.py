@@ -4,8 +4,8 @@ import logging
 from pathlib import Path
 
 from trackroller.cli.workflow import log_to, show_progress
-from trackroller.study.files import StudyFolder
 from trackroller.study.solve import solve_chunk
+from trackroller.study.store.folder import StudyFolder
 
 log_to(snakemake.log[0])
 folder = StudyFolder(Path(snakemake.output[0]).parent.parent)

@@ -17,7 +17,7 @@ from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
 from trackroller.materials import load_database
-from trackroller.numerics import expressions
+from trackroller.parameters import expressions
 from trackroller.report import sentences as words
 from trackroller.report.figures.sn_diagram import curve, sn_diagram
 from trackroller.report.inputs import as_material
@@ -25,7 +25,7 @@ from trackroller.report.numbers import share
 from trackroller.report.page import contents
 from trackroller.report.view import StudyView
 from trackroller.study.file.config import parse_study
-from trackroller.study.sources import source_files
+from trackroller.study.store.sources import source_files
 
 LHS = {
     "name": "a",
@@ -406,4 +406,4 @@ def test_every_source_of_an_analysis_is_an_input_of_its_rule():
     estimators = ("sobol", "indices", "givendata", "delta", "pairs", "convergence", "robustness", "labels", "restore")
     assert {f"analysis/{name}.py" for name in estimators} <= names
     assert {f"study/design/{name}.py" for name in ("arrays", "draws", "factors", "sampling", "grown_lhs")} <= names
-    assert {"numerics/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names
+    assert {"parameters/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names

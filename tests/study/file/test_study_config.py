@@ -13,7 +13,7 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.errors import InputError
-from trackroller.materials.yaml_file import parse_mapping
+from trackroller.files import parse_mapping
 from trackroller.study.file import schema
 from trackroller.study.file.config import parse_study
 

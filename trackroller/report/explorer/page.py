@@ -17,6 +17,7 @@ import xarray as xr
 
 from trackroller.analysis.pareto import default_objectives, study_pareto
 from trackroller.errors import InputError
+from trackroller.files import write_text
 from trackroller.report.choices import heading
 from trackroller.report.columns import study_dims
 from trackroller.report.explorer.pack import pack, plain_level
@@ -26,8 +27,8 @@ from trackroller.report.html import render
 from trackroller.report.numbers import count
 from trackroller.report.view import StudyView, load_analysis
 from trackroller.study.file.goals import statistic
-from trackroller.study.files import StudyFolder, write_text
 from trackroller.study.outputs import flat, read_study
+from trackroller.study.store.folder import StudyFolder
 
 MODEL = "contact_model"  # a Pareto set compares designs solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in

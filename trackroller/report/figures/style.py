@@ -24,8 +24,9 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
+from trackroller.errors import WorkError
+from trackroller.files import write_text, write_whole
 from trackroller.report.numbers import number
-from trackroller.study.files import WorkError, write_text, write_whole
 
 log = logging.getLogger(__name__)
 

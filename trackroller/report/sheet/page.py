@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from trackroller.files import write_text
 from trackroller.report import html
 from trackroller.report.inputs import input_row, is_told
 from trackroller.report.numbers import capital, life, number, rounded
@@ -17,7 +18,6 @@ from trackroller.report.sheet.drawing import drawing
 from trackroller.report.sheet.facts import body_materials, collect, versions_text
 from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
 from trackroller.report.view import BODIES
-from trackroller.study.files import write_text
 
 if TYPE_CHECKING:
     import xarray as xr

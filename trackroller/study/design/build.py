@@ -13,8 +13,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, nearest, unknown_name
-from trackroller.numerics import expressions
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, expressions
 from trackroller.roller.fields import own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.study.design.correlation import check_design, copula

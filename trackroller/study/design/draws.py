@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
-from trackroller.materials.yaml_file import read_text
+from trackroller.files import read_text
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design import correlation, saltelli

@@ -8,9 +8,8 @@ from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, check_names, nearest, unknown_name
-from trackroller.numerics import expressions
 from trackroller.numerics.numbers import number_or_nan, read_number
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
 from trackroller.study.design.factors import LISTS, parse

@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
-from trackroller.numerics import expressions
+from trackroller.parameters import expressions
 
 DISTRIBUTIONS = {"uniform": 2, "loguniform": 2, "normal": 2, "truncnormal": 4, "triangular": 3}
 LISTS = ("values", "linspace", "logspace")

@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names, unknown_name
-from trackroller.numerics import expressions
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import PARAMETERS, expressions
 from trackroller.study.design.draws import DRAW, MAX_ROWS, table
 from trackroller.study.design.factors import Factor, parse
 

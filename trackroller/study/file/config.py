@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, create_model, field_validator
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.files import files_beside, find_beside, parse_mapping, read_text, write_yaml
 from trackroller.materials import MaterialDatabase, load_database
-from trackroller.materials.yaml_file import parse_mapping, read_text, write_yaml
 from trackroller.parameters import OPTIONS
-from trackroller.roller.point_files import files_beside, find_beside
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design import build
 from trackroller.study.design.correlation import check_entries

@@ -23,8 +23,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, field_validator
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.numerics import expressions
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
 from trackroller.study.design.entries import choice
 from trackroller.study.design.factors import Factor

@@ -1,25 +1,20 @@
-"""Write files whole or not at all, lock files, and name the files of a study."""
+"""Name the files of a study, lock them, and record the checksums of its results."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import fcntl
-import hashlib
-import os
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import IO, Any
 
 from trackroller.errors import InputError
+from trackroller.files import disk_error, read_mapping, sha256, write_text
 
 Tell = Callable[[str], None]
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
-
-
-class WorkError(RuntimeError):
-    """Report that the work failed for a reason outside the input, and what to do about it."""
 
 
 class StudyFolder:
@@ -46,8 +41,6 @@ class StudyFolder:
     def earlier(self) -> dict[str, Any]:
         """Return the study as it was planned last, {} if there is none."""
         try:
-            from trackroller.materials.yaml_file import read_mapping  # loads NumPy, which --help does not need
-
             return read_mapping(self.study_file, "study")
         except InputError:
             return {}
@@ -109,69 +102,6 @@ class StudyFolder:
         return self
 
 
-def disk_error(exc: OSError, path: Path) -> WorkError:
-    """Return the message for a failed write, with the remedy."""
-    if exc.errno in (errno.ENOSPC, errno.EDQUOT):
-        what, remedy = "the disk is full", "Free some space"
-    elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
-        what, remedy = f"it cannot be written ({exc.strerror})", "Change its permissions (or choose another --results)"
-    else:
-        what, remedy = f"writing failed ({exc.strerror or exc})", "Repair the folder or the disk"
-    return WorkError(f"{path}: {what}. {remedy}, then start again: every finished case is kept.")
-
-
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write a file under a temporary name, flush it to the disk and rename it.
-
-    A failure leaves no file behind, and a killed process leaves the previous file unchanged.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file to write.
-    write : callable
-        Writes the content; it receives the temporary path.
-
-    Raises
-    ------
-    WorkError
-        If the operating system or the netCDF library cannot write.
-    """
-    beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write(beside)
-        with open(beside, "rb+") as stream:
-            os.fsync(stream.fileno())
-        os.replace(beside, path)
-        _sync_folder(path.parent)
-    except WorkError:
-        raise
-    except (OSError, RuntimeError) as exc:
-        if isinstance(exc, OSError) and (exc.errno or 0) > 0:
-            raise disk_error(exc, path) from exc
-        free = os.statvfs(path.parent)  # the netCDF library hides the operating system's error
-        code = errno.ENOSPC if free.f_bavail * free.f_frsize < 16_000_000 else errno.EIO
-        raise disk_error(OSError(code, str(exc)), path) from exc
-    finally:
-        with contextlib.suppress(OSError):
-            beside.unlink()
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text file whole or not at all; see `write_whole`."""
-    write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8"))
-
-
-def _sync_folder(folder: Path) -> None:
-    with contextlib.suppress(OSError):  # some file systems cannot flush a folder
-        handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
-
-
 def record_checksum(folder: StudyFolder, path: Path) -> None:
     """Write the SHA-256 of a file, in the format of `sha256sum`, into the folder `plan`."""
     write_text(folder.checksum(path), f"{sha256(path)}  ../{path.name}\n")
@@ -183,12 +113,6 @@ def matches_checksum(folder: StudyFolder, path: Path) -> bool:
         return folder.checksum(path).read_text().split()[:1] == [sha256(path)]
     except (OSError, UnicodeDecodeError):
         return False
-
-
-def sha256(path: Path) -> str:
-    """Return the SHA-256 of a file, in hexadecimal digits."""
-    with open(path, "rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def try_lock(stream: IO[bytes], shared: bool = False) -> bool:

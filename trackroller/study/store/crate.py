@@ -22,11 +22,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
+from trackroller.files import sha256, write_text, write_whole
 from trackroller.materials import builtin_database, load_database
 from trackroller.materials.file import find_user_file
 from trackroller.study.design.build import table_path
 from trackroller.study.file.config import load_study
-from trackroller.study.files import sha256, write_text, write_whole
 from trackroller.study.provenance import versions
 from trackroller.study.repeat import compare
 

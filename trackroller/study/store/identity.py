@@ -2,7 +2,7 @@
 
 A fingerprint is the SHA-256 (first 128 bits, as hexadecimal digits) of
 
-- the digest of the solver's source and data files (`trackroller.study.sources.solver_digest`),
+- the digest of the solver's source and data files (`trackroller.study.store.sources.solver_digest`),
 - the options of `solve` where they matter to the case (`trackroller.parameters.OPTIONS` says where),
 - the numeric parameters with the friction coefficient resolved, the friction law and the drawn profiles,
 - the values, not the names, of both materials.
@@ -24,7 +24,7 @@ import numpy as np
 
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.case import CaseTable, MaterialArrays
-from trackroller.study.sources import solver_digest
+from trackroller.study.store.sources import solver_digest
 
 _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name != "name")
 

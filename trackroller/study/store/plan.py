@@ -20,30 +20,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, WorkError
+from trackroller.files import sha256, write_text
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import to_table
-from trackroller.study import store
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import build, case_columns, table_path
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.growth import with_history
 from trackroller.study.file.config import check_name
-from trackroller.study.files import (
-    StudyFolder,
-    Tell,
-    WorkError,
-    matches_checksum,
-    sha256,
-    sweep,
-    try_lock,
-    wait_for_lock,
-    write_text,
-)
-from trackroller.study.identity import chunk_name, fingerprints
-from trackroller.study.inventory import Inventory, check_default_model, forget_failed, take_inventory
-from trackroller.study.sources import solver_digest
+from trackroller.study.store import chunks
+from trackroller.study.store.folder import StudyFolder, Tell, matches_checksum, sweep, try_lock, wait_for_lock
+from trackroller.study.store.identity import chunk_name, fingerprints
+from trackroller.study.store.inventory import Inventory, check_default_model, forget_failed, take_inventory
+from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.config import Study
@@ -222,7 +213,7 @@ def _repair_and_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed
             tell(f"{path} is truncated or was altered (its checksum differs): it is made anew")
             path.unlink()
     found = take_inventory(folder)
-    store.remove_corrupt(found.corrupt, tell)
+    chunks.remove_corrupt(found.corrupt, tell)
     sweep(folder)
     if rerun_failed:
         tell(f"{forget_failed(folder, found)} failed cases are solved again")
@@ -242,8 +233,8 @@ def _is_complete(plan: Plan, found: Inventory, tell: Tell) -> bool:
     sound = set(plan.uses) <= {path.name for path in found.paths}
     for name in plan.chunks:
         try:
-            store.check(plan.folder.case_list(name))
-        except (store.CorruptFile, FileNotFoundError) as exc:
+            chunks.check(plan.folder.case_list(name))
+        except (chunks.CorruptFile, FileNotFoundError) as exc:
             tell(f"corrupt or missing case list, its cases are planned anew: {exc}")
             sound = False
     return sound
@@ -263,21 +254,21 @@ def _new_plan(study: Study, folder: StudyFolder, found: Inventory, tell: Tell) -
     fields = design[list(case_columns(design))].drop_attrs().drop_vars(list(design.coords))
     # a value that all cases share is written once
     fields = fields.map(lambda column: column[0] if all_equal(column.values) else column).assign_coords(case=cases)
-    chunks: dict[str, int] = {}
+    sizes: dict[str, int] = {}
     for number, told in enumerate(options):
         rows = missing[group[missing] == number]
         for part in np.array_split(rows, max(1, math.ceil(len(rows) / size))):
             if len(part):
                 name = chunk_name(cases[part])
-                store.write(folder.case_list(name), fields.isel(case=part).assign_attrs(options=json.dumps(told)))
-                chunks[name] = len(part)
+                chunks.write(folder.case_list(name), fields.isel(case=part).assign_attrs(options=json.dumps(told)))
+                sizes[name] = len(part)
     uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
     folder.design.unlink(missing_ok=True)
     write_text(folder.study_file, study.merged(whole_paths=True))
     data: dict[str, Any] = {"key": plan_key(study), "solver_digest": solver_digest(), "study": study.name}
-    data |= {"size": len(cases), "distinct": len(wanted), "chunks": chunks, "uses": uses}
+    data |= {"size": len(cases), "distinct": len(wanted), "chunks": sizes, "uses": uses}
     write_text(folder.plan_file, json.dumps(data))
     for path in folder.lock.parent.iterdir():  # *.npz: lists of earlier versions of the program
-        if path.suffix in (".nc", ".npz", ".solved") and path.stem not in chunks:
+        if path.suffix in (".nc", ".npz", ".solved") and path.stem not in sizes:
             path.unlink(missing_ok=True)
-    return Plan(study, folder, chunks, len(cases), len(wanted), tuple(uses))
+    return Plan(study, folder, sizes, len(cases), len(wanted), tuple(uses))

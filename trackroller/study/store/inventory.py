@@ -11,8 +11,8 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.parameters import OPTIONS
-from trackroller.study import store
-from trackroller.study.files import StudyFolder
+from trackroller.study.store import chunks
+from trackroller.study.store.folder import StudyFolder
 
 if TYPE_CHECKING:
     from trackroller.study.file.config import Study
@@ -47,27 +47,27 @@ class Inventory:
 def take_inventory(folder: StudyFolder) -> Inventory:
     """Read every file with solved cases and verify its checksum."""
     corrupt: dict[Path, str] = {}
-    sound = list(store.read_sound(folder.solved_files(), corrupt, store.read_state))
+    sound = list(chunks.read_sound(folder.solved_files(), corrupt, chunks.read_state))
     sound.reverse()  # a complete chunk counts before a part of it
-    none = store.failure(np.empty(0, dtype="S32"), "")[["regime", "reason"]]
+    none = chunks.failure(np.empty(0, dtype="S32"), "")[["regime", "reason"]]
     states = [none, *(state for _, state in sound)]
     numbered = [
         state.assign(file=("case", np.full(state.sizes["case"], i - 1)), row=("case", np.arange(state.sizes["case"])))
         for i, state in enumerate(states)
     ]
-    every = store.join(numbered)
+    every = chunks.join(numbered)
     _, first = np.unique(every["case"].values, return_index=True)
     return Inventory(every.isel(case=first), [path for path, _ in sound], corrupt)
 
 
 def forget_failed(folder: StudyFolder, found: Inventory) -> int:
     """Remove the failed cases from the files, so that the next run solves them; return their number."""
-    failed = found.states["file"].values[found.states["regime"].values == store.FAILED]
+    failed = found.states["file"].values[found.states["regime"].values == chunks.FAILED]
     for number in np.unique(failed):
         path = found.paths[number]
-        block = store.read(path)
-        good = block.isel(case=(block["regime"] != store.FAILED).values)
-        kept = store.write_part(folder, path.stem.partition("-")[0], good) if good.sizes["case"] else None
+        block = chunks.read(path)
+        good = block.isel(case=(block["regime"] != chunks.FAILED).values)
+        kept = chunks.write_part(folder, path.stem.partition("-")[0], good) if good.sizes["case"] else None
         if kept != path:
             path.unlink(missing_ok=True)
     return len(failed)

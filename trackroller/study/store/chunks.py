@@ -16,10 +16,11 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
+from trackroller.files import write_whole
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes
-from trackroller.study.files import StudyFolder, Tell, write_whole
-from trackroller.study.identity import chunk_name
+from trackroller.study.store.folder import StudyFolder, Tell
+from trackroller.study.store.identity import chunk_name
 
 FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")

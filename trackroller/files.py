@@ -1,6 +1,6 @@
-"""Read and write the YAML files of users: one guarded loader for every such file of the program.
+"""Read the files of users, find the files that they name, and write files whole: one way for the whole program.
 
-The text is YAML 1.2 (core schema). A scalar without quotes that YAML 1.1 reads differently, such as `030`, `1:30`,
+A YAML text is YAML 1.2 (core schema). A scalar without quotes that YAML 1.1 reads differently, such as `030`, `1:30`,
 `3_0` or `yes`, is refused; the message says what to write instead. Values are counted while they are composed, aliases
 in full, so that a small file cannot grow into millions of values. ruamel.yaml parses and writes; its own composer reads
 these scalars without a word, ends the process at deep nesting, and takes twice as long.
@@ -8,8 +8,14 @@ these scalars without a word, ends the process at deep nesting, and takes twice 
 
 from __future__ import annotations
 
+import contextlib
+import errno
+import hashlib
 import io
-from collections.abc import Mapping
+import os
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
@@ -17,10 +23,11 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.representer import SafeRepresenter
 
-from trackroller.errors import InputError
-from trackroller.materials.yaml_composer import TAG, Composer, plain_scalar
+from trackroller.errors import InputError, WorkError
+from trackroller.yaml_composer import TAG, Composer, plain_scalar
 
 MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
+_beside: ContextVar[Path | None] = ContextVar("beside", default=None)
 
 
 def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
@@ -159,3 +166,110 @@ class _Representer(SafeRepresenter):
 
 
 _Representer.add_representer(str, _Representer.represent_text)
+
+
+@contextmanager
+def files_beside(path: Path | str | None) -> Iterator[None]:
+    """Look for files in the folder of the case or study file `path` first, while that file is read."""
+    token = _beside.set(None if path is None else Path(path).parent)
+    try:
+        yield
+    finally:
+        _beside.reset(token)
+
+
+def find_beside(name: Any, field: str) -> Path:
+    """Return the path of a file that a case, study or spectrum file names: the one rule for every such path.
+
+    Parameters
+    ----------
+    name : str
+        Path from the folder of the file that names it, or from the working directory.
+    field : str
+        The key that names it, for messages.
+
+    Raises
+    ------
+    InputError
+        If the path is absolute, holds '..', leads out of both folders, or names no file.
+    """
+    folders = [folder for folder in (_beside.get(), Path.cwd()) if folder is not None]
+    where = " or ".join(dict.fromkeys(f"below {folder.resolve()}" for folder in folders))
+    remedy = f"Put the file {where} and give its path from there."
+    path = Path(str(name))
+    if not isinstance(name, (str, Path)) or path.is_absolute() or ".." in path.parts or not str(name).strip():
+        raise InputError(field, str(name), "a relative path without '..'", remedy)
+    for folder in folders:
+        here = folder / path
+        if here.is_file() and here.resolve().is_relative_to(folder.resolve()):
+            return here
+    raise InputError(field, str(name), f"a file {where}", "Check its name, or put it there.")
+
+
+def disk_error(exc: OSError, path: Path) -> WorkError:
+    """Return the message for a failed write, with the remedy."""
+    if exc.errno in (errno.ENOSPC, errno.EDQUOT):
+        what, remedy = "the disk is full", "Free some space"
+    elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
+        what, remedy = f"it cannot be written ({exc.strerror})", "Change its permissions (or choose another --results)"
+    else:
+        what, remedy = f"writing failed ({exc.strerror or exc})", "Repair the folder or the disk"
+    return WorkError(f"{path}: {what}. {remedy}, then start again: every finished case is kept.")
+
+
+def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+    """Write a file under a temporary name, flush it to the disk and rename it.
+
+    A failure leaves no file behind, and a killed process leaves the previous file unchanged.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file to write.
+    write : callable
+        Writes the content; it receives the temporary path.
+
+    Raises
+    ------
+    WorkError
+        If the operating system or the netCDF library cannot write.
+    """
+    beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(beside)
+        with open(beside, "rb+") as stream:
+            os.fsync(stream.fileno())
+        os.replace(beside, path)
+        _sync_folder(path.parent)
+    except WorkError:
+        raise
+    except (OSError, RuntimeError) as exc:
+        if isinstance(exc, OSError) and (exc.errno or 0) > 0:
+            raise disk_error(exc, path) from exc
+        free = os.statvfs(path.parent)  # the netCDF library hides the operating system's error
+        code = errno.ENOSPC if free.f_bavail * free.f_frsize < 16_000_000 else errno.EIO
+        raise disk_error(OSError(code, str(exc)), path) from exc
+    finally:
+        with contextlib.suppress(OSError):
+            beside.unlink()
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file whole or not at all; see `write_whole`."""
+    write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8"))
+
+
+def _sync_folder(folder: Path) -> None:
+    with contextlib.suppress(OSError):  # some file systems cannot flush a folder
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def sha256(path: Path) -> str:
+    """Return the SHA-256 of a file, in hexadecimal digits."""
+    with open(path, "rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

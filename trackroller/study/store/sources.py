@@ -8,7 +8,7 @@ changes no result, so it must not cause one to be computed again. Data files cou
 The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow depend on a digest file
 instead of on source files, because a source file gets a new date when only its comments change::
 
-    from trackroller.study.sources import digest_file
+    from trackroller.study.store.sources import digest_file
 
     rule sensitivity:
         input:
@@ -20,7 +20,7 @@ instead of on source files, because a source file gets a new date when only its 
 
 Examples
 --------
->>> from trackroller.study.sources import code_digest, source_files
+>>> from trackroller.study.store.sources import code_digest, source_files
 >>> [path.name for path in source_files("trackroller.roller.geometry")]
 ['errors.py', '__init__.py', 'geometry.py']
 >>> len(code_digest("trackroller.roller.geometry"))
@@ -36,7 +36,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
-PACKAGE = Path(__file__).resolve().parents[1]
+PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "trackroller.roller.solver"
 # The values of materials stand in each fingerprint, so the file of materials need not count as well.
 BY_VALUE = ("materials.yaml",)

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.numerics.syntax_checks import check_tree
+from trackroller.parameters.syntax_checks import check_tree
 
 MAX_LENGTH = 500  # characters; a longer calculation belongs in a script
 
