@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation 
 
 from trackroller import parameters as p
 from trackroller.roller.accuracy import PRESETS
-from trackroller.roller.dataset import VALIDITY_BITS, VARIABLES
+from trackroller.roller.dataset import COMMENTS, VALIDITY_BITS, VARIABLES
 from validation.adopt.common import PICTURES, shortened
 from validation.pages import markdown
 from validation.tradeoff import page as tradeoff_page
@@ -107,7 +107,10 @@ def render() -> str:
     lines += ["### regime\n", "`regime` is an integer; each row has one.\n"]
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += [
-        "### contact_model_used, stopped\n",
+        "### first_to_fail, contact_model_used, stopped\n",
+        "`first_to_fail` (with `life`) is the body that fails first in hours: "
+        + ", ".join(f"{i} {name}" for i, name in enumerate(p.FIRST_TO_FAIL))
+        + f". {COMMENTS['first_to_fail'].capitalize()}. `pair_life_hours`: {COMMENTS['pair_life_hours']}.\n",
         "`contact_model_used` is the model that solved the case. The table serves `kalker` at accuracy",
         "`preview` and for forces within a tolerance that it keeps. Outside its range `kalker` serves `kalker_table`: "
         + ", ".join(f"{i} {name}" for i, name in enumerate(p.CONTACT_MODELS))

@@ -30,7 +30,7 @@ def test_every_variable_is_labelled():
         assert ds[name].attrs["units"] and ds[name].attrs["long_name"]
         if name in VARIABLES:
             assert ds[name].dims == ("case", *VARIABLES[name].dims)
-    flags = {"regime", "converged", "validity", "validity_body", "contact_model_used"}
+    flags = {"regime", "converged", "validity", "validity_body", "contact_model_used", "first_to_fail"}
     assert {v.name for v in VARIABLES.values()} == set(ds.data_vars) - flags
     assert ds.regime.attrs["flag_meanings"].split() == list(parameters.REGIMES)
 
@@ -76,6 +76,21 @@ def test_life_of_both_bodies():
     assert np.isnan(solve_sliding(tr.Case()).guide_life_hours)
     slow = solve_sliding(tr.Case(velocity=30.0))
     assert float(slow.roller_life_hours) == pytest.approx(2 * float(ds.roller_life_hours))
+
+
+def test_life_of_the_pair():
+    """The pair lasts until its first body fails; without hours of the guide the roller stands for it, and says so."""
+    rates = [1e-3, 1e6, None, 600.0, 600.0]
+    cases = [tr.Case(guide_overrollings_per_hour=rate) for rate in rates]
+    cases[3] = tr.Case(guide_overrollings_per_hour=600.0, axial_force=500.0)
+    cases[4] = tr.Case(guide_overrollings_per_hour=600.0, radial_force=-0.05, axial_force=0.0, motor_force=0.0)
+    ds = solve_sliding(cases, life_rule="unlimited")
+    first = [ds.first_to_fail.attrs["flag_meanings"].split()[i] for i in ds.first_to_fail.values]
+    assert first == ["roller", "guide", "unknown", "unknown", "none"]
+    roller, guide, pair = (ds[f"{name}_life_hours"].values for name in ("roller", "guide", "pair"))
+    assert pair[:2].tolist() == [roller[0], guide[1]] and guide[1] < roller[1]
+    assert pair[2] == roller[2] and np.isnan(guide[2]) and np.isnan(pair[3]) and np.isposinf(pair[4])
+    assert "guide_overrollings_per_hour is not given" in ds.pair_life_hours.attrs["comment"]
 
 
 @pytest.mark.parametrize(

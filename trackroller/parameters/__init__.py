@@ -22,6 +22,7 @@ DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
 EXACTNESS = ("kalker", "kalker_table", "fastsim", "sliding")  # contact models, the most exact first
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")  # the same in prose
+FIRST_TO_FAIL = ("roller", "guide", "none", "unknown")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
 MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
     "friction_law": "friction as a function of the slip speed in mm/s: {kind: constant | linear | exponential | table, "

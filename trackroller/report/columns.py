@@ -34,6 +34,8 @@ PLAIN_RESULTS = (
     "converged",
     "roller_life_hours",
     "guide_life_hours",
+    "pair_life_hours",
+    "first_to_fail",
     "slip",
     "stopped",
     "energy_residual",

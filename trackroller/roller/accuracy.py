@@ -38,6 +38,7 @@ _QUANTITY_OF = {
     "life_hours": "life",
     "roller_life_hours": "life",
     "guide_life_hours": "life",
+    "pair_life_hours": "life",
 }
 _RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller import __version__
-from trackroller.parameters import CONTACT_MODELS, REGIMES
+from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIMES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,6 +109,7 @@ _GROUPS = {
         ("life_hours", _CB, "h", "L_h", "life in hours of travel"),
         ("roller_life_hours", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
         ("guide_life_hours", (), "h", "L_h,G", "hours to the first failure of the guide"),
+        ("pair_life_hours", (), "h", "L_h", "hours to the first failure of roller or guide"),
     ),
     "tractions": (
         ("patch_x", ("contact", "x"), "mm", "x_C", "lateral position in the patch"),
@@ -165,10 +166,17 @@ def validity_bit(name: str) -> int:
     return 1 << list(VALIDITY_BITS).index(name)
 
 
+COMMENTS = {
+    "pair_life_hours": "shorter life of roller and guide; the life of the roller where guide_overrollings_per_hour is "
+    "not given and the guide's hours are unknown (first_to_fail is unknown there)",
+    "first_to_fail": "none: both lives are unlimited; unknown: the life of the roller or of the guide is not known",
+}
+
 FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
     "regime": ("regime of the case", REGIMES),
     "converged": ("the residual is within its limit (attribute converged_up_to of residual)", ("no", "yes")),
     "contact_model_used": ("contact model that solved the case", CONTACT_MODELS),
+    "first_to_fail": ("body that fails first, in hours", FIRST_TO_FAIL),
     "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),
 }
 
@@ -178,6 +186,7 @@ def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, d
     if name in FLAGS:
         told, words = FLAGS[name]
         attrs = {"long_name": told, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8)}
+        attrs |= {"comment": COMMENTS[name]} if name in COMMENTS else {}
         return ("case",), values.astype(np.int8), attrs | {"flag_meanings": " ".join(words)}
     attrs = {
         "long_name": "validity flags: where an assumption of the model does not hold"
@@ -220,6 +229,8 @@ def build(
         meta = {"units": v.units, "long_name": v.long_name}
         if v.symbol:
             meta["symbol"] = v.symbol
+        if name in COMMENTS:
+            meta["comment"] = COMMENTS[name]
         variables[name] = (("case", *v.dims), array, meta)
     variables |= {name: _flag(name, array) for name, array in flags.items()}
     coords: dict[str, Any] = {

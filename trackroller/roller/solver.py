@@ -225,7 +225,7 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     keep = [
         name
         for name in block.values
-        if VARIABLES[name].group in options.outputs
+        if (name in VARIABLES and VARIABLES[name].group in options.outputs)
         or name == "residual"
         or (name == "error_estimate" and "peak_stress" in options.outputs)
     ]
@@ -239,6 +239,8 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     if block.bodies is not None:
         flags["validity_body"] = block.bodies
     flags["contact_model_used"] = block.model
+    if "first_to_fail" in block.values:
+        flags["first_to_fail"] = block.values["first_to_fail"]
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     ds = build({name: block.values[name] for name in keep}, flags, attrs, single)

@@ -26,12 +26,14 @@ BOOKKEEPING = {
     "reason",
     "stopped",
     "contact_model_used",
+    "first_to_fail",
     "material_pair",
 }
 FIELDS = {"x", "y", "z", "grid"}
 
 # Outputs that are analysed by default: name -> (variable, selection, how contacts are joined, scale, words).
 DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
+    "pair_life_hours": ("pair_life_hours", {}, "min", "log10", "life of the pair"),
     "roller_life_hours": ("roller_life_hours", {}, "min", "log10", "life of the roller"),
     "guide_life_hours": ("guide_life_hours", {}, "min", "log10", "life of the guide"),
     "roller_life_cycles": ("life_cycles", {"body": "roller"}, "min", "log10", "life of the roller in overrollings"),
@@ -110,6 +112,8 @@ def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...])
     for body in ("roller", "guide"):  # Hours and cycles of one body are proportional, so only the hours are kept.
         if f"{body}_life_hours" in names and f"{body}_life_cycles" in names:
             names.remove(f"{body}_life_cycles")
+    if "pair_life_hours" in names and "guide_life_hours" not in names:
+        names.remove("pair_life_hours")  # Without hours of the guide it repeats the life of the roller.
     if not names or not {"peak_stress", "normal_force"} & set(free):
         used = {DEFAULTS[n][0] for n in names}
         names += [n for n in free if n not in used and set(ds[n].dims) <= set(dims)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.parameters import CONTACT_MODELS, REGIME_LABELS, REGIMES
+from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.flags import flags_of
 from trackroller.report.sheet.facts import Facts, collect
 from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
@@ -104,7 +104,11 @@ def as_json(ds: xr.Dataset) -> str:
         }
         for name, variable in ds.variables.items()
     }
-    for name, words in (("regime", REGIMES), ("contact_model_used", CONTACT_MODELS)):
+    for name, words in (
+        ("regime", REGIMES),
+        ("first_to_fail", FIRST_TO_FAIL),
+        ("contact_model_used", CONTACT_MODELS),
+    ):
         if name in told:
             told[name]["meaning"] = np.array(words)[ds[name].values].tolist()
     if "case" in ds.attrs:

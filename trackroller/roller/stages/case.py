@@ -8,6 +8,7 @@ import numpy as np
 
 from trackroller.contact.slip import pole_split
 from trackroller.damage import fatigue
+from trackroller.damage.pair import first_failure
 from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
@@ -54,6 +55,7 @@ def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
     guide = fatigue.guide_hours(per_body[1], table.guide_overrollings_per_hour[:, None])
     v["life_hours"] = np.stack([roller, guide], axis=2)
     v["roller_life_hours"], v["guide_life_hours"] = roller.min(axis=1), guide.min(axis=1)
+    v["pair_life_hours"], v["first_to_fail"] = first_failure(v["roller_life_hours"], v["guide_life_hours"])
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
