@@ -86,7 +86,7 @@ MUTATIONS = {
         ("contact/test_hertz.py",),
     ),
     "curvature": Mutation(
-        "eq. (12), curvature in the rolling plane",
+        "curvature in the rolling plane, which the paper does not number",
         GEOMETRY,
         "1.0 / np.asarray(rolling_radius) + 1.0",
         "1.0 / np.asarray(rolling_radius) - 1.0",

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from trackroller.contact import fastsim, kalker, linear
-from trackroller.contact.common import Elastic, Ellipse, Slip
+from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.fastsim import FastsimSettings
 from trackroller.contact.friction_laws import exponential_falling
-from trackroller.contact.slip import Creepage
+from trackroller.contact.slip import Creepage, Slip
 
 STEEL = Elastic.of_pair(210e3, 0.33, 210e3, 0.33)
 

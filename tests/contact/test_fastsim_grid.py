@@ -7,13 +7,13 @@ import pytest
 
 import trackroller as tr
 from trackroller.contact import fastsim
-from trackroller.contact.common import Elastic, Slip
+from trackroller.contact.common import Elastic
 from trackroller.contact.fastsim import grid as fastsim_grid
 from trackroller.contact.friction_laws import constant, exponential_falling
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import exact_shape
 from trackroller.contact.kalker.cells import unit_cells
-from trackroller.contact.slip import Creepage
+from trackroller.contact.slip import Creepage, Slip
 
 STEEL = Elastic(np.array([79e3]), np.array([0.33]), np.zeros(1))
 MU = np.array([0.3])

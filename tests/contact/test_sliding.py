@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from trackroller.contact.common import Ellipse, Slip
+from trackroller.contact.common import Ellipse
 from trackroller.contact.sliding import integrals, slip_field, tractions
+from trackroller.contact.slip import Slip
 
 
 def patch(a, b, alpha, shift, radius=6.0, p=1.0):

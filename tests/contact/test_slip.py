@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from numba import njit
 
-from trackroller.contact.common import Ellipse, Slip
+from trackroller.contact.common import Ellipse
 from trackroller.contact.sliding import slip_field
 from trackroller.contact.slip import (
+    Slip,
     lateral_slip,
     pole_lateral,
     pole_line,

@@ -8,9 +8,8 @@ import xarray as xr
 from reference_cases import DATA, solve_sliding
 
 import trackroller as tr
-from trackroller.contact.common import Slip
 from trackroller.contact.cross_sections import arcs
-from trackroller.contact.slip import contour_over_tangent, rolling_slip, turning_of
+from trackroller.contact.slip import Slip, contour_over_tangent, rolling_slip, turning_of
 from trackroller.errors import InputError
 from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.case import to_table

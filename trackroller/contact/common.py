@@ -13,7 +13,6 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from trackroller.contact.slip import pole_lateral, profile_slip
 from trackroller.numerics.rows import Rows
 
 
@@ -56,76 +55,6 @@ class Ellipse(Rows):
     def reaches_edge(self) -> np.ndarray:
         """Return False: Hertz's theory has no edges."""
         return np.zeros(len(self.semi_axis_lateral), bool)
-
-
-@dataclass(frozen=True)
-class Slip(Rows):
-    """Kinematics of n patches, from which the rigid slip follows.
-
-    Parameters
-    ----------
-    sine, cosine : ndarray, shape (n,)
-        Of the signed contact angle, +alpha in contact 1 and -alpha in contact 2 [1].
-    guide_profile_radius : ndarray, shape (n,)
-        r_C,G [mm].
-    rolling_radius : ndarray, shape (n,)
-        r_A [mm].
-    shift : ndarray, shape (n,)
-        Rolling radius shift r_Delta0 [mm].
-    turning : ndarray, shape (n,), optional
-        Angle by which the roller turns with the guide's curve per distance travelled [1/mm], see `slip.turning_of`. It
-        adds to the spin creepage.
-    contour : ndarray of callables, shape (n,), optional
-        Shape of a drawn guide, see `slip.contour_over_tangent`; None stands for the circle.
-    """
-
-    sine: np.ndarray
-    cosine: np.ndarray
-    guide_profile_radius: np.ndarray
-    rolling_radius: np.ndarray
-    shift: np.ndarray
-    turning: np.ndarray | None = None
-    contour: np.ndarray | None = None
-
-    @property
-    def longitudinal(self) -> np.ndarray:
-        """Return the longitudinal creepage xi = r_Delta0 / r_A [1]; xi > 0 brakes."""
-        return self.shift / self.rolling_radius
-
-    @property
-    def spin(self) -> np.ndarray:
-        """Return the spin creepage phi = -sin(alpha) (1/r_A + turning) [1/mm], of opposite sign in the two contacts."""
-        if self.turning is None:
-            return -self.sine / self.rolling_radius
-        return -self.sine * (1.0 / self.rolling_radius + self.turning)
-
-    @property
-    def pole_lateral(self) -> np.ndarray:
-        """Return x_spin = r_Delta0 / sin(alpha) [mm], eq. (23)."""
-        return pole_lateral(self.shift, self.sine)
-
-    def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
-        """Return the rolling slip of the guide's circle, eq. (20), or contour, less that of its tangent.
-
-        The rolling slip of the tangent is xi + phi x. ASSUME: beyond the equator of the guide's circle the slip keeps
-        the value that it has at the equator.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n, m)
-            Lateral positions [mm].
-
-        Returns
-        -------
-        ndarray, shape (n, m)
-            Slip per travel speed [1].
-        """
-        sine, cosine, radius = self.sine[:, None], self.cosine[:, None], self.guide_profile_radius[:, None]
-        out = (x * sine + profile_slip(x, sine, cosine, radius)) / self.rolling_radius[:, None]
-        for i, height in enumerate(() if self.contour is None else self.contour):
-            if height is not None:
-                out[i] = height(np.sign(self.sine[i]) * x[i]) / self.rolling_radius[i]  # x counts outward in a contour
-        return out
 
 
 @dataclass(frozen=True)

@@ -198,7 +198,7 @@ def contact_model(
         Travel speed of the rollers [mm/s].
     slip_terms : collection of str
         With 'profile' the rigid slip follows the guide's profile instead of its tangent; 'sliding' always does.
-        'curve' changes the slip that a model is given, see `common.Slip`.
+        'curve' changes the slip that a model is given, see `slip.Slip`.
     patches : Patches, optional
         Solver of the normal problem of the rollers; Hertz's ellipses if not given.
 

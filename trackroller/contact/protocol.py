@@ -10,7 +10,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Resultants, SurfaceTractions, Works
+from trackroller.contact.slip import Slip
 
 
 class Patch(Protocol):

@@ -20,7 +20,7 @@ from trackroller.numerics.lanes import bilinear
 
 XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
 
-# One patch: semi-axes a, b [mm], friction coefficient, kinematics as in `contact.common.Slip`, `fixed` direction of the
+# One patch: semi-axes a, b [mm], friction coefficient, kinematics as in `contact.slip.Slip`, `fixed` direction of the
 # friction along y in full slip (0 in rolling), and where the lateral slip vanishes, which covers all three spin models:
 # at y = k0 + k1 (x + a) left of pole_x and at y = k0 + k2 (x - a) right of pole_x.
 FIELDS = ("a", "b", "friction", "sine", "cosine", "radius", "shift", "fixed", "pole_x", "k0", "k1", "k2")

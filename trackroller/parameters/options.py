@@ -169,7 +169,7 @@ _OPTIONS = (
         "position of the spin pole, assumptions 0, 1 and 2 of the publication",
         {
             "concentric": "v_x vanishes on the line y = 0",
-            "edge": "v_x vanishes on a line through the leading edge at the pole",
+            "edge": "v_x vanishes on a line through the trailing edge at the pole",
             "skewed": "v_x vanishes on two skewed lines, eqs (24)-(25)",
         },
         models=("sliding",),

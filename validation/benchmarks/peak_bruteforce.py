@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse, Slip
+from trackroller.contact.common import Ellipse
+from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import NO_FIELD, near_parts, patch_rows, unit_rule
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.stress import von_mises

@@ -11,10 +11,11 @@ import mpmath
 import numpy as np
 from scipy.special import ellipe, ellipkm1
 
-from trackroller.contact.common import Ellipse, Slip
+from trackroller.contact.common import Ellipse
 from trackroller.contact.hertz import axis_ratio
 from trackroller.contact.influence import displacements, pressure_displacements
 from trackroller.contact.sliding import integrals
+from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import von_mises
 

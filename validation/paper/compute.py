@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse, Slip
-from trackroller.contact.slip import spin_model_index
+from trackroller.contact.common import Ellipse
+from trackroller.contact.slip import Slip, spin_model_index
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import von_mises
 from trackroller.materials import load_database

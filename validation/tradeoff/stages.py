@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from trackroller.contact import sliding
-from trackroller.contact.common import Ellipse, Slip
+from trackroller.contact.common import Ellipse
 from trackroller.contact.hertz import contact_modulus, shape
-from trackroller.contact.slip import spin_model_index
+from trackroller.contact.slip import Slip, spin_model_index
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
 from trackroller.roller.case import Case, CaseTable, to_table

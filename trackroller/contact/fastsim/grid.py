@@ -17,14 +17,14 @@ from functools import partial
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Slip, SurfaceTractions
+from trackroller.contact.common import Elastic, SurfaceTractions
 from trackroller.contact.fastsim.patch import flexibilities
 from trackroller.contact.fastsim.point import Strips
 from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution, extrapolated, surface
 from trackroller.contact.fastsim.strips import Loaded, strip_chords, strip_fields, strip_sums
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.linear import LARGEST_RATIO
-from trackroller.contact.slip import Creepage
+from trackroller.contact.slip import Creepage, Slip
 from trackroller.numerics.threads import share_rows
 
 

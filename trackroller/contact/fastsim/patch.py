@@ -22,12 +22,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, Slip, SurfaceTractions
+from trackroller.contact.common import Elastic, Ellipse, SurfaceTractions
 from trackroller.contact.fastsim.point import Strips, Totals, advance, enter, march, one_strip, write
 from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution, extrapolated, surface
 from trackroller.contact.friction_laws import Knots
 from trackroller.contact.linear import creepage_coefficients, linear_resultants, sliding_flexibility
-from trackroller.contact.slip import Creepage
+from trackroller.contact.slip import Creepage, Slip
 from trackroller.numerics.compiled import compiled
 from trackroller.numerics.threads import share_rows
 

@@ -14,13 +14,13 @@ from typing import Any, cast
 import numpy as np
 
 from trackroller.contact import table
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, Works
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Works
 from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.patch import on_half_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
 from trackroller.contact.settings import CONVERGED
-from trackroller.contact.slip import Creepage
+from trackroller.contact.slip import Creepage, Slip
 
 NEAR = 0.02  # if the normalised slip changed less than this, the iteration starts from the patch's last solution
 LEAST_STEP = 1e-9  # least change of the normalised slip from which a derivative of the difference is taken

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Elastic, Ellipse, Resultants, SurfaceTractions
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import batch, extrapolation, subgrid
 from trackroller.contact.kalker.cells import cells, unit_cells
 from trackroller.contact.kalker.columns import column_ranges
 from trackroller.contact.kalker.loops import row_means
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
-from trackroller.contact.slip import Creepage
+from trackroller.contact.slip import Creepage, Slip
 
 BLOCK = 256  # patches that are solved together, to limit the memory for their tractions
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import kalker
-from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.fastsim import FastsimSettings
 from trackroller.contact.fastsim import grid as fastsim_grid
 from trackroller.contact.grid_patch import GridPatch
@@ -23,6 +23,7 @@ from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.contact.protocol import ContactModel, Patch
 from trackroller.contact.settings import Rolling
+from trackroller.contact.slip import Slip
 
 # Error of the friction forces over mu F_N per `roughness` of the pressure. With the error of the elements it covers the
 # measured error of 79 of 80 contacts with flats beside small blends.

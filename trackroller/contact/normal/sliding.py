@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.sliding import slip_field, slip_lines
+from trackroller.contact.slip import Slip
 
 POINTS = 4  # Gauss points across each element
 PIECES = 3  # parts of each element along the rolling direction in which a falling friction law is constant

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Resultants, Slip, SurfaceTractions, Works
+from trackroller.contact.common import Elastic, Resultants, SurfaceTractions, Works
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.slip import Slip
 from trackroller.contact.table import spline as table
 
 

@@ -11,8 +11,9 @@ from functools import cached_property
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse, Resultants, Slip
+from trackroller.contact.common import Ellipse, Resultants
 from trackroller.contact.hertz import HertzShape
+from trackroller.contact.slip import Slip
 
 LAST_SLIP = 1.0 - 2.0**-53  # largest |w|; beyond it the friction is that of complete slip to the last digit
 TOLERANCE = 0.01  # residual that the solution aims at, over the residual that counts as converged

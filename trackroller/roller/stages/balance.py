@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, Slip
+from trackroller.contact.common import Resultants
 from trackroller.contact.protocol import Patch
+from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.equilibrium.corrected import merged, solve_corrected, solve_some
 from trackroller.roller.stages.scene import Scene

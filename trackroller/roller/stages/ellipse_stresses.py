@@ -11,8 +11,8 @@ import numpy as np
 from numpy.lib.recfunctions import structured_to_unstructured
 
 from trackroller.contact import sliding
-from trackroller.contact.common import Slip
 from trackroller.contact.models import traction_share
+from trackroller.contact.slip import Slip
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks

@@ -10,8 +10,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, Slip, SurfaceTractions
+from trackroller.contact.common import Resultants, SurfaceTractions
 from trackroller.contact.protocol import ContactModel, Patch
+from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import validity_bit
