@@ -15,7 +15,7 @@ _WHERE = {
     "Case": "trackroller.roller.case",
     "InputError": "trackroller.errors",
     "solve": "trackroller.roller.solver",
-    "load_study": "trackroller.study.file.config",
+    "load_study": "trackroller.study.file.load",
     "load_database": "trackroller.materials",
     "stress_from_tractions": "trackroller.halfspace.stress",
     "stress_on_grid": "trackroller.halfspace.stress",
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from trackroller.materials import load_database
     from trackroller.roller.case import Case
     from trackroller.roller.solver import solve
-    from trackroller.study.file.config import load_study
+    from trackroller.study.file.load import load_study
 
 
 def __getattr__(name: str) -> Any:

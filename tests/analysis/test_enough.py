@@ -8,7 +8,7 @@ from scipy import stats
 
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.report.summary import samples
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 PI = np.pi
 CARRIERS = {

@@ -10,7 +10,7 @@ from trackroller.report import choices
 from trackroller.report.numbers import quantity
 from trackroller.report.page import contents
 from trackroller.report.view import StudyView
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 LHS = {
     "name": "p",

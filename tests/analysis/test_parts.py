@@ -14,7 +14,7 @@ from trackroller.report import decisions, summary
 from trackroller.report.view import StudyView
 from trackroller.study.design.saltelli import as_set, pairs_sharing, serves
 from trackroller.study.design.sampling import sample
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from validation.known_indices import functions
 
 G = functions()["g-function"]

@@ -10,7 +10,7 @@ from trackroller.analysis.robustness import b10, robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
 from trackroller.report import choices
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 INNER_OUTER = {
     "name": "robust",

@@ -13,7 +13,7 @@ from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
 from trackroller.report import sentences as words
 from trackroller.study.design.sampling import sample
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.outputs import outputs
 
 PI = np.pi

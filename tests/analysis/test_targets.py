@@ -9,7 +9,7 @@ from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
 from trackroller.report import choices
 from trackroller.study.design.grown_lhs import grown_lhs
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 POINTS = {
     "name": "t",

@@ -15,7 +15,7 @@ from trackroller.cli.case import solve_case
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.roller.case import Case
-from trackroller.study.file.config import load_study
+from trackroller.study.file.load import load_study
 
 ROOT = Path(__file__).parents[2]
 STUDIES = [yaml.safe_load(p.read_text()) for p in sorted((ROOT / "config" / "studies").glob("*.yaml"))]

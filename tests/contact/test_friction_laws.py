@@ -20,7 +20,7 @@ from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.case import to_table
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import Loads, solve_equilibrium
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 MAPPINGS = [
     {"kind": "constant"},

@@ -15,7 +15,7 @@ from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain
 from trackroller.roller.options import Options
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.store.identity import fingerprints
 
 VARIANTS = json.loads((DATA / "contact.json").read_text(encoding="utf-8"))["variants"]

@@ -69,7 +69,7 @@ def test_every_code_block_runs(page, tmp_path, monkeypatch):
 
     from trackroller.cli.main import app
     from trackroller.errors import InputError
-    from trackroller.study.file.config import load_study
+    from trackroller.study.file.load import load_study
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("TRACKROLLER_MATERIALS", raising=False)

@@ -24,7 +24,7 @@ from trackroller.report.figures.study import draw_all
 from trackroller.report.groups import drives, groups
 from trackroller.report.page import contents, write_report
 from trackroller.report.view import StudyView
-from trackroller.study.file.config import load_study
+from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from validation.contact_models.product import PATCHES, compare, patch_fields, write_words
 

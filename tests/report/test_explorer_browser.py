@@ -20,7 +20,7 @@ from trackroller.analysis.sensitivity import analyse
 from trackroller.report.explorer.page import write_explorer
 from trackroller.report.page import write_report
 from trackroller.report.view import StudyView
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")]
 

@@ -23,7 +23,7 @@ from trackroller.report.page import contents
 from trackroller.report.tables import validity_table
 from trackroller.report.view import StudyView
 from trackroller.report.workbook import export
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 
 def study(columns, **results):

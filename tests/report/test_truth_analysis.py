@@ -17,7 +17,7 @@ from trackroller.report.effects import effect_of
 from trackroller.report.numbers import level_text
 from trackroller.report.summary import samples
 from trackroller.report.view import StudyView
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")
 INDICES = {"saltelli": "ST", "grid": "main_share", "lhs": "first", "morris": "mu_star"}

@@ -10,7 +10,7 @@ import pytest
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.report.aims import target, target_tables
 from trackroller.report.page import contents
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 SHARE = r"([\d.]+) %"
 CHANCE = rf"{SHARE}(?: \({SHARE} to {SHARE}\))?"

@@ -14,7 +14,7 @@ import trackroller as tr
 from trackroller.roller.case import to_table
 from trackroller.roller.failures import STEEP, with_reasons
 from trackroller.roller.options import Options
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 

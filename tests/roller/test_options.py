@@ -17,7 +17,7 @@ import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
 from trackroller.roller.accuracy import table_errors
 from trackroller.roller.options import Options, model_in_use
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.store.plan import case_options
 
 ROOT = Path(__file__).parents[2]
@@ -40,11 +40,6 @@ def test_every_word_of_an_option_is_explained_and_every_option_is_in_the_help():
 def test_contact_models_keep_their_numbers():
     """`contact_model_used` of older files is read with these numbers: new models come at the end."""
     assert CONTACT_MODELS[:4] == ("sliding", "fastsim", "kalker", "kalker_table")
-
-
-def test_a_former_word_stands_for_its_successor_with_a_warning():
-    with pytest.warns(FutureWarning, match="'auto' is no longer a choice of its own; 'kalker'"):
-        assert Options(contact_model="auto").contact_model == "kalker"
 
 
 def test_the_table_serves_the_exact_theory_where_its_measured_error_suffices():
@@ -79,7 +74,7 @@ import numpy as np
 import trackroller as tr
 from trackroller.roller.options import Options
 from trackroller.roller.case import to_table
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.store.identity import fingerprints
 from trackroller.study.file.schema import schema
 from trackroller.cli.case import case_of

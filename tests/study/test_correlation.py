@@ -8,7 +8,7 @@ from trackroller.errors import InputError
 from trackroller.study.design.correlation import normal_correlation
 from trackroller.study.design.factors import parse
 from trackroller.study.design.sampling import sample
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 FACTORS = {
     "a": {"uniform": [0, 1]},

@@ -14,7 +14,7 @@ import fake_solver
 import xarray as xr
 
 from trackroller.report.build import build_report
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.plan import study_folder

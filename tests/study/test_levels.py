@@ -6,7 +6,7 @@ import pytest
 
 from trackroller.roller.case import mapping_text
 from trackroller.study.design.levels import short
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 

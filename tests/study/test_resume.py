@@ -17,7 +17,7 @@ from reference_cases import solve_sliding
 
 from trackroller.errors import InputError, WorkError
 from trackroller.files import write_whole
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 from trackroller.study.store import chunks

@@ -10,7 +10,6 @@ from trackroller.study.design import arrays as designs
 from trackroller.study.design import saltelli
 from trackroller.study.design.factors import Factor, parse
 from trackroller.study.design.sampling import METHODS, sample
-from trackroller.study.file.config import parse_study
 
 MIXED = {
     "friction_coefficient": {"truncnormal": [0.2, 0.1, 0.05, 0.4]},
@@ -235,18 +234,6 @@ def test_quantiles_of_listed_values_fall_into_equal_bins():
     """from_unit at the ends and the middle of [0, 1]."""
     factor = Factor("c", "values", levels=("a", "b", "c"))
     assert list(factor.from_unit(np.array([0.0, 0.3, 0.34, 0.99, 1.0]))) == ["a", "a", "b", "c", "c"]
-
-
-def test_old_name_of_the_inner_outer_design_keeps_working_and_says_so():
-    """`nested` draws the same rows, and a study file with it gets the new name and a warning."""
-    spec = {"velocity": {"values": [30.0, 60.0]}, "axial_force": {"normal": [0.0, 1.0]}}
-    old, new = (sample(spec, name, 16, 3) for name in ("nested", "inner_outer"))
-    assert old.method == new.method == "inner_outer"
-    np.testing.assert_array_equal(old.unit, new.unit)
-    data = {"name": "n", "samples": 16, "factors": spec}
-    with pytest.warns(FutureWarning, match="'nested' is now called 'inner_outer'"):
-        study = parse_study(data | {"design": "nested"})
-    assert study.merged() == parse_study(data | {"design": "inner_outer"}).merged()
 
 
 def test_one_parser_serves_factors_constraints_and_stop_conditions():

@@ -15,7 +15,7 @@ import xarray as xr
 import yaml
 
 from trackroller.errors import WorkError
-from trackroller.study.file.config import load_study, parse_study
+from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.run import run_study
 from trackroller.study.solve import solve_chunk
 from trackroller.study.store.plan import working_plan

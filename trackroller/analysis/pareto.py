@@ -13,7 +13,7 @@ from trackroller.analysis.restore import design_of
 from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.study.design.factors import readable
-from trackroller.study.design.sampling import SampledDesign, current_name
+from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.outputs import case_dims, read_study, regimes
 
@@ -179,7 +179,7 @@ def study_pareto(ds: xr.Dataset, sens: xr.Dataset | None = None) -> xr.Dataset |
     such goals. Of an inner/outer design as `pareto_of_points`, None without the key `pareto`.
     """
     study = read_study(ds)
-    if current_name(str(study.get("design", ds.attrs.get("design", "")))) == "inner_outer":
+    if study.get("design", ds.attrs.get("design")) == "inner_outer":
         return pareto_of_points(sens, study["pareto"]) if sens is not None and study.get("pareto") else None
     goals = study.get("pareto") or default_objectives(ds)
     if not goals:

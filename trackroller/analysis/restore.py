@@ -13,7 +13,7 @@ from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.design.draws import of_columns
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.sampling import OPTIONS, SampledDesign, current_name, sample
+from trackroller.study.design.sampling import OPTIONS, SampledDesign, sample
 from trackroller.study.outputs import BOOKKEEPING, case_dims, flat, read_study, settings
 
 
@@ -34,7 +34,7 @@ def design_of(ds: xr.Dataset, study: Mapping[str, Any] | None = None) -> Sampled
     InputError : there is no study file, or its factors do not reproduce the rows
     """
     study = read_study(ds) if study is None else study
-    method = current_name(str(study.get("design", ds.attrs.get("design", "")))) if study else ""
+    method = str(study.get("design", ds.attrs.get("design", ""))) if study else ""
     if not method:
         raise InputError("study", ds.attrs.get("study"), "a result with its merged study file as attribute `study`")
     specs = dict(study.get("factors", {}))

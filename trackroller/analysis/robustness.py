@@ -64,7 +64,7 @@ def robustness(
         If the study has another design.
     """
     if design.method != "inner_outer":
-        allowed = "design inner_outer (formerly nested): lists as outer array, distributions as inner array"
+        allowed = "design inner_outer: lists as outer array, distributions as inner array"
         raise InputError("design", design.method, allowed)
     shape = (design.meta["design_points"], design.meta["inner_samples"])
     dims = case_dims(ds, design.factors)

@@ -18,7 +18,8 @@ from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options
 from trackroller.study.cost import bytes_a_case, duration
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.file.config import Study, load_study
+from trackroller.study.file.load import load_study
+from trackroller.study.file.study import Study
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import find_study, status_of

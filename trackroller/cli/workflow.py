@@ -15,8 +15,8 @@ from typing import Any, TextIO
 from trackroller.errors import InputError, WorkError, unknown_name
 from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
-from trackroller.study.design.build import table_path
-from trackroller.study.file.config import Study, load_study
+from trackroller.study.file.load import load_study
+from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.plan import Plan, read_plan, study_folder, working_plan
 
@@ -102,7 +102,7 @@ def study_inputs(study: Study) -> list[str]:
     """Return the files a study's cases depend on: study file, table of cases, and the user's materials."""
     found = [str(study.path)] if study.path is not None else []
     if study.config.table is not None:
-        found.append(table_path(study))
+        found.append(str(study.table_path))
     user = find_user_file()
     return found + ([str(user)] if user is not None else [])
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -41,8 +40,6 @@ class Option:
         Whether a result names the option among its attributes.
     files : tuple of str
         Files that may give the option beside a case: "study", "spectrum".
-    former : dict of str
-        Former words that keep working, with the word that each of them stands for now.
     """
 
     name: str
@@ -57,7 +54,6 @@ class Option:
     identity: bool = True
     recorded: bool = True
     files: tuple[str, ...] = ("study", "spectrum")
-    former: Mapping[str, str] = field(default_factory=dict)
 
     def applies(self, contact_model: str) -> bool:
         """Return whether the option has a meaning for a contact model."""
@@ -110,10 +106,6 @@ class Option:
         return value
 
     def _word(self, value: Any, where: str) -> str:
-        if isinstance(value, str) and value in self.former:
-            now = self.former[value]
-            warnings.warn(f"{where}: '{value}' is no longer a choice of its own; '{now}' is taken", FutureWarning, 2)
-            return now
         if not isinstance(value, str) or value not in self.values:
             raise unknown_name(where, value, self.values)
         return value
@@ -126,7 +118,7 @@ class Option:
             return ", ".join(value) or "none"
         if self.kind == "word":
             return value if self.applies(contact_model) else ""
-        if self.kind == "accuracy":
+        if self.kind in ("accuracy", "number"):
             return value.name if hasattr(value, "name") else str(value)
         return value if self.applies(contact_model) else None
 
@@ -161,7 +153,6 @@ _OPTIONS = (
             "kalker_table": "table of solutions of the exact theory; outside its range the exact theory",
         },
         factor=True,
-        former={"auto": "kalker"},
     ),
     Option(
         "spin_model",
@@ -214,14 +205,6 @@ _OPTIONS = (
         "how patch and pressure are found",
         {"hertz": "Hertzian", "halfspace": "non-Hertzian, by boundary elements; needed for drawn profiles"},
         factor=True,
-    ),
-    Option(
-        "contact_tolerance",
-        0.05,
-        "without effect: it belonged to the former contact model auto",
-        kind="number",
-        identity=False,
-        recorded=False,
     ),
     Option(
         "stop_if",

@@ -224,7 +224,7 @@ def ranked(view: StudyView) -> np.ndarray | None:
     choice. The cases of an inner/outer design do not rank, because scattering values cannot be chosen: B10 ranks its
     design points.
     """
-    if view.study.get("design") in ("inner_outer", "nested"):
+    if view.study.get("design") == "inner_outer":
         return None
     rows, columns = view.valid.copy(), [f"peak_stress_{b}" for b in BODIES if view.has(f"peak_stress_{b}")]
     if "contact_model" in view.factors:

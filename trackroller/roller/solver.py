@@ -55,7 +55,6 @@ def solve(
     stress_bodies: str = "both",
     life_rule: str = "elementary",
     normal: str = "hertz",
-    contact_tolerance: float = 0.05,
     stop_if: str | None = None,
     shortcuts: bool = True,
     slip_terms: Collection[str] | str = (),
@@ -73,7 +72,7 @@ def solve(
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
         "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). "kalker" uses its table at
-        accuracy "preview", and for forces within a tolerance that the table keeps. "auto" is its former name.
+        accuracy "preview", and for forces within a tolerance that the table keeps.
     spin_model : str
         Position of the spin pole, assumptions 0, 1, 2 of the publication: "concentric", "edge", "skewed". It matters to
         "sliding" only.
@@ -89,8 +88,6 @@ def solve(
         S-N curve below the fatigue limit: "elementary", "haibach" or "unlimited".
     normal : str
         "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which drawn profiles need.
-    contact_tolerance : float
-        Without effect: it belonged to the former contact model "auto".
     stop_if : str, optional
         Condition such as "peak_stress > R_m". Where it holds, no peak stress is searched for, and the case is marked
         `stopped`. See `trackroller.roller.stop`.

@@ -10,7 +10,7 @@ from trackroller.parameters import OPTIONS
 from trackroller.study.design.entries import OPTION_FACTORS
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 # Seconds of one core a case at preview, standard and reference; orders of magnitude. The processor time of one process
 # was measured on `random_designs` of `validation/benchmarks/samples.py`: 100 designs, 20 to 100 of them at reference, 2

@@ -25,7 +25,7 @@ from trackroller.study.store.inventory import Inventory
 from trackroller.study.store.plan import Plan, locate
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]

@@ -15,7 +15,7 @@ from trackroller.roller.dataset import file_attributes
 from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 _PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "SALib", "snakemake")
 

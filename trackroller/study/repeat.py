@@ -18,7 +18,7 @@ from trackroller.study.store import chunks
 from trackroller.study.store.plan import case_options, locate, study_folder
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 
 @dataclass

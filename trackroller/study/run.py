@@ -15,7 +15,7 @@ from trackroller.study.store.folder import Tell
 from trackroller.study.store.plan import Plan, working_plan
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 
 def run_study(

@@ -15,13 +15,13 @@ from trackroller.parameters import REGIMES
 from trackroller.study.cost import study_rate
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
-from trackroller.study.file.config import load_study, parse_study
+from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.store.chunks import FAILED
 from trackroller.study.store.inventory import check_default_model
 from trackroller.study.store.plan import locate, study_folder
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 
 @dataclass

@@ -24,7 +24,7 @@ import numpy as np
 import yaml
 
 from trackroller.study.design.build import MAX_CASES
-from trackroller.study.file.config import load_study
+from trackroller.study.file.load import load_study
 from trackroller.study.solve import load_cases, solve_cases
 from trackroller.study.store import chunks
 from trackroller.study.store.plan import working_plan

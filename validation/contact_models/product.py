@@ -22,7 +22,7 @@ from trackroller.report.comparison.words import sentences
 from trackroller.report.figures import style
 from trackroller.roller.case import Case
 from trackroller.roller.solver import solve
-from trackroller.study.file.config import load_study
+from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from validation.contact_models import patches as ladder_patches
 

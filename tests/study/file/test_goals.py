@@ -24,7 +24,7 @@ from trackroller.report.inputs import as_material
 from trackroller.report.numbers import share
 from trackroller.report.page import contents
 from trackroller.report.view import StudyView
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 from trackroller.study.store.sources import source_files
 
 LHS = {

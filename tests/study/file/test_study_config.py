@@ -15,7 +15,7 @@ import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.files import parse_mapping
 from trackroller.study.file import schema
-from trackroller.study.file.config import parse_study
+from trackroller.study.file.load import parse_study
 
 STUDIES = sorted((Path(__file__).parents[3] / "config" / "studies").glob("*.yaml"))
 PAIR = ["1.7225-normalised", "PA6"]

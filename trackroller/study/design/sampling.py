@@ -9,7 +9,6 @@ are random pairs of different values, and in response-surface designs they are c
 from __future__ import annotations
 
 import graphlib
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -33,7 +32,6 @@ METHODS = (
     "inner_outer",
     "table",
 )
-OLD_NAMES = {"nested": "inner_outer"}  # of designs; they keep working
 OPTIONS: dict[str, dict[str, Any]] = {
     "saltelli": {"second_order": True, "groups": None},
     "morris": {"levels": 4},
@@ -44,24 +42,6 @@ OPTIONS: dict[str, dict[str, Any]] = {
 }
 WEIGHING = ("lhs", "sobol", "saltelli")  # designs that draw the values of a list with their weights
 ARRAYS = ("grid", "central_composite", "box_behnken", "plackett_burman")  # `samples` does not count for them
-
-
-def current_name(method: str, warn: bool = False) -> str:
-    """Return the present name of a design method.
-
-    Parameters
-    ----------
-    method : name as a study file has it, possibly an old one
-    warn : whether to warn of an old name
-
-    Returns
-    -------
-    The name in `METHODS`; an unknown name comes back as it is.
-    """
-    new = OLD_NAMES.get(method, method)
-    if warn and new != method:
-        warnings.warn(f"design '{method}' is now called '{new}'; the old name keeps working", FutureWarning, 2)
-    return new
 
 
 def is_random(factor: Factor, method: str) -> bool:
@@ -156,7 +136,6 @@ def sample(
     ------
     InputError : unknown method or option, a factor the method cannot take, a value outside its bounds
     """
-    method = current_name(method)
     settings = _settings(method, options)
     if method == "table":
         columns, free, unit, meta = table(settings["table"])

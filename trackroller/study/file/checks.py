@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import MATERIAL_FIELDS
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.options import check_pairs, check_spin_model
-from trackroller.study.design import build
+from trackroller.study.design.build import DEFAULT_MATERIAL, MAX_CASES
+from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.draws import check_listed
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.saltelli import serves
-from trackroller.study.file.goals import check
+from trackroller.study.file.goals import check, check_scatter
+from trackroller.study.file.study import Study
 
 if TYPE_CHECKING:
     from trackroller.study.design.factors import Factor
-    from trackroller.study.file.config import Study
 
 
 GROUPED = ("grid", "saltelli")  # designs that give indices of groups of factors
 CONDITIONAL = ("grid", "saltelli", "lhs", "sobol", "table")  # designs that give indices at each level of a category
 MOST_LEVELS = 12
+_GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
 
 
 def _check_options(study: Study) -> None:
@@ -67,8 +73,8 @@ def cross_check(study: Study) -> None:
     check(config, study.parsed)
     _check_parts(study)
     _check_options(study)
-    build.check_correlations(study)
-    build.check_materials(study)
+    _check_correlations(study)
+    _check_materials(study)
 
 
 def _check_parts(study: Study) -> None:
@@ -129,3 +135,79 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
         raise InputError(where, name, f"a factor with a list of at most {MOST_LEVELS} values")
     if len(free) < 2:
         raise InputError(where, name, "a study with further factors")
+
+
+def _check_correlations(study: Study) -> None:
+    """Refuse rank correlations that the design or the factors cannot have, before anything is drawn."""
+    config = study.config
+    check_design(config.rank_correlations, config.design)
+    random = {n: f for n, f in study.parsed.items() if f.kind != "expression"}
+    copula(config.rank_correlations, {n: f for n, f in random.items() if f.scatter or config.design != "inner_outer"})
+
+
+def _check_materials(study: Study) -> None:
+    """Check that the database has every material of a study, with the scatter that its analysis needs.
+
+    Parameters
+    ----------
+    study : the study
+
+    Raises
+    ------
+    InputError : an unknown material, or a material without scatter
+    """
+    pairs = [*study.factors.get("material_pair", {}).get("values", [])]
+    if "material_pair" in study.config.base:
+        pairs.append(study.config.base["material_pair"])
+    used = {}
+    for i, name in enumerate(MATERIAL_FIELDS):
+        given = [study.config.base[name]] if name in study.config.base else []
+        given += [*study.factors.get(name, {}).get("values", []), *(pair[i] for pair in pairs)]
+        materials = dict.fromkeys(given or [DEFAULT_MATERIAL])
+        used[name.removesuffix("_material")] = [study.materials.material(material) for material in materials]
+    check_scatter(study.config, used)
+
+
+def check_geometry(study: Study) -> None:
+    """Check that no combination of the geometry's levels or ends of ranges conforms or interlocks.
+
+    Parameters
+    ----------
+    study : the study
+
+    Raises
+    ------
+    InputError : a combination for which roller and guide cannot touch in two points
+
+    Notes
+    -----
+    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide. Expressions and
+    tables are checked on the whole design before anything is solved.
+    """
+    config = study.config
+    if config.design == "table" or any(factor.kind == "expression" for factor in study.parsed.values()):
+        design = study.design()
+        problem = geometry_problem({name: design[name].values for name in _GEOMETRY})
+    else:
+        levels = [_ends(study, name) for name in _GEOMETRY]
+        if math.prod(map(len, levels)) > MAX_CASES:
+            raise InputError("design", "grid of the geometry", f"at most {MAX_CASES} cases")
+        rows = np.array(list(itertools.product(*levels)), dtype=float)
+        problem = geometry_problem({name: rows[:, i] for i, name in enumerate(_GEOMETRY)})
+    if problem is not None:
+        where = "factors" if problem.field in study.factors else "base"
+        raise InputError(f"{where}.{problem.field}", problem.value, problem.allowed, problem.remedy)
+
+
+def _ends(study: Study, name: str) -> list[float]:
+    factor = study.parsed.get(name)
+    if factor is None:
+        return [study.config.base.get(name, PARAMETERS[name].default)]
+    if factor.discrete:
+        return [float(level) for level in factor.levels]
+    if factor.kind == "normal":
+        return [factor.numbers[0]]
+    low, high = factor.numbers[-2:] if factor.kind == "truncnormal" else (factor.numbers[0], factor.numbers[-1])
+    if low < 0 < high and PARAMETERS[name].nonzero:
+        raise InputError(f"factors.{name}", [low, high], f"{PARAMETERS[name].allowed()}: the range holds 0")
+    return [low, high]

@@ -9,7 +9,7 @@ from typing import Any
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import DISTRIBUTIONS
-from trackroller.study.design.sampling import METHODS, OLD_NAMES
+from trackroller.study.design.sampling import METHODS
 from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 
 FILE = Path(__file__).resolve().parents[3] / "workflow" / "schemas" / "study.schema.json"
@@ -59,7 +59,7 @@ def schema() -> dict[str, Any]:
         for name in (*base, *OPTION_FACTORS)
     }
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
-    properties["design"]["enum"] = [*METHODS, *OLD_NAMES]
+    properties["design"]["enum"] = list(METHODS)
     for option in IN_STUDY:
         properties[option.name] |= _option(option)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found}

@@ -25,13 +25,12 @@ from trackroller.errors import InputError
 from trackroller.files import sha256, write_text, write_whole
 from trackroller.materials import builtin_database, load_database
 from trackroller.materials.file import find_user_file
-from trackroller.study.design.build import table_path
-from trackroller.study.file.config import load_study
+from trackroller.study.file.load import load_study
 from trackroller.study.provenance import versions
 from trackroller.study.repeat import compare
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 METADATA = "ro-crate-metadata.json"
 INPUTS = "inputs"
@@ -73,7 +72,7 @@ def _copy_inputs(study: Study, root: Path) -> None:
     text, user, copies = study.merged(), find_user_file(), {}
     if study.config.table is not None:
         name = Path(study.config.table).name
-        copies[f"{INPUTS}/{name}"] = Path(table_path(study))
+        copies[f"{INPUTS}/{name}"] = study.table_path
         text = study.merged(table=name)
     if user is not None:
         copies[MATERIALS_FILE] = user

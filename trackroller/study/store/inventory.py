@@ -15,7 +15,7 @@ from trackroller.study.store import chunks
 from trackroller.study.store.folder import StudyFolder
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 
 @dataclass
@@ -93,7 +93,7 @@ def check_default_model(study: Study, folder: StudyFolder) -> None:
     option = OPTIONS["contact_model"]
     earlier = folder.earlier().get("contact_model", option.default)
     # a list is a factor, which was never a default
-    if isinstance(earlier, str) and option.former.get(earlier, earlier) != option.default:
+    if isinstance(earlier, str) and earlier != option.default:
         raise InputError(
             "contact_model",
             option.default,

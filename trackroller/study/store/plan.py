@@ -26,7 +26,7 @@ from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import to_table
 from trackroller.study.cost import study_rate
-from trackroller.study.design.build import build, case_columns, table_path
+from trackroller.study.design.build import case_columns
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.growth import with_history
 from trackroller.study.file.config import check_name
@@ -37,7 +37,7 @@ from trackroller.study.store.inventory import Inventory, check_default_model, fo
 from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
-    from trackroller.study.file.config import Study
+    from trackroller.study.file.study import Study
 
 SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: the start of a job (1-2 s) must remain a small part
 MOST_CHUNKS = 400
@@ -112,7 +112,7 @@ def identify(study: Study, design: xr.Dataset) -> np.ndarray:
 
 def locate(study: Study, folder: StudyFolder) -> tuple[xr.Dataset, Inventory, np.ndarray]:
     """Return a study's design, its solved cases, and the index of each case of the design there; -1 if not solved."""
-    design, found = build(study), take_inventory(folder)
+    design, found = study.design(), take_inventory(folder)
     return design, found, found.find(identify(study, design))
 
 
@@ -131,7 +131,7 @@ def plan_key(study: Study) -> str:
     friction = sorted((sorted(pair), levels) for pair, levels in study.materials.friction_table.items())
     told = [solver_digest(), study.merged(), sorted(study.materials.materials.items()), friction]
     if study.config.table is not None:
-        told.append(sha256(Path(table_path(study))))
+        told.append(sha256(study.table_path))
     return hashlib.sha256(repr(told).encode()).hexdigest()
 
 
@@ -244,7 +244,7 @@ def _new_plan(study: Study, folder: StudyFolder, found: Inventory, tell: Tell) -
     """Plan the cases that no file holds; the plan file is written last."""
     if study.config.grown_from:
         tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
-    design = build(study)
+    design = study.design()
     cases = identify(study, design)
     options, group = case_options(study, design)
     wanted, first = np.unique(cases, return_index=True)

@@ -1,0 +1,86 @@
+"""Read and check a study file, so that errors are found before any case is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from trackroller.errors import InputError, unknown_name
+from trackroller.files import files_beside, find_beside, parse_mapping, read_text
+from trackroller.study.file.checks import check_geometry, cross_check
+from trackroller.study.file.config import StudyFile
+from trackroller.study.file.goals import Analysis
+from trackroller.study.file.study import Study
+
+
+def _translate(error: ValidationError) -> InputError:
+    """Return the first error of pydantic as an `InputError` with a remedy."""
+    # A misspelt key often causes the other errors, so it is reported first.
+    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
+    detail = found[0]
+    context = detail.get("ctx", {}).get("error")
+    if isinstance(context, InputError):
+        return context
+    where = ".".join(str(part) for part in detail["loc"]) or "study"
+    if detail["type"] == "extra_forbidden":
+        options = Analysis.model_fields if detail["loc"][0] == "analysis" and len(detail["loc"]) > 1 else None
+        return unknown_name("study key", where.removeprefix("analysis."), options or StudyFile.model_fields)
+    if detail["type"] == "missing":
+        return InputError(where, None, "every study needs this key", f"Add a line '{where}: ...'.")
+    return InputError(where, detail.get("input"), detail["msg"])
+
+
+def parse_study(
+    data: Mapping[str, Any], path: Path | None = None, database: Any = None, planned: bool = False
+) -> Study:
+    """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
+    try:
+        config = StudyFile.model_validate(dict(data))
+    except ValidationError as error:
+        raise _translate(error) from None
+    study = Study(config, path, database)
+    cross_check(study)
+    if not planned:
+        check_geometry(study)
+    return study
+
+
+def load_study(path: str | Path, database: Any = None, planned: bool = False) -> Study:
+    """Read and check a study file.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        The YAML file.
+    database : MaterialDatabase, optional
+        Materials. Default: the built-in database, changed and extended by the user's own file.
+    planned : bool
+        The geometry of every case is checked already; a job of a cluster need not draw the whole design for it.
+
+    Returns
+    -------
+    Study
+        The checked study.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or is not YAML, a key or name is unknown, a value is out of bounds, or the geometry
+        contradicts itself. The error names field, value, what is allowed and the nearest known name.
+
+    Examples
+    --------
+    >>> text = "{name: fit, factors: {roller_profile_radius: {values: [-6.5, -8]}}, contact_model: kalker}"
+    >>> characters = Path("study.yaml").write_text(text)
+    >>> load_study("study.yaml").design().sizes["case"]
+    2
+    """
+    path = Path(path)
+    with files_beside(path):
+        data = parse_mapping(read_text(path, "study file"), "study file")
+        if data.get("table") is not None:
+            find_beside(data["table"], "table")
+        return parse_study(data, path, database, planned)

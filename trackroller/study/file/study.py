@@ -1,0 +1,102 @@
+"""A checked study: what its file says, and what follows from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trackroller.files import write_yaml
+from trackroller.materials import MaterialDatabase, load_database
+from trackroller.study.design import build
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factors import Factor, parse
+from trackroller.study.file.config import IN_STUDY, StudyFile
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.study.design.sampling import SampledDesign
+
+
+@dataclass(frozen=True)
+class Study:
+    """A checked study: its configuration, the path of its file, and its materials."""
+
+    config: StudyFile
+    path: Path | None = None
+    database: Any = field(default=None, compare=False, repr=False)
+
+    @property
+    def name(self) -> str:
+        """Return the name of the study and of its results folder."""
+        return self.config.name
+
+    @cached_property
+    def factors(self) -> dict[str, dict[str, Any]]:
+        """Return all factors, including lists of contact models or spin models."""
+        extra = {
+            name: {"values": list(value)}
+            for name in OPTION_FACTORS
+            if not isinstance(value := getattr(self.config, name), str)
+        }
+        return {**self.config.factors, **extra}
+
+    @cached_property
+    def parsed(self) -> dict[str, Factor]:
+        """Return all factors as `Factor`."""
+        return {name: parse(name, spec) for name, spec in self.factors.items()}
+
+    @cached_property
+    def materials(self) -> MaterialDatabase:
+        """Return the material database: the built-in one, changed and extended by the user's file."""
+        return load_database() if self.database is None else self.database
+
+    @property
+    def table_path(self) -> Path:
+        """Return the path of the CSV of cases; a relative path starts from the folder of the study file."""
+        folder = Path() if self.path is None else self.path.parent
+        return folder / str(self.config.table)
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Return the keyword arguments of `solve` that are not factors."""
+        return {o.name: getattr(self.config, o.name) for o in IN_STUDY if o.name not in self.factors}
+
+    def merged(self, whole_paths: bool = False, table: str | None = None) -> str:
+        """Return the study as YAML with every default written out.
+
+        Parameters
+        ----------
+        whole_paths : bool
+            Write the path of the table of cases from the root on.
+        table : str, optional
+            Write this path of the table instead.
+        """
+        if table is None and whole_paths and self.config.table is not None:
+            table = str(self.table_path.resolve())
+        return self._text if table is None else write_yaml(self._data | {"table": table})
+
+    @property
+    def _data(self) -> dict[str, Any]:
+        return self.config.model_dump(mode="json", exclude_none=True)
+
+    @cached_property
+    def _text(self) -> str:
+        return write_yaml(self._data)  # kept: planning, solving and gathering ask for it several times
+
+    @cached_property
+    def drawn(self) -> SampledDesign:
+        """Return the drawn design; it is kept, because reading a CSV of a million cases takes seconds."""
+        return build.draw(self.config, self.factors, self.table_path)
+
+    def design(self) -> xr.Dataset:
+        """Return the cases of the study.
+
+        Returns
+        -------
+        xarray.Dataset
+            Dimension `case`, one variable a parameter, materials by name.
+        """
+        return build.build(self.config, self.drawn, self.materials)
