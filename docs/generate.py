@@ -72,7 +72,7 @@ def render() -> str:
     """Return the text of docs/parameters.md."""
     lines = [HEAD, "## Parameters of a case\n"]
     lines += _table(
-        ("name", "symbol", "unit", "default", "allowed", "meaning"),
+        ("name", "symbol", "unit", "default", "allowed", "role", "meaning"),
         [
             (
                 f"`{v.name}`",
@@ -80,6 +80,7 @@ def render() -> str:
                 v.unit,
                 "not given" if math.isnan(v.default) else f"{v.default:g}",
                 _range(v),
+                v.role,
                 v.meaning,
             )
             for v in p.PARAMETERS.values()

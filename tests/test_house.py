@@ -6,7 +6,7 @@ import pytest
 
 from validation.house import LONGEST_FUNCTION, MOST_ARGUMENTS, MOST_LINES, survey
 
-LINES_OF_CODE = 20_915
+LINES_OF_CODE = 21_400  # 525 of them for designs over their conditions
 # formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
 LONG_FUNCTIONS = {
     "trackroller/halfspace/kernels.py:point_kernel": "six stresses below a point load",

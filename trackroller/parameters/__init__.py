@@ -30,4 +30,9 @@ MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand
     "guide_profile": "drawn or measured cross-section of the guide, for normal: halfspace; not given: the circle",
     "roller_profile": "drawn or measured cross-section of the roller, for normal: halfspace; not given: the circle",
 }
+ROLES = ("choice", "condition")  # who sets a parameter: the designer, or the use of the roller
+ROLE_OF = {name: parameter.role for name, parameter in PARAMETERS.items()} | {
+    **dict.fromkeys((*MATERIAL_FIELDS, "material_pair", *MAPPING_FIELDS), "choice"),
+    "friction_law": "condition",
+}
 FRICTION_LEVELS = ("typical", "upper", "lower")

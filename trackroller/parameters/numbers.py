@@ -28,6 +28,8 @@ class Parameter:
         Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is refused.
     label : str
         Name for figures and reports, if it differs from `name`.
+    role : str
+        Who sets the value: the designer (`choice`) or the use of the roller (`condition`).
     """
 
     name: str
@@ -43,6 +45,7 @@ class Parameter:
     allow_missing: bool = False
     nonzero: bool = False
     label: str = ""
+    role: str = "choice"
 
     @property
     def long_name(self) -> str:
@@ -82,6 +85,7 @@ class Parameter:
 
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
+_USE: dict[str, Any] = {"role": "condition"}
 _ALL = (
     Parameter("axis_distance", "A_T", "mm", 21.75, "roller axis to the centre of the guide contour", **POSITIVE),
     Parameter("guide_profile_radius", "r_C,G", "mm", 6.0, "radius of the convex guide contour", **POSITIVE),
@@ -102,6 +106,7 @@ _ALL = (
         "curvature of the track: inf straight, > 0 convex towards the roller (outer wheel), < 0 concave (inner wheel)",
         allow_infinite=True,
         nonzero=True,
+        **_USE,
     ),
     Parameter(
         "contact_angle",
@@ -113,9 +118,18 @@ _ALL = (
         open_upper=True,
         **POSITIVE,
     ),
-    Parameter("radial_force", "F_rad", "N", -200.0, "< 0 presses the roller on the guide", upper=0.0, open_upper=True),
-    Parameter("axial_force", "F_ax", "N", 30.0, "along +x_R"),
-    Parameter("motor_force", "F_Motor", "N", -30.0, "< 0 driving, 0 free rolling, > 0 braking"),
+    Parameter(
+        "radial_force",
+        "F_rad",
+        "N",
+        -200.0,
+        "< 0 presses the roller on the guide",
+        upper=0.0,
+        open_upper=True,
+        **_USE,
+    ),
+    Parameter("axial_force", "F_ax", "N", 30.0, "along +x_R", **_USE),
+    Parameter("motor_force", "F_Motor", "N", -30.0, "< 0 driving, 0 free rolling, > 0 braking", **_USE),
     Parameter(
         "friction_coefficient",
         "mu",
@@ -126,6 +140,7 @@ _ALL = (
         0.0,
         2.0,
         allow_missing=True,
+        **_USE,
     ),
     Parameter(
         "velocity",
@@ -135,6 +150,7 @@ _ALL = (
         "for friction power, life in hours and friction laws only",
         label="mean travel speed",
         **POSITIVE,
+        **_USE,
     ),
     Parameter(
         "guide_overrollings_per_hour",
@@ -145,6 +161,7 @@ _ALL = (
         allow_missing=True,
         label="overrollings of a guide point per hour",
         **POSITIVE,
+        **_USE,
     ),
 )
 

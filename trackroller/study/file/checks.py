@@ -17,6 +17,7 @@ from trackroller.study.design.build import DEFAULT_MATERIAL, MAX_CASES
 from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.draws import check_listed
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
+from trackroller.study.design.roles import check_roles
 from trackroller.study.design.saltelli import serves
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.study import Study
@@ -71,6 +72,8 @@ def cross_check(study: Study) -> None:
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
     check(config, study.parsed)
+    if config.roles:
+        check_roles(config.roles, study.parsed if config.design != "table" else study.drawn.columns, config.design)
     _check_parts(study)
     _check_options(study)
     _check_correlations(study)

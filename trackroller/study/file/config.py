@@ -13,6 +13,7 @@ from trackroller.parameters import OPTIONS
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design.correlation import check_entries
 from trackroller.study.design.entries import base_value, choice, factor
+from trackroller.study.design.roles import check_words
 from trackroller.study.design.sampling import METHODS
 from trackroller.study.file.goals import Analysis, comparisons, directions
 
@@ -34,6 +35,7 @@ def check_name(name: Any) -> str:
 
 Name = Annotated[str, BeforeValidator(check_name)]
 Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(check_entries)]
+Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
 Goals = Annotated[dict[str, str], BeforeValidator(directions)]
 Comparisons = Annotated[tuple[str, ...], BeforeValidator(comparisons)]
 
@@ -95,6 +97,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     analysis: Analysis = Field(
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
     )
+    roles: Roles = Field({}, description="who sets a factor: choice (the designer) or condition (the use)")
     pareto: Goals = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
     constraints: Comparisons = Field((), description="comparisons that an allowed design must meet")
     chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases in each job; chosen if not given")

@@ -1,0 +1,88 @@
+"""Who sets each factor of a study: the designer (`choice`) or the use of the roller (`condition`).
+
+A design is one combination of choices. It is judged over all its conditions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from trackroller.errors import InputError, unknown_name
+from trackroller.parameters import ROLE_OF, ROLES, expressions
+from trackroller.study.design.entries import OPTION_FACTORS, choice
+from trackroller.study.design.factors import Factor
+
+EXAMPLE = "For example {friction_coefficient: condition, roller_profile_radius: choice}."
+
+
+def check_words(value: Any) -> dict[str, str]:
+    """Check the key `roles` of a study file: factors, each with `choice` or `condition`."""
+    if not isinstance(value, Mapping):
+        raise InputError("roles", value, "factors, each with choice or condition", EXAMPLE)
+    return {str(name): choice(role, f"roles.{name}", ROLES) for name, role in value.items()}
+
+
+def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: str) -> None:
+    """Check that the key `roles` names factors, and agrees with the arrays of an inner/outer design.
+
+    Parameters
+    ----------
+    given : factor -> `choice` or `condition`
+    factors : factors of the study by name, as `Factor` or as columns of a table
+    design : the design of the study
+
+    Raises
+    ------
+    InputError : a name is no factor, or an inner/outer design has the factor in the other array
+    """
+    for name, role in given.items():
+        where = f"roles.{name}"
+        if name in OPTION_FACTORS:
+            allowed = "a factor of the roller or of its use; this is an option of the calculation"
+            raise InputError(where, role, allowed, "Remove the line: designs are compared with one model.")
+        if name not in factors:
+            raise unknown_name(where, name, [n for n in factors if n not in OPTION_FACTORS])
+        factor = factors[name]
+        if design != "inner_outer" or factor.kind == "expression" or (role == "condition") == factor.scatter:
+            continue
+        if factor.scatter:
+            allowed = "condition: the factor scatters in the inner array"
+            raise InputError(where, role, allowed, "Give it as a list of values, or remove the line.")
+        allowed = "choice: the lists of inner_outer are design points"
+        raise InputError(where, role, allowed, f"Write scatter: true beside the list of factors.{name}.")
+
+
+def roles_of(
+    names: Iterable[str], factors: Mapping[str, Factor], given: Mapping[str, str], design: str = ""
+) -> dict[str, str]:
+    """Return the role of each factor.
+
+    Parameters
+    ----------
+    names : the factors asked for; options of the calculation have no role and are left out
+    factors : all factors of the study, whose expressions may use others; empty for a table
+    given : the key `roles` of the study file, which overrides what the program knows
+    design : the design of the study; in `inner_outer` the inner array holds the conditions
+
+    Returns
+    -------
+    Name -> `choice` or `condition`. A factor of the study's own, such as a ratio, has the role of the parameter that is
+    computed from it, and is a choice if several are and one of them is a choice.
+    """
+    fed: dict[str, list[str]] = {}
+    for other, factor in factors.items():
+        for source in expressions.names(factor.text, f"factors.{other}") if factor.text else ():
+            fed.setdefault(source, []).append(other)
+
+    def role(name: str) -> str:
+        if name in given:
+            return given[name]
+        known = factors.get(name)
+        if design == "inner_outer" and known is not None and known.kind != "expression":
+            return "condition" if known.scatter else "choice"
+        if name in ROLE_OF:
+            return ROLE_OF[name]
+        return "condition" if name in fed and all(role(other) == "condition" for other in fed[name]) else "choice"
+
+    return {name: role(name) for name in names if name not in OPTION_FACTORS}
