@@ -5,11 +5,11 @@ import pytest
 
 from trackroller.analysis.pareto import pareto, pareto_mask, study_pareto
 from trackroller.analysis.sensitivity import analyse_dataset
+from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
-from trackroller.report import choices
 from trackroller.report.numbers import quantity
-from trackroller.report.page import contents
-from trackroller.report.view import StudyView
+from trackroller.report.pages.study import contents
+from trackroller.report.words import pareto as choices
 from trackroller.study.file.load import parse_study
 
 LHS = {

@@ -9,9 +9,10 @@ import xarray as xr
 from trackroller.analysis.parts import of_groups, within_levels
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.sobol import sobol
+from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
-from trackroller.report import decisions, summary
-from trackroller.report.view import StudyView
+from trackroller.report.tables import indices as decisions
+from trackroller.report.words import in_short as summary
 from trackroller.study.design.saltelli import as_set, pairs_sharing, serves
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study

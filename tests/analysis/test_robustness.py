@@ -9,7 +9,7 @@ from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
-from trackroller.report import choices
+from trackroller.report.words import pareto as choices
 from trackroller.study.file.load import parse_study
 
 INNER_OUTER = {

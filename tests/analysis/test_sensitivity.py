@@ -11,7 +11,7 @@ from trackroller.analysis.givendata import first_order, given_data, pawn, prcc
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
-from trackroller.report import sentences as words
+from trackroller.report.words import indices as words
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
 from trackroller.study.outputs import outputs

@@ -7,7 +7,7 @@ from scipy import stats
 from trackroller.analysis.probability import bounds, probabilities
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.errors import InputError
-from trackroller.report import choices
+from trackroller.report.words import pareto as choices
 from trackroller.study.design.grown_lhs import grown_lhs
 from trackroller.study.file.load import parse_study
 

@@ -229,7 +229,7 @@ def test_time_of_a_study_counts_each_contact_model():
 
 
 def test_figures_hold_the_most_exact_of_several_contact_models():
-    from trackroller.report.view import StudyView
+    from trackroller.analysis.table import StudyView
 
     groups = ("forces", "peak_stress", "life")
     made = [tr.solve(tr.Case(), outputs=groups, contact_model=name) for name in ("sliding", "fastsim")]

@@ -15,15 +15,17 @@ import yaml
 from synthetic_results import grid_study
 
 import trackroller as tr
+from trackroller.analysis import contact_models as ladder
+from trackroller.analysis.groups import drives, groups
 from trackroller.analysis.pareto import study_pareto
-from trackroller.report import comparison as ladder
-from trackroller.report.comparison.words import levels_kept
+from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
 from trackroller.report.figures.study import draw_all
-from trackroller.report.groups import drives, groups
-from trackroller.report.page import contents, write_report
-from trackroller.report.view import StudyView
+from trackroller.report.pages.study import contents, write_report
+from trackroller.report.words import comparison
+from trackroller.report.words.comparison import levels_kept
+from trackroller.report.words.levels import group_texts
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from validation.contact_models.product import PATCHES, compare, patch_fields, write_words
@@ -130,11 +132,8 @@ def test_three_drives_get_room_and_many_are_told_by_their_sign(tmp_path):
     boxes = [axes.xaxis.label.get_window_extent() for axes in bottom]
     assert len(boxes) == 3 and boxes[-1].x1 <= figure.bbox.x1
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
-    assert drives(view_of("motor_force", [-20.0, -5.0, 0.0, 5.0, 9.0])).texts == (
-        "driven, 5 to 20 N",
-        "free rolling",
-        "braked, 5 to 9 N",
-    )
+    texts = group_texts(drives(view_of("motor_force", [-20.0, -5.0, 0.0, 5.0, 9.0])))
+    assert texts == ["driven, 5 to 20 N", "free rolling", "braked, 5 to 9 N"]
 
 
 def test_motor_force_in_the_base_and_another_factor(tmp_path):
@@ -178,12 +177,12 @@ def test_without_kalker_fastsim_is_the_reference(tmp_path):
         names = {drawn[1].name for f in drawers(ds) if (drawn := f())}
     assert paired.attrs["reference"] == "fastsim" and list(paired.contact_model.values) == ["sliding", "fastsim"]
     assert "models-error" in names
-    assert "too little to compare" in " ".join(ladder.sentences(paired))
+    assert "too little to compare" in " ".join(comparison.sentences(paired))
 
 
 def test_one_model_or_none_is_not_compared():
     ds = grid_study()
-    assert ladder.pairs(ds) is None and ladder.report_section(ds) == {} and drawers(ds) == []
+    assert ladder.pairs(ds) is None and comparison.report_section(ds) == {} and drawers(ds) == []
 
 
 def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_cases():
@@ -202,7 +201,7 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
     found = ladder.errors(paired).normal_force
     np.testing.assert_allclose(found.sel(contact_model="sliding").dropna("design"), 0.1, rtol=1e-9)
     np.testing.assert_allclose(found.sel(contact_model="fastsim").dropna("design"), 0.02, rtol=1e-9)
-    words = ladder.sentences(paired)
+    words = comparison.sentences(paired)
     assert "normal forces in 0 %" in words[1] and "normal forces in 100 %" in words[2]
 
 

@@ -16,13 +16,13 @@ from synthetic_results import grid_study, sampled_study
 from typer.testing import CliRunner
 
 from trackroller.analysis.pareto import pareto
+from trackroller.analysis.table import StudyView
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.report.explorer.pack import pack
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
 from trackroller.report.explorer.sample import sample_rows
-from trackroller.report.view import StudyView
 
 FACTORS = {
     "friction_coefficient": [0.05, 0.3],

@@ -17,9 +17,9 @@ from synthetic_results import PAIRS, grid_study, sampled_study
 
 from trackroller.analysis.pareto import pareto, study_pareto
 from trackroller.analysis.sensitivity import analyse
+from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.page import write_explorer
-from trackroller.report.page import write_report
-from trackroller.report.view import StudyView
+from trackroller.report.pages.study import write_report
 from trackroller.study.file.load import parse_study
 
 pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")]

@@ -15,9 +15,10 @@ from reference_cases import solve_sliding
 from synthetic_results import PAIRS, grid_study, sampled_study
 
 import trackroller as tr
+from trackroller.analysis.columns import at_surface
+from trackroller.analysis.effects import leading_factor, paired_effect
+from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
-from trackroller.report.claims import leading_factor, paired_effect
-from trackroller.report.columns import at_surface
 from trackroller.report.figures import style
 from trackroller.report.figures.contact import plot_case
 from trackroller.report.figures.contact_patch import case_name
@@ -27,7 +28,7 @@ from trackroller.report.figures.maps import regime_map
 from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number
-from trackroller.report.view import StudyView
+from trackroller.report.words.levels import held_words
 
 ALL = {
     "bands-roller_life_hours",
@@ -177,7 +178,8 @@ def test_held_factors_take_the_base_level_else_the_middle():
     assert view.grid and set(view.factors) == set(SMALL)
     assert view.held_level("roller_profile_radius") == -7.0
     assert view.held_level("axial_force") == 30.0
-    rows, said = view.hold(("friction_coefficient",))
+    rows, held = view.hold(("friction_coefficient",))
+    said = held_words(held)
     assert len(rows) == 2 and "roller profile radius −7 mm" in said and "driven −30 N" in said
 
 

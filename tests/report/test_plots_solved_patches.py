@@ -10,7 +10,7 @@ from matplotlib.patches import PathPatch
 from reference_cases import solve_sliding
 
 import trackroller as tr
-from trackroller.report.columns import at_surface
+from trackroller.analysis.columns import at_surface
 from trackroller.report.figures.contact_outline import Patch, widths
 from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
 from trackroller.report.figures.contact_sections import sections, surface_stress

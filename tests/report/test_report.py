@@ -13,12 +13,12 @@ import xarray as xr
 from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, sampled_study
 
+from trackroller.analysis.table import StudyView
 from trackroller.report.figures.study import draw_all
-from trackroller.report.findings import occurrence
-from trackroller.report.inputs import Row
-from trackroller.report.page import contents, models_used, write_report
-from trackroller.report.tables import regime_table, validity_table
-from trackroller.report.view import StudyView
+from trackroller.report.pages.study import contents, models_used, write_report
+from trackroller.report.tables.cases import regime_table, validity_table
+from trackroller.report.tables.inputs import Row
+from trackroller.report.words.cases import occurrence
 from trackroller.roller.dataset import VALIDITY_BITS
 
 FACTORS = {

@@ -13,15 +13,15 @@ import xarray as xr
 import yaml
 from synthetic_results import grid_study
 
-from trackroller.report.choices import pareto
-from trackroller.report.decisions import robust_tables
-from trackroller.report.effects import effect_of
-from trackroller.report.findings import best_design, occurrence, ranked, valid_designs
-from trackroller.report.flags import SLIDING_ERROR, friction_error, full_sliding
+from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import percent, plus_minus, share
-from trackroller.report.page import contents
-from trackroller.report.tables import validity_table
-from trackroller.report.view import StudyView
+from trackroller.report.pages.study import contents
+from trackroller.report.tables.cases import validity_table
+from trackroller.report.tables.indices import robust_tables
+from trackroller.report.words.cases import best_design, occurrence, ranked, valid_designs
+from trackroller.report.words.factors import effect_of
+from trackroller.report.words.flags import SLIDING_ERROR, friction_error, full_sliding
+from trackroller.report.words.pareto import pareto
 from trackroller.report.workbook import export
 from trackroller.study.file.load import parse_study
 

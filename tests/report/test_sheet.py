@@ -19,10 +19,10 @@ from typer.testing import CliRunner
 import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.report.flags import flags_of
-from trackroller.report.sheet.facts import collect
-from trackroller.report.sheet.page import render
-from trackroller.report.sheet.text import as_json
+from trackroller.report.pages.sheet import render
+from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet_text import as_json
+from trackroller.report.words.flags import flags_of
 from trackroller.roller.limits import limits
 
 SCATTER = {"like": "PA6", "name": "PA6 with scatter", "scatter_in_cycles": 4.0}
@@ -47,7 +47,7 @@ def limits_searched_once():
         return kept[key] if key in kept else kept.setdefault(key, limits(case, model))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("trackroller.report.sheet.facts.limits", searched)
+        patch.setattr("trackroller.report.pages.sheet_facts.limits", searched)
         yield
 
 

@@ -11,9 +11,10 @@ import pytest
 import yaml
 from random_studies import FLAGS, random_study
 
-from trackroller.report import findings, flags
-from trackroller.report.effects import effect_of
-from trackroller.report.view import StudyView
+from trackroller.analysis.table import StudyView
+from trackroller.report.words import cases as findings
+from trackroller.report.words import flags
+from trackroller.report.words.factors import effect_of
 
 STUDIES = 150
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")
@@ -372,7 +373,7 @@ def test_no_sentence_on_a_random_study_is_false(part):
 
 def test_an_interval_of_a_ratio_of_medians_covers_the_truth():
     """Skewed, bimodal and tied draws: the interval holds the true difference in at least 94 % of 1,000 samples."""
-    from trackroller.report.claims import difference_of_medians
+    from trackroller.analysis.effects import difference_of_medians
 
     rng = np.random.default_rng(1)
     draws = {

@@ -11,12 +11,13 @@ from scipy.stats import spearmanr
 
 from trackroller.analysis.pareto import pareto_mask
 from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.report import choices, decisions
-from trackroller.report import sentences as words
-from trackroller.report.effects import effect_of
+from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import level_text
-from trackroller.report.summary import samples
-from trackroller.report.view import StudyView
+from trackroller.report.tables import indices as decisions
+from trackroller.report.words import indices as words
+from trackroller.report.words import pareto as choices
+from trackroller.report.words.factors import effect_of
+from trackroller.report.words.in_short import samples
 from trackroller.study.file.load import parse_study
 
 NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")

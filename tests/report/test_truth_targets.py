@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.report.aims import target, target_tables
-from trackroller.report.page import contents
+from trackroller.report.pages.study import contents
+from trackroller.report.words.targets import target, target_tables
 from trackroller.study.file.load import parse_study
 
 SHARE = r"([\d.]+) %"

@@ -66,13 +66,13 @@ def test_solver_depends_on_late_imports_and_data():
     assert not any(name.startswith(("study/", "report/", "cli/", "analysis/")) for name in names)
     assert "materials/materials.yaml" in names  # its values stand in the fingerprint instead
     assert "report/templates/report.html.j2" in {
-        p.relative_to(sources.PACKAGE).as_posix() for p in sources.source_files("trackroller.report.page")
+        p.relative_to(sources.PACKAGE).as_posix() for p in sources.source_files("trackroller.report.pages.study")
     }
 
 
 def test_every_shipped_data_file_belongs_to_a_module():
     """The digest would leave out a data file that no module names."""
-    found = {path for path in sources.source_files(["trackroller.cli.main", "trackroller.report.page"])}
+    found = {path for path in sources.source_files(["trackroller.cli.main", "trackroller.report.pages.study"])}
     shipped = {path for paths in sources._data_files(sources.PACKAGE).values() for path in paths}
     assert {path for path in shipped if path.name != "py.typed"} <= found
 

@@ -89,8 +89,8 @@ def solve_and_tell(
     dataset = solve_case(case, words, **more)
     if target is not None:
         write_result(dataset, target)
-    from trackroller.report.sheet.page import write_sheet  # heavy: rich and jinja2
-    from trackroller.report.sheet.text import as_json, print_facts
+    from trackroller.report.pages.sheet import write_sheet  # heavy: rich and jinja2
+    from trackroller.report.pages.sheet_text import as_json, print_facts
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
@@ -111,8 +111,8 @@ def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) ->
     `out` receives netCDF, and `page` the page. `json` prints JSON; without `json` and `out`, tables are printed.
     """
     target, sheet = (None if place is None else writable(place) for place in (out, page))
-    from trackroller.report.sheet.page import write_spectrum  # heavy: jinja2
-    from trackroller.report.sheet.text import as_json, print_spectrum
+    from trackroller.report.pages.sheet import write_spectrum  # heavy: jinja2
+    from trackroller.report.pages.sheet_text import as_json, print_spectrum
     from trackroller.study.spectrum.file import load_spectrum
     from trackroller.study.spectrum.solve import solve_spectrum
 

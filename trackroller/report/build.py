@@ -12,7 +12,7 @@ import xarray as xr
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
 from trackroller.files import write_whole
-from trackroller.report.page import write_report
+from trackroller.report.pages.study import write_report
 from trackroller.study.store.folder import StudyFolder
 
 log = logging.getLogger("trackroller")

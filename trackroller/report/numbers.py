@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
-from trackroller.study.design.levels import short
+from trackroller.study.design.levels import NAMED, short
 
 UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°"}
 UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm"}
-SPOKEN = ("motor_force", "guide_curve_radius", "material_pair", "roller_material", "guide_material")
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -199,7 +198,7 @@ def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> 
 def setting(name: str, value: Any) -> str:
     """Write a factor and its level, as 'friction coefficient 0.3' or 'driven −30 N'."""
     text = level_text(name, value)
-    spoken = name in SPOKEN and not (name == "guide_curve_radius" and text == "straight")
+    spoken = name in NAMED and not (name == "guide_curve_radius" and text == "straight")
     return text if spoken else "straight track" if name == "guide_curve_radius" else f"{long_name(name)} {text}"
 
 

@@ -3,7 +3,7 @@
     python -m validation.benchmarks.contact_spin [--accuracy PRESET]
 
 540 rollers on a straight guide: friction 0.02 to 0.5, contact angle 12 to 75 deg, axis distance 15 to 1000 mm, pressed
-by 200 N, free, with 30 N of axial force, and driven by 6 N. Spin is phi rho (`report.comparison.pairs.spin`).
+by 200 N, free, with 30 N of axial force, and driven by 6 N. Spin is phi rho (`analysis.contact_models.spin`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 import trackroller as tr
-from trackroller.report import comparison as ladder
+from trackroller.analysis import contact_models as ladder
 from validation.benchmarks.command import run
 from validation.contact_models.product import spread
 

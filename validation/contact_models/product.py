@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.contact_models import GOOD, errors, pairs
 from trackroller.files import write_whole
 from trackroller.report.build import analyse_study, draw_study, report_study
-from trackroller.report.comparison import GOOD, errors, pairs
-from trackroller.report.comparison.words import sentences
 from trackroller.report.figures import style
+from trackroller.report.words.comparison import sentences
 from trackroller.roller.case import Case
 from trackroller.roller.solver import solve
 from trackroller.study.file.load import load_study

@@ -45,7 +45,7 @@ rule report:
         study=f"{RESULTS}/study.nc",
         figures=f"{RESULTS}/figures",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=digest_file(f"{RESULTS}/code", "trackroller.report.page"),
+        code=digest_file(f"{RESULTS}/code", "trackroller.report.pages.study"),
     output:
         report(
             f"{RESULTS}/report.html",

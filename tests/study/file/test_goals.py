@@ -15,15 +15,15 @@ from trackroller.analysis.pareto import study_pareto
 from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
+from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import expressions
-from trackroller.report import sentences as words
 from trackroller.report.figures.sn_diagram import curve, sn_diagram
-from trackroller.report.inputs import as_material
 from trackroller.report.numbers import share
-from trackroller.report.page import contents
-from trackroller.report.view import StudyView
+from trackroller.report.pages.study import contents
+from trackroller.report.tables.inputs import as_material
+from trackroller.report.words import indices as words
 from trackroller.study.file.load import parse_study
 from trackroller.study.store.sources import source_files
 

@@ -15,17 +15,17 @@ import markupsafe
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.columns import study_dims
 from trackroller.analysis.pareto import default_objectives, study_pareto
+from trackroller.analysis.table import StudyView, load_analysis
 from trackroller.errors import InputError
 from trackroller.files import write_text
-from trackroller.report.choices import heading
-from trackroller.report.columns import study_dims
 from trackroller.report.explorer.pack import pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count
-from trackroller.report.view import StudyView, load_analysis
+from trackroller.report.words.pareto import heading
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import flat, read_study
 from trackroller.study.store.folder import StudyFolder

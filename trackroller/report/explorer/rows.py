@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, study_dims
+from trackroller.analysis.table import BODIES, StudyView
 from trackroller.errors import InputError
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.report.columns import BODY_RESULTS, CONTACT_RESULTS, study_dims
-from trackroller.report.flags import words_of
-from trackroller.report.inputs import stored_materials
-from trackroller.report.numbers import SPOKEN, capital, level_text, long_name, plain, unit_text
-from trackroller.report.view import BODIES, StudyView
+from trackroller.report.numbers import capital, level_text, long_name, plain, unit_text
+from trackroller.report.tables.inputs import stored_materials
+from trackroller.report.words.flags import words_of
 from trackroller.roller.record import setting_text
+from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
 from trackroller.study.outputs import Output, default_names, flat, outputs, read_study
 
@@ -77,12 +78,12 @@ def _setting(view: StudyView, name: str, role: str) -> Column:
     """Return the column of a factor or of an input that follows from factors."""
     values = view.table[name].to_numpy()
     parameter = PARAMETERS.get(name)
-    unit = unit_text(parameter.unit) if parameter and name not in SPOKEN else ""
+    unit = unit_text(parameter.unit) if parameter and name not in NAMED else ""
     label = capital(long_name(name))
     few = not view.numeric(name) or view.grid or len(view.levels(name)) <= 12
     if not few or (role == "input" and view.numeric(name)):
         return Column(name, label, unit, role, values.astype(float), log=_spread(values))
-    return coded(name, label, role, values, [level_text(name, v, unit=name in SPOKEN) for v in view.levels(name)], unit)
+    return coded(name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in view.levels(name)], unit)
 
 
 def coded(

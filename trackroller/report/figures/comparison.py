@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.report.comparison.pairs import GOOD, designs, errors, measured, pairs
-from trackroller.report.comparison.words import gap, short, telling_factors
+from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison_panels import LETTERS, Frame, frame, label_axis, line, panels, rolling
 from trackroller.report.figures.panels import capped, legend, mark_unlimited
 from trackroller.report.numbers import capital, percent, with_unit
+from trackroller.report.words.comparison import gap, short, telling_factors
 
 Values = Callable[["xr.Dataset"], "xr.DataArray"]
 LEAST = 6e-4  # error at the lower end of the axes [1]

@@ -10,13 +10,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trackroller.report.comparison.pairs import designs
-from trackroller.report.comparison.words import FRICTION
+from trackroller.analysis.contact_models import designs
+from trackroller.analysis.groups import DRIVE, Groups, drives, groups
+from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, quantiles, set_axis
-from trackroller.report.groups import DRIVE, Groups, drives, groups
 from trackroller.report.numbers import capital, factor_label
-from trackroller.report.view import StudyView
+from trackroller.report.words.comparison import FRICTION
+from trackroller.report.words.levels import group_texts, held_words
 
 # told apart by dash and mark as much as by colour
 LOOKS: dict[str, dict[str, Any]] = {
@@ -41,7 +42,7 @@ class Frame:
     @property
     def titles(self) -> list[str]:
         """Return the headings of the columns."""
-        return [capital(t) for t in self.columns.texts] if self.columns is not None else [""]
+        return [capital(t) for t in group_texts(self.columns)] if self.columns is not None else [""]
 
     def _inside(self, column: int) -> np.ndarray:
         return np.ones(self.x.index.size, bool) if self.columns is None else self.columns.index == column
@@ -74,12 +75,12 @@ def frame(ds: xr.Dataset, name: str | None = None, hold: bool = False, split: bo
     x = name or axis_name(view)
     if x is None or not len(view.table):
         return None
-    rows, said = view.hold((x, DRIVE) if split else (x,)) if hold else (view.table, "")
+    rows, held = view.hold((x, DRIVE) if split else (x,)) if hold else (view.table, {})
     if not rolling(ds)[rows.index].any():
-        rows, said = view.table, ""
+        rows, held = view.table, {}
     view, part = replace(view, table=rows), ds.isel(design=rows.index)
     columns = drives(view) if split and x != DRIVE and DRIVE in view.factors else None
-    return Frame(part, groups(view, x), columns, said)
+    return Frame(part, groups(view, x), columns, held_words(held))
 
 
 def rolling(ds: xr.Dataset) -> np.ndarray:

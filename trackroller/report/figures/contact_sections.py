@@ -14,8 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
 from matplotlib.ticker import MaxNLocator
 
+from trackroller.analysis.columns import at_surface
 from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
-from trackroller.report.columns import at_surface
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, widths
 from trackroller.report.figures.contact_patch import case_name, case_text

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from matplotlib.axes import Axes
 
-from trackroller.report.claims import explained
-from trackroller.report.effects import effect_of
+from trackroller.analysis.effects import explained
+from trackroller.analysis.groups import Groups, classes, groups
+from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
-from trackroller.report.groups import Groups, classes, coloured, groups
 from trackroller.report.numbers import capital, factor_label, long_name, with_unit
-from trackroller.report.view import StudyView
+from trackroller.report.words.factors import effect_of
+from trackroller.report.words.levels import coloured
 
 MAX_PANELS = 9
 BINS = 6
@@ -108,7 +107,7 @@ def _panel(axes: Axes, along: Groups, values: np.ndarray, series: Series) -> Non
         drawn = quantiles(values[chosen], along.index[chosen], len(along), (25, 50, 75), FEWEST)
         band(axes, along.at + shift, drawn, {"color": colour, "marker": style.MARKERS[g % 10]}, along.ordered)
     axes.set_xlabel(factor_label(along.name) if along.ordered else capital(long_name(along.name)))
-    set_axis(axes, replace(along, texts=("",) * len(along)) if apart else along, PANEL_LETTERS)
+    set_axis(axes, along, PANEL_LETTERS, named=not apart)
 
 
 def _sentence(view: StudyView, column: str, words: str, rows: np.ndarray) -> str:

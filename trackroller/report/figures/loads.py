@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.report.claims import leading_factor
-from trackroller.report.effects import effect_of
+from trackroller.analysis.effects import leading_factor
+from trackroller.analysis.table import BODIES, StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend, running
-from trackroller.report.findings import lift_off, surface
-from trackroller.report.groups import coloured
 from trackroller.report.numbers import factor_label, level_text, listing, number, quantity, symbol, with_unit
-from trackroller.report.view import BODIES, StudyView
+from trackroller.report.words.cases import lift_off, surface
+from trackroller.report.words.factors import effect_of
+from trackroller.report.words.levels import coloured, held_words
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
 MEDIANS = "Lines: medians of the designs; bands: 5 to 95 %."
@@ -37,6 +37,7 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
         return None
     hue = _hue(view, f"peak_stress_{bodies[0]}", fits)
     rows, held = view.hold((*fits, hue) if hue else fits)
+    said = held_words(held)
     rows = rows[view.rolling[rows.index]]
     if not len(rows):
         return None
@@ -64,9 +65,9 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
     if view.grid:
         dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
         entries += [("filled: at the surface", dot), ("hollow: below it", {**dot, "markerfacecolor": "white"})]
-        held = f"Filled marks: the peak lies at the surface; hollow marks: below it. {held}"
+        said = f"Filled marks: the peak lies at the surface; hollow marks: below it. {said}"
     legend(figure, entries, 2)
-    told = held if view.grid else MEDIANS
+    told = said if view.grid else MEDIANS
     style.head(figure, "Peak stress against fit", told)
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
@@ -149,7 +150,7 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
     drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]  # else one line for all
     shown = (*view.behind(x), *(["motor_force"] if drives != [None] else []))
     rows, held = view.hold(shown)
-    told = held if view.grid else MEDIANS
+    told = held_words(held) if view.grid else MEDIANS
     figure = style.new_figure(74)
     panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
     looks = [{"color": colour, "marker": mark} for colour, mark in zip(style.palette(2), "os", strict=True)]

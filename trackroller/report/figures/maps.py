@@ -14,13 +14,14 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 from matplotlib.patches import Patch, Rectangle
 
+from trackroller.analysis.effects import explained
+from trackroller.analysis.groups import BINS, classes
+from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.claims import explained
 from trackroller.report.figures import style
-from trackroller.report.findings import extremes, occurrence
-from trackroller.report.groups import BINS, classes
 from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
-from trackroller.report.view import StudyView
+from trackroller.report.words.cases import extremes, occurrence
+from trackroller.report.words.levels import held_words
 
 FEWEST = 5  # a sample with fewer cases outside the most frequent regime has no map
 MAX_TICKS = 9
@@ -55,11 +56,11 @@ def life_map(view: StudyView) -> style.Drawn:
     axes.set_ylabel(factor_label(pair[1]))
     axes.grid(False)
     over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
-    style.head(figure, capital(over), held)
+    style.head(figure, capital(over), held_words(held))
     how = "Outlined parts do not roll" if view.grid else "Each cell is the median of its cases"
     inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
     said = extremes(view, column, words, unit, pair, inside)
-    return figure, style.FigureInfo("life_map", f"{capital(over)}. {how}. {held}".strip(), said.text)
+    return figure, style.FigureInfo("life_map", f"{capital(over)}. {how}. {held_words(held)}".strip(), said.text)
 
 
 def _life_pair(view: StudyView) -> Pair | None:

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from trackroller.report.groups import Groups
+from trackroller.analysis.groups import Groups
+from trackroller.report.words.levels import group_texts
 
 CLASSES, FEWEST = 8, 5  # most classes of a sample along an axis, and fewest rows of a class
 Entries = list[tuple[str, dict[str, Any]]]
@@ -98,16 +99,16 @@ def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> N
     band(axes, at, quantiles(y, index, count), look, ordered=True)
 
 
-def set_axis(axes: Axes, along: Groups, letters: int) -> None:
+def set_axis(axes: Axes, along: Groups, letters: int, named: bool = True) -> None:
     """Write the names of groups without an order under an axis that is `letters` letters wide, or the ticks of numbers.
 
-    A line breaks between words, but not between a number and its unit.
+    A line breaks between words, but not between a number and its unit. Without `named` the ticks have no text.
     """
     if along.ordered:
         axes.xaxis.set_major_locator(MaxNLocator(5))
         return
     width = max(6, letters // len(along))
-    kept = [re.sub(r"(\d) ", "\\1\u00a0", text) for text in along.texts]
+    kept = [re.sub(r"(\d) ", "\\1\u00a0", text) for text in (group_texts(along) if named else [""] * len(along))]
     texts = [textwrap.fill(text, width).replace("\u00a0", " ") for text in kept]
     axes.set_xticks(along.at, texts, linespacing=0.95)
     axes.set_xlim(-0.6, len(along) - 0.4)

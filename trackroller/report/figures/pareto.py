@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.effects import leading_factor
+from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report import choices
-from trackroller.report.aims import MAX_POINTS
-from trackroller.report.claims import leading_factor
 from trackroller.report.figures import style
-from trackroller.report.findings import CONDITIONS
-from trackroller.report.groups import coloured
 from trackroller.report.numbers import capital, listing, long_name, plain, with_unit
-from trackroller.report.view import StudyView
+from trackroller.report.words import pareto as choices
+from trackroller.report.words.cases import CONDITIONS
+from trackroller.report.words.levels import coloured
+from trackroller.report.words.targets import MAX_POINTS
 from trackroller.study.design.entries import OPTION_FACTORS
 
 _WAYS = {"max": "up", "min": "down"}

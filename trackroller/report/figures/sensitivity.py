@@ -13,9 +13,9 @@ import seaborn
 import xarray as xr
 from matplotlib.figure import Figure
 
-from trackroller.report import sentences as words
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, with_unit
+from trackroller.report.words import indices as words
 from trackroller.study.outputs import DEFAULTS
 
 Look = dict[str, Any]

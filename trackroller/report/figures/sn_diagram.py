@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from trackroller.analysis.table import BODIES, StudyView
 from trackroller.damage import fatigue
 from trackroller.damage.fatigue import curve_of
 from trackroller.materials import Material
 from trackroller.materials.properties import REQUIRED
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.findings import strength
-from trackroller.report.inputs import as_material, stored_materials
 from trackroller.report.numbers import count, listing, rounded, with_unit
-from trackroller.report.view import BODIES, StudyView
+from trackroller.report.tables.inputs import as_material, stored_materials
+from trackroller.report.words.cases import strength
 
 BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
 MAX_MATERIALS = 6

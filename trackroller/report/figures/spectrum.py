@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.report.choices import chance
 from trackroller.report.figures import style
 from trackroller.report.numbers import listing
-from trackroller.report.sheet.spectrum import track
+from trackroller.report.pages.spectrum import track
+from trackroller.report.words.pareto import chance
 from trackroller.study.spectrum.solve import BODIES
 
 MOST = 16  # blocks drawn one by one; the others stand together

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -11,7 +10,7 @@ from pathlib import Path
 import xarray as xr
 
 from trackroller.analysis.pareto import study_pareto
-from trackroller.report import sentences as words
+from trackroller.analysis.table import StudyView, load_analysis
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
 from trackroller.report.figures.factors import by_factor
@@ -27,10 +26,9 @@ from trackroller.report.figures.sensitivity import (
     tornado,
 )
 from trackroller.report.figures.sn_diagram import sn_diagram
-from trackroller.report.flags import FRICTION_OUTPUTS, friction_error
-from trackroller.report.view import StudyView, load_analysis
+from trackroller.report.words import indices as words
+from trackroller.report.words.flags import FRICTION_OUTPUTS, friction_error
 
-log = logging.getLogger(__name__)
 Draw = Callable[[], style.Drawn]
 OF_CASES = (by_factor, life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)
 FRICTION_WORDS = ("friction power", "friction work", "friction energy")
@@ -52,8 +50,7 @@ def draw_all(study_nc: Path, out_dir: Path, sensitivity_nc: Path | None = None) 
     Returns
     -------
     list of FigureInfo
-        The figures drawn, in the order of the report. A figure that cannot be drawn is left out with a logged warning,
-        so that a figure never stops a run.
+        The figures drawn, in the order of the report.
     """
     ds, sens = xr.load_dataset(study_nc), load_analysis(sensitivity_nc)
     view = StudyView.of(ds)
@@ -75,16 +72,10 @@ def _is_about_friction(info: style.FigureInfo) -> bool:
 
 def _jobs(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None) -> Iterator[Draw]:
     """Yield the drawings of the cases: contact models side by side, the study's own figures, the Pareto front."""
-    for make in (drawers, lambda study: [partial(draw, view) for draw in OF_CASES], partial(_front, view, sens)):
-        try:
-            yield from make(ds)
-        except Exception as problem:  # a picture never fails a run
-            log.warning("figures were left out: %s", problem, exc_info=True)
-
-
-def _front(view: StudyView, sens: xr.Dataset | None, ds: xr.Dataset) -> list[Draw]:
-    front = study_pareto(ds, sens)
-    return [] if front is None else [partial(pareto_front, front, view)]
+    yield from drawers(ds)
+    yield from (partial(draw, view) for draw in OF_CASES)
+    if (front := study_pareto(ds, sens)) is not None:
+        yield partial(pareto_front, front, view)
 
 
 def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:

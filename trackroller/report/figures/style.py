@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import io
 import json
-import logging
 import math
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -24,11 +23,8 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
-from trackroller.errors import WorkError
 from trackroller.files import write_text, write_whole
 from trackroller.report.numbers import number
-
-log = logging.getLogger(__name__)
 
 COLUMN_MM = 85.0  # a column of a two-column page
 WIDE_MM = 170.0  # the one wide column of the report
@@ -175,7 +171,7 @@ def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
 
 
 def draw_all(jobs: Iterable[Callable[[], Drawn]], out_dir: Path) -> list[FigureInfo]:
-    """Draw and save figures, and return what each shows; one that cannot be drawn is logged and left out.
+    """Draw and save figures, and return what each shows; leave out those without content.
 
     Raises
     ------
@@ -186,14 +182,9 @@ def draw_all(jobs: Iterable[Callable[[], Drawn]], out_dir: Path) -> list[FigureI
     with look(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
         for draw in jobs:
-            try:
-                if (drawn := draw()) is not None:
-                    save(drawn[0], out_dir, drawn[1].name)
-                    infos.append(drawn[1])
-            except WorkError:  # a full disk is not the figure's fault
-                raise
-            except Exception as problem:  # a figure never fails a run
-                log.warning("a figure was not drawn: %s", problem, exc_info=True)
+            if (drawn := draw()) is not None:
+                save(drawn[0], out_dir, drawn[1].name)
+                infos.append(drawn[1])
     return infos
 
 

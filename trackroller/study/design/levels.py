@@ -14,6 +14,7 @@ from typing import Any
 from trackroller.parameters import MAPPING_FIELDS
 from trackroller.study.design.factors import label
 
+NAMED = ("motor_force", "guide_curve_radius", "material_pair", "roller_material", "guide_material")  # levels have names
 EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
 
 

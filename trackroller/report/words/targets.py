@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.report.choices import chance, point_words
-from trackroller.report.claims import Sentence, estimate
+from trackroller.analysis.effects import estimate
 from trackroller.report.numbers import capital, count, level_text, long_name, number, quantity, setting
-from trackroller.report.tables import Table
+from trackroller.report.tables.cases import Table
+from trackroller.report.words.pareto import chance, point_words
+from trackroller.report.words.sentence import Sentence
 
 SAME = 1e-6  # probabilities that differ by less are called the same
 MAX_POINTS = 24  # rows of the table of design points

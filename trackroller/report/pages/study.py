@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import logging
 from collections import defaultdict
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,24 +12,23 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.analysis.pareto import study_pareto
+from trackroller.analysis.table import StudyView, load_analysis
 from trackroller.files import write_text
-from trackroller.report import choices
-from trackroller.report import sentences as words
-from trackroller.report.aims import target_tables
-from trackroller.report.comparison import report_section
-from trackroller.report.decisions import index_table, measure_table, pareto_table, part_tables, robust_tables
 from trackroller.report.explorer.page import explorer, secured
-from trackroller.report.flags import friction_error
 from trackroller.report.html import data_uri, render
-from trackroller.report.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
 from trackroller.report.numbers import capital, count, long_name, percent, rounded
-from trackroller.report.summary import in_short
-from trackroller.report.tables import Table, best_table, cell, reason_table, regime_table, validity_table
-from trackroller.report.view import StudyView, load_analysis
+from trackroller.report.tables.cases import Table, best_table, cell, reason_table, regime_table, validity_table
+from trackroller.report.tables.indices import index_table, measure_table, pareto_table, part_tables, robust_tables
+from trackroller.report.tables.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
+from trackroller.report.words import indices as words
+from trackroller.report.words import pareto as choices
+from trackroller.report.words.comparison import report_section
+from trackroller.report.words.flags import friction_error
+from trackroller.report.words.in_short import in_short
+from trackroller.report.words.targets import target_tables
 from trackroller.report.workbook import export
 from trackroller.study.design.sampling import ARRAYS
 
-log = logging.getLogger(__name__)
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 PLACES = ("decide", "why", "ends", "models")  # sections with tables and figures
@@ -65,8 +62,8 @@ def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_
     """
     ds, sens = xr.load_dataset(study_nc), load_analysis(sensitivity_nc)
     content = contents(ds, sens)
-    content["figures"] = _guarded(lambda: dict.fromkeys(PLACES, ()), figures, Path(figures_dir))
-    content["explorer"] = _guarded(lambda: None, explorer, ds, None, sens)
+    content["figures"] = figures(Path(figures_dir))
+    content["explorer"] = explorer(ds, None, sens)
     write_text(Path(out_html), secured(render("report.html.j2", content, cell=cell)))
     export([t for key in PLACES for t in content[key]], Path(out_html).parent / "tables")
     return Path(out_html)
@@ -83,7 +80,7 @@ def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
     view = StudyView.of(ds)
     attrs, settings = dict(ds.attrs), view.study
     merged = {**{k: settings[k] for k in (*OPTIONS, "design") if k in settings}, **attrs}
-    models = _guarded(dict, report_section, ds)
+    models = report_section(ds)
     return {
         "name": str(settings.get("name") or attrs.get("study_name") or "Parameter study"),
         "description": str(settings.get("description") or attrs.get("comment") or ""),
@@ -109,15 +106,15 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
     """Return the tables of the sections "decide", "why", "where the study ends" and "contact models"."""
     error = friction_error(view)
     decide: list[Table | None] = [best_table(view)]
-    front = _guarded(lambda: None, study_pareto, ds, sens)
+    front = study_pareto(ds, sens)
     said = []
     if front is not None:
         said.append(choices.pareto(front, view).text)
         decide.append(pareto_table(front, view, error))
-    decide += _guarded(list, target_tables, sens) if sens is not None else []
+    decide += target_tables(sens) if sens is not None else []
     why: list[Table] = []
     if sens is not None and words.robust_design(sens):
-        decide += _guarded(list, robust_tables, sens, error)
+        decide += robust_tables(sens, error)
         said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
         why = [index_table(sens, error), *part_tables(sens)]
@@ -131,15 +128,6 @@ def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: d
         "ends": [t for t in (regime_table(view), validity_table(view), reason_table(ds)) if t],
         "models": models.get("tables", []),
     }
-
-
-def _guarded(empty: Callable[[], Any], make: Callable[..., Any], *arguments: Any) -> Any:
-    """Return what `make` gives; a part that fails is logged and left empty, so that the report is written."""
-    try:
-        return make(*arguments)
-    except Exception as problem:
-        log.warning("%s is left out of the report: %s", make.__name__, problem, exc_info=True)
-        return empty()
 
 
 def _facts(view: StudyView, merged: dict[str, Any]) -> str:

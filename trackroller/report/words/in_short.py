@@ -8,18 +8,19 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import HALF_WIDTH
+from trackroller.analysis.effects import estimate
+from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.report import choices
-from trackroller.report import sentences as words
-from trackroller.report.aims import target, target_words
-from trackroller.report.choices import robustness
-from trackroller.report.claims import Sentence, estimate
-from trackroller.report.decisions import part_sentences
-from trackroller.report.findings import best_design, occurrence, valid_designs
-from trackroller.report.flags import accuracy, friction_error, full_sliding
 from trackroller.report.numbers import capital, count, rounded
-from trackroller.report.sentences import of_output
-from trackroller.report.view import StudyView
+from trackroller.report.tables.indices import part_sentences
+from trackroller.report.words import indices as words
+from trackroller.report.words import pareto as choices
+from trackroller.report.words.cases import best_design, occurrence, valid_designs
+from trackroller.report.words.flags import accuracy, friction_error, full_sliding
+from trackroller.report.words.indices import of_output
+from trackroller.report.words.pareto import robustness
+from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.targets import target, target_words
 from trackroller.study.design.sampling import ARRAYS
 
 Line = tuple[str, list[Sentence]]

@@ -1,24 +1,19 @@
-"""Sentences as objects that can be checked, and the statistics that they state.
-
-Every sentence on the rows of a study is a `Sentence`: its text, what it claims as plain values, and the rows that it
-holds for. `tests/report/test_truth.py` recomputes the claims from the raw rows.
-"""
+"""How an output changes with a factor: between pairs of designs that differ in this factor, or between classes."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from scipy.stats import binom
 
-from trackroller.report.groups import classes
-from trackroller.report.view import MOST_LEVELS, StudyView
+from trackroller.analysis.groups import classes
+from trackroller.analysis.table import MOST_LEVELS, StudyView
 
 if TYPE_CHECKING:
     import xarray as xr
 
-FEW = 20  # fewer events are named one by one, without a cause
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # smallest number of rows of a class whose median is compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
@@ -26,24 +21,6 @@ COVERED = 0.8  # share of a class that must lie in levels with enough rows; othe
 UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change
 ENDS = ("low", "high")
 MOST = 0.9  # share of pairs that must agree in the direction of an effect
-
-
-@dataclass(frozen=True)
-class Sentence:
-    """One statement on a study.
-
-    Attributes
-    ----------
-    kind : name of the kind of sentence; each kind has its own check in the truth test
-    text : the sentence
-    values : what it claims, in plain numbers and names
-    rows : cases that the statement is on, shape (n,) bool; None for a statement on the analysis
-    """
-
-    kind: str
-    text: str
-    values: Mapping[str, Any] = field(default_factory=dict)
-    rows: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -87,8 +64,6 @@ def median_interval(values: np.ndarray) -> tuple[float, float]:
     -----
     The order statistics k and n - k + 1 enclose the median with probability 1 - 2 P(B < k), B binomial (n, 1/2).
     """
-    from scipy.stats import binom  # heavy, and the sheet of one case does not need it
-
     values = np.sort(values)
     k = int(binom.ppf(0.025, len(values), 0.5))
     return float(values[max(k - 1, 0)]), float(values[min(len(values) - k, len(values) - 1)])

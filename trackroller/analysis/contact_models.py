@@ -11,9 +11,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from trackroller.analysis.columns import CONTACT_RESULTS, input_columns, study_dims
+from trackroller.analysis.table import LIVES, StudyView
 from trackroller.parameters import EXACTNESS, PARAMETERS
-from trackroller.report.columns import CONTACT_RESULTS, input_columns, study_dims
-from trackroller.report.view import LIVES, StudyView
 from trackroller.roller.geometry import contact_geometry
 from trackroller.study.outputs import flat
 
@@ -207,7 +207,7 @@ QUANTITIES = (
 def errors(paired: xr.Dataset) -> xr.Dataset:
     """Return the error of each cheaper model against the reference where both roll.
 
-    `paired`: dataset of `trackroller.report.comparison.pairs`. Errors are relative; those of friction forces are over
+    `paired`: dataset of `trackroller.analysis.contact_models`. Errors are relative; those of friction forces are over
     mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick is a difference of shares. The larger error
     of both contacts and bodies counts.
     """

@@ -7,10 +7,11 @@ import math
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.effects import estimate
+from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
-from trackroller.report.claims import Sentence, estimate
 from trackroller.report.numbers import capital, count, listing, long_name, quantity, rounded, setting, share, with_unit
-from trackroller.report.view import StudyView
+from trackroller.report.words.sentence import Sentence
 
 
 def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:

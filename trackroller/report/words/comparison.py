@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.report.comparison.pairs import GOOD, designs, errors, measured, pairs
-from trackroller.report.groups import DRIVE, Groups, drives, groups, span
+from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
+from trackroller.analysis.groups import DRIVE, Groups, drives, groups
 from trackroller.report.numbers import capital, long_name, percent
-from trackroller.report.tables import Table
+from trackroller.report.tables.cases import Table
+from trackroller.report.words.levels import group_texts, span
 
 FRICTION = "friction_coefficient"
 DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # quantities that `pairs` computes from the inputs
@@ -26,7 +27,7 @@ def sentences(paired: xr.Dataset) -> list[str]:
 
     Parameters
     ----------
-    paired : dataset of `trackroller.report.comparison.pairs`
+    paired : dataset of `trackroller.analysis.contact_models`
     """
     if not paired.sizes["design"]:
         return [overview(paired)]
@@ -83,7 +84,7 @@ def details(paired: xr.Dataset) -> list[str]:
     said = []
     for model in map(str, found["contact_model"].values):
         one = found.sel(contact_model=model)
-        for k, text in enumerate(drive.texts if _compared(one) >= FEWEST else ()):
+        for k, text in enumerate(group_texts(drive) if _compared(one) >= FEWEST else ()):
             head = f"{NAMES[model]}{f', {text}' if DRIVE in view.factors else ''}"
             said.append(_sentence(one.where(xr.DataArray(drive.index == k, dims="design")), along, head))
     return said
@@ -165,7 +166,7 @@ def levels_kept(along: Groups, e: np.ndarray) -> str:
     if keeps.all():
         return f"at every {name}"
     if not along.ordered:
-        return f"with {name} " + " or ".join(along.texts[k] for k, kept in zip(at, keeps, strict=True) if kept)
+        return f"with {name} " + " or ".join(group_texts(along)[k] for k in at[keeps])
     said, last = [], len(at) - 1
     name = f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
     for first, end in _runs(keeps):

@@ -9,8 +9,9 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import advice
-from trackroller.report.claims import Sentence, estimate
+from trackroller.analysis.effects import estimate
 from trackroller.report.numbers import capital, count, listing, percent, plus_minus, rounded, unit_text
+from trackroller.report.words.sentence import Sentence
 
 HALF = "± is half the 95 % interval"
 SMALL = 0.02  # share of variance below which a factor is called negligible

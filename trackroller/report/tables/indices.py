@@ -7,17 +7,18 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.effects import estimate
 from trackroller.analysis.labels import factor_name
+from trackroller.analysis.table import StudyView
 from trackroller.damage.fatigue import DECADES
-from trackroller.report import choices
-from trackroller.report import sentences as words
-from trackroller.report.aims import MAX_POINTS
-from trackroller.report.claims import Sentence, estimate
-from trackroller.report.flags import FRICTION_OUTPUTS
 from trackroller.report.numbers import capital, count, level_text, listing, percent, rounded, unit_text
-from trackroller.report.sentences import HALF, INDEX_WORDS, index_text, of_output
-from trackroller.report.tables import Table, factor_cell
-from trackroller.report.view import StudyView
+from trackroller.report.tables.cases import Table, factor_cell
+from trackroller.report.words import indices as words
+from trackroller.report.words import pareto as choices
+from trackroller.report.words.flags import FRICTION_OUTPUTS
+from trackroller.report.words.indices import HALF, INDEX_WORDS, index_text, of_output
+from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.targets import MAX_POINTS
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import read_study, settings
 

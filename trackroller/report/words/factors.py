@@ -7,19 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.report.claims import (
+from trackroller.analysis.effects import (
     FEWEST_PAIRS,
     MOST,
     UNCHANGED,
     Effect,
-    Sentence,
     class_effect,
     comparable,
     paired_effect,
     strata,
 )
-from trackroller.report.numbers import SPOKEN, capital, count, level_text, listing, long_name, rounded, setting, times
-from trackroller.report.view import StudyView
+from trackroller.analysis.table import StudyView
+from trackroller.report.numbers import capital, count, level_text, listing, long_name, rounded, setting, times
+from trackroller.report.words.sentence import Sentence
+from trackroller.study.design.levels import NAMED
 
 Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
 
@@ -64,7 +65,7 @@ def _span(view: StudyView, effect: Effect) -> str:
         high = level_text(effect.factor, effect.high, words=False)
         return f"{capital(long_name(effect.factor))} {low} → {high}"
     low, high = level_text(effect.factor, effect.low), level_text(effect.factor, effect.high)
-    if effect.factor in SPOKEN:
+    if effect.factor in NAMED:
         return f"{capital(high)} instead of {low}"
     return f"{capital(long_name(effect.factor))} {high} instead of {low}"
 

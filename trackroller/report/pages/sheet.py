@@ -10,14 +10,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from trackroller.analysis.table import BODIES
 from trackroller.files import write_text
 from trackroller.report import html
-from trackroller.report.inputs import input_row, is_told
+from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import capital, life, number, rounded
-from trackroller.report.sheet.drawing import drawing
-from trackroller.report.sheet.facts import body_materials, collect, versions_text
-from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
-from trackroller.report.view import BODIES
+from trackroller.report.pages.sheet_facts import body_materials, collect, versions_text
+from trackroller.report.pages.spectrum import block_table, life_rows, sentences, warnings
+from trackroller.report.tables.inputs import input_row, is_told
 
 if TYPE_CHECKING:
     import xarray as xr

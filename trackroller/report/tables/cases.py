@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import PARAMETERS, REGIME_LABELS
-from trackroller.report.findings import occurrence, ranked
-from trackroller.report.flags import OF_BODY, words_of
 from trackroller.report.numbers import capital, count, level_text, life, long_name, plain, rounded, share, unit_text
-from trackroller.report.view import BODIES, StudyView
+from trackroller.report.words.cases import occurrence, ranked
+from trackroller.report.words.flags import OF_BODY, words_of
 from trackroller.roller.dataset import VALIDITY_BITS
 
 BEST = 5  # designs in the table of the best

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.analysis.table import BODIES, MOST_LEVELS, OUTSIDE, StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.claims import FEW, Sentence
-from trackroller.report.flags import OF_BODY, of_body, words_of
 from trackroller.report.numbers import count, level_text, listing, long_name, number, quantity, setting, share
-from trackroller.report.view import BODIES, MOST_LEVELS, OUTSIDE, StudyView
+from trackroller.report.words.flags import OF_BODY, of_body, words_of
+from trackroller.report.words.sentence import Sentence
 
+FEW = 20  # fewer events are named one by one, without a cause
 CONDITIONS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity", "guide_curve_radius")
 
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.report.choices import chance
-from trackroller.report.claims import Sentence
-from trackroller.report.flags import flags_of
-from trackroller.report.inputs import Row
 from trackroller.report.numbers import capital, life, listing, long_name, unit_text, with_unit
-from trackroller.report.tables import Table, cell
+from trackroller.report.tables.cases import Table, cell
+from trackroller.report.tables.inputs import Row
+from trackroller.report.words.flags import flags_of
+from trackroller.report.words.pareto import chance
+from trackroller.report.words.sentence import Sentence
 from trackroller.study.spectrum.file import LOAD_FIELDS
 from trackroller.study.spectrum.solve import BODIES
 

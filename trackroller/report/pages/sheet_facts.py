@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.analysis.columns import at_surface
+from trackroller.analysis.table import BODIES
 from trackroller.damage import fatigue
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, REGIMES
-from trackroller.report.columns import at_surface
-from trackroller.report.flags import Flag, flags_of
-from trackroller.report.inputs import Row, as_material, input_row, is_told, material_rows, material_source
 from trackroller.report.numbers import life, number, plain, rounded, unit_text
-from trackroller.report.view import BODIES
+from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source
+from trackroller.report.words.flags import Flag, flags_of
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.limits import Limits, limits
 from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of, solve_command

@@ -12,10 +12,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from trackroller.analysis.columns import base_values, case_columns, factor_names, study_dims
 from trackroller.analysis.limits import allowed_cases
 from trackroller.parameters import EXACTNESS, PARAMETERS
-from trackroller.report.columns import base_values, case_columns, factor_names, study_dims
-from trackroller.report.numbers import SPOKEN, setting
+from trackroller.study.design.levels import NAMED
 from trackroller.study.outputs import read_study
 
 LIVES = (
@@ -103,7 +103,7 @@ class StudyView:
 
         Materials, few drives and few curves have no order.
         """
-        spoken = name in SPOKEN and len(self.levels(name)) <= MOST_LEVELS
+        spoken = name in NAMED and len(self.levels(name)) <= MOST_LEVELS
         return self.numeric(name) and not spoken and bool(np.isfinite(self.table[name]).all())
 
     @cached_property
@@ -132,20 +132,16 @@ class StudyView:
             return base
         return levels[len(levels) // 2] if self.numeric(name) else levels[0]
 
-    def hold(self, shown: tuple[str, ...]) -> tuple[pd.DataFrame, str]:
-        """Return the rows with every factor outside `shown` at its held level, and the sentence that says so.
+    def hold(self, shown: tuple[str, ...]) -> tuple[pd.DataFrame, dict[str, Any]]:
+        """Return the rows with every factor outside `shown` at its held level, and these levels by factor.
 
-        A sampled study has no such rows: there the whole table comes back.
+        A sampled study has no such rows: there the whole table comes back, and no factor is held.
         """
-        others = [f for f in self.factors if f not in shown]
-        if not self.grid:
-            return self.table, ""
-        rows, said = self.table, []
-        for name in others:
-            level = self.held_level(name)
+        held = {f: self.held_level(f) for f in self.factors if f not in shown} if self.grid else {}
+        rows = self.table
+        for name, level in held.items():
             rows = rows[rows[name] == level]
-            said.append(setting(name, level))
-        return rows, f"Held: {'; '.join(said)}." if said else ""
+        return rows, held
 
     @cached_property
     def life(self) -> tuple[str, str, str] | None:

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import CONTACT_MODELS, REGIMES
-from trackroller.report.claims import Sentence
 from trackroller.report.numbers import capital, count, percent, plain, rounded
-from trackroller.report.view import BODIES, StudyView
+from trackroller.report.words.sentence import Sentence
 from trackroller.roller.dataset import VALIDITY_BITS, validity_bit
 
 if TYPE_CHECKING:

@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.analysis.table import BODIES
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
-from trackroller.report.flags import flags_of
-from trackroller.report.sheet.facts import Facts, collect
-from trackroller.report.sheet.spectrum import block_table, life_rows, sentences, warnings
+from trackroller.report.pages.sheet_facts import Facts, collect
+from trackroller.report.pages.spectrum import block_table, life_rows, sentences, warnings
 from trackroller.report.terminal import print_table
-from trackroller.report.view import BODIES
+from trackroller.report.words.flags import flags_of
 from trackroller.roller.record import inputs_of, is_default, materials_of
 from trackroller.study.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.report.inputs import Row
+    from trackroller.report.tables.inputs import Row
 
 
 def print_facts(ds: xr.Dataset) -> None:

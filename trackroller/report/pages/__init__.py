@@ -1,0 +1,1 @@
+"""Pages: the report of a study, the sheet of one roller, the load spectrum."""
