@@ -1,4 +1,4 @@
-"""Write docs/parameters.md, the pages of docs/validation that come from `docs/data`, and the table of the README.
+"""Write docs/parameters.md, the declarations of the limits, the pages of docs/validation, and the table of the README.
 
 `python docs/generate.py` writes; with `--check` it only compares and ends with 1 if a page is not up to date.
 """
@@ -13,6 +13,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation must not stand for the package
 
 from trackroller import parameters as p
+from trackroller.damage import LIMITS
+from trackroller.damage.limit import declarations
+from trackroller.parameters.declared import FILE as DECLARED
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.dataset import COMMENTS, VALIDITY_BITS, VARIABLES
 from validation.adopt.common import PICTURES, shortened
@@ -152,7 +155,12 @@ def pages() -> dict[Path, str]:
     before, _, rest = readme.read_text(encoding="utf-8").partition(START)
     table = render_written("readme.md").partition("\n")[2]  # without the remark on its first line
     written[readme] = f"{before}{START}{table}{END}{rest.partition(END)[2]}"
-    return {FOLDER / "parameters.md": render(), place / "tradeoff.md": tradeoff(), **written}
+    return {
+        DECLARED: declarations(LIMITS.values()),
+        FOLDER / "parameters.md": render(),
+        place / "tradeoff.md": tradeoff(),
+        **written,
+    }
 
 
 START, END = "<!-- measured -->\n", "<!-- end -->\n"  # of the table in the README

@@ -8,19 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trackroller.damage.fatigue import (
-    CONVENTIONS,
-    SNCurve,
-    allowable_stress,
-    curve_of,
-    guide_hours,
-    life_cycles,
-    line_at_probability,
-    roller_hours,
-    scatter_ranges,
-    woehler_exponent,
-)
-from trackroller.damage.miner import block_damage, damage_sum, repetitions_to_failure
+from trackroller.damage.limit import roller_overrollings
+from trackroller.damage.miner import block_damage, repetitions_to_failure
+from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.parameters import LIFE_RULES
@@ -28,6 +18,16 @@ from trackroller.roller.table import MaterialArrays
 
 STEEL = SNCurve(tensile_strength=720.0, fatigue_limit=360.0, n_rm=1e4, n_k=5e6)
 K = math.log(500) / math.log(2)
+
+
+def life_cycles(stress, curve, rule="elementary", **values):
+    return curve.changed(rule=rule, **values).life_cycles(stress)
+
+
+def damage_sum(stress, cycles, curve, rule="elementary"):
+    return block_damage(cycles, life_cycles(stress, curve, rule)).sum()
+
+
 stresses = st.floats(1.0, 5000.0)
 rules = st.sampled_from(LIFE_RULES)
 
@@ -37,12 +37,34 @@ def test_a_material_its_columns_and_its_values_give_the_same_curve():
     material = builtin_database().material("1.7225-normalised")
     values = {field.name: getattr(material, field.name) for field in dataclasses.fields(material)}
     columns = MaterialArrays.of([material])
-    assert curve_of(material) == curve_of(values) == tuple(float(value[0]) for value in curve_of(columns))
-    assert curve_of(material).fatigue_limit == material.fatigue_limit
-    assert life_cycles(material.fatigue_limit, curve_of(material)) == pytest.approx(material.cycles_at_fatigue_limit)
-    assert life_cycles(material.tensile_strength, curve_of(material)) == pytest.approx(
-        material.cycles_at_tensile_strength
-    )
+    curve, of_columns = SNCurve.of(material), SNCurve.of(columns)
+    assert curve == SNCurve.of(values)
+    for name in ("tensile_strength", "fatigue_limit", "n_rm", "n_k"):
+        assert getattr(of_columns, name).tolist() == [getattr(curve, name)]
+    assert curve.fatigue_limit == material.fatigue_limit and curve.exponent == material.woehler_exponent
+    assert curve.life_cycles(material.fatigue_limit) == pytest.approx(material.cycles_at_fatigue_limit)
+    assert curve.life_cycles(material.tensile_strength) == pytest.approx(material.cycles_at_tensile_strength)
+
+
+def test_a_curve_carries_its_rule_and_does_not_change():
+    curve = SNCurve.of(builtin_database().material("1.7225-normalised"))
+    other = curve.changed(rule="haibach")
+    assert (curve.rule, other.rule) == ("elementary", "haibach")
+    assert other.slope([180.0, 400.0]).tolist() == [2 * curve.exponent - 1, curve.exponent]
+    assert curve.slope(180.0) == curve.exponent
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        curve.rule = "haibach"
+
+
+def test_scatter_may_be_known_for_some_materials_only():
+    """The columns of three materials: scatter of life, of strength, and none."""
+    curve = SNCurve(720.0, 360.0, 1e4, 5e6, "elementary", [4.0, np.nan, np.nan], [np.nan, 1.2, np.nan])
+    t_n, t_s = curve.scatter_ranges
+    assert t_n == pytest.approx([4.0, 1.2**K, 1.0]) and t_s == pytest.approx([4.0 ** (1 / K), 1.2, 1.0])
+    assert curve.scatters.tolist() == [True, True, False]
+    lives = curve.changed(failure_probability=0.1).life_cycles(500.0)
+    one = STEEL.changed(scatter_cycles=4.0, failure_probability=0.1).life_cycles(500.0)
+    assert lives[0] == one and lives[2] == STEEL.life_cycles(500.0)
 
 
 def test_published_life_is_met():
@@ -51,13 +73,13 @@ def test_published_life_is_met():
     # its peak is printed to 0.0005 MPa, k = 8.97 times that is the tolerance
     assert cycles == pytest.approx(299975.32891487813, rel=K * 0.0005 / 492.703)
     radius = 21.75 - 6 * math.cos(math.radians(30))
-    assert roller_hours(299975.32891487813, 60, radius) == pytest.approx(8.666861528031939, rel=1e-12)
+    assert 299975.32891487813 / roller_overrollings(60, radius) == pytest.approx(8.666861528031939, rel=1e-12)
 
 
 @pytest.mark.parametrize("rule", LIFE_RULES)
 def test_line_runs_through_both_points(rule):
     assert life_cycles([720.0, 360.0], STEEL, rule) == pytest.approx([1e4, 5e6], rel=1e-12)
-    assert woehler_exponent(STEEL) == pytest.approx(K, rel=1e-14)
+    assert STEEL.exponent == pytest.approx(K, rel=1e-14)
 
 
 def test_rules_differ_below_the_fatigue_limit_alone():
@@ -99,12 +121,12 @@ def test_rules_are_ordered_elementary_haibach_unlimited(stress):
 @given(st.floats(10.0, 1e12), st.sampled_from(("elementary", "haibach")), st.sampled_from((0.01, 0.1, 0.5, 0.9)))
 def test_allowable_stress_inverts_life(cycles, rule, probability):
     options = {"failure_probability": probability, "scatter_cycles": 4.0}
-    stress = allowable_stress(cycles, STEEL, rule, **options)
-    assert life_cycles(stress, STEEL, rule, **options) == pytest.approx(cycles, rel=1e-9)
+    curve = STEEL.changed(rule=rule, **options)
+    assert curve.life_cycles(curve.allowable_stress(cycles)) == pytest.approx(cycles, rel=1e-9)
 
 
 def test_allowable_stress_stays_at_the_fatigue_limit_when_life_is_unlimited():
-    assert allowable_stress([5e6, 1e9], STEEL, "unlimited") == pytest.approx([360, 360])
+    assert STEEL.changed(rule="unlimited").allowable_stress([5e6, 1e9]) == pytest.approx([360, 360])
 
 
 def test_arrays_broadcast_over_cases_contacts_and_bodies():
@@ -120,12 +142,7 @@ def test_arrays_broadcast_over_cases_contacts_and_bodies():
 @given(st.floats(1.0, 300.0), st.floats(1.0, 200.0), st.floats(1.0, 1e9))
 def test_roller_hours_are_distance_over_speed(velocity, radius, cycles):
     hours = cycles * 2 * math.pi * radius / 1000 / velocity / 60
-    assert roller_hours(cycles, velocity, radius) == pytest.approx(hours, rel=1e-12)
-
-
-def test_guide_hours_need_the_overrollings_of_the_track():
-    assert guide_hours([1200.0, np.inf], 60.0).tolist() == [20.0, np.inf]
-    assert np.isnan(guide_hours(1200.0, np.nan))
+    assert cycles / roller_overrollings(velocity, radius) == pytest.approx(hours, rel=1e-12)
 
 
 def test_scatter_range_spans_ten_to_ninety_percent():
@@ -139,10 +156,11 @@ def test_scatter_range_spans_ten_to_ninety_percent():
 
 def test_scatter_of_life_and_of_strength_belong_together():
     """With T_N = T_S^k only the fatigue limit moves and N_k stays; each of T_N and T_S gives the other."""
-    t_n, t_s = scatter_ranges(K, scatter_stress=1.2)
+    curve = STEEL.changed(scatter_stress=1.2)
+    t_n, t_s = curve.scatter_ranges
     assert t_n == pytest.approx(1.2**K) and t_s == pytest.approx(1.2)
-    assert scatter_ranges(K, scatter_cycles=float(t_n))[1] == pytest.approx(1.2)
-    limit, knee = line_at_probability(360.0, 5e6, K, 0.1, scatter_stress=1.2)
+    assert STEEL.changed(scatter_cycles=float(t_n)).scatter_ranges[1] == pytest.approx(1.2)
+    limit, knee = curve.changed(failure_probability=0.1).knee
     assert knee == pytest.approx(5e6, rel=1e-12) and limit == pytest.approx(360 / math.sqrt(1.2), rel=1e-12)
 
 
@@ -168,7 +186,7 @@ def test_pylife_agrees(rule, scatter, probability):
     ours = life_cycles(stress, STEEL, rule, failure_probability=probability, **scatter)
     assert ours == pytest.approx(oracle.cycles(stress, probability), rel=1e-10)
     cycles = np.array([1e3, 1e5, 4e6, 2e7, 1e9])
-    ours = allowable_stress(cycles, STEEL, rule, failure_probability=probability, **scatter)
+    ours = STEEL.changed(rule=rule, failure_probability=probability, **scatter).allowable_stress(cycles)
     assert ours == pytest.approx(oracle.load(cycles, probability), rel=1e-10)
 
 
@@ -218,8 +236,8 @@ def test_unknown_stress_of_a_block_that_runs_is_not_hidden():
     [
         (lambda: life_cycles(1, STEEL, "haibuch"), ("life_rule", "haibuch", "haibach")),
         (lambda: life_cycles(1, SNCurve(300.0, 360.0, 1e4, 5e6)), ("S-N curve", "R_m > sigma_D")),
-        (lambda: scatter_ranges(K, scatter_cycles=0.25), ("scatter_in_cycles", "0.25", "inverse")),
-        (lambda: line_at_probability(360, 5e6, K, 10.0), ("failure_probability", "10.0")),
+        (lambda: STEEL.changed(scatter_cycles=0.25), ("scatter_in_cycles", "0.25", "inverse")),
+        (lambda: STEEL.changed(failure_probability=10.0), ("failure_probability", "10.0")),
         (lambda: repetitions_to_failure(1.0, 0.0), ("critical_damage",)),
         (lambda: block_damage([-1.0], [1.0]), ("cycles", "-1.0")),
     ],

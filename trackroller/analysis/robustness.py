@@ -20,7 +20,7 @@ from trackroller.analysis.labels import output_labels
 from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.probability import probabilities
 from trackroller.analysis.targets import body_of, inner_sample
-from trackroller.damage.fatigue import DECADES, curve_of, scatter_ranges, woehler_exponent
+from trackroller.damage.sn_curve import DECADES, SNCurve
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import readable
@@ -153,8 +153,7 @@ def deviation(material: Mapping[str, float]) -> float:
     t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
     if t_n is None and t_s is None:
         return 0.0
-    k = woehler_exponent(curve_of(material))
-    return float(np.log10(scatter_ranges(k, t_n, t_s)[0]) / DECADES)
+    return float(SNCurve.of(material).log_life_deviation)
 
 
 def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list[Output]) -> dict:

@@ -1,1 +1,8 @@
-"""Turn stress into life: S-N curves, their scatter and damage sums."""
+"""Limits of roller and guide, one file each behind the protocol of `limit`, and the damage sum of a spectrum."""
+
+from __future__ import annotations
+
+from trackroller.damage import fatigue
+from trackroller.damage.limit import Limit
+
+LIMITS: dict[str, Limit] = {limit.name: limit for limit in (fatigue.LIMIT,)}

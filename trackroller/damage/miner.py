@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.damage.fatigue import SNCurve, life_cycles
 from trackroller.errors import InputError
 
 
@@ -34,28 +33,6 @@ def block_damage(applied: ArrayLike, bearable: ArrayLike) -> np.ndarray:
         raise InputError("cycles", float(np.nanmin(n)), "a block's cycles must be >= 0")
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(n == 0, 0.0, n / life)
-
-
-def damage_sum(
-    stress: ArrayLike, cycles: ArrayLike, curve: SNCurve, rule: str = "elementary", *, axis: int = -1
-) -> np.ndarray:
-    """Return the damage sum D = sum n_i/N_i of a spectrum of stress blocks (Palmgren-Miner).
-
-    Parameters
-    ----------
-    stress, cycles : array_like
-        Amplitudes [MPa] and cycles n_i [1] of the blocks along `axis`.
-    curve, rule
-        See `life_cycles`; the rule "unlimited" is Miner original.
-    axis : int
-        Axis of the blocks.
-
-    Returns
-    -------
-    numpy.ndarray
-        D [1], without the axis of the blocks.
-    """
-    return block_damage(cycles, life_cycles(stress, curve, rule)).sum(axis=axis)
 
 
 def repetitions_to_failure(damage: ArrayLike, critical_damage: float = 1.0) -> np.ndarray:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, make_dataclass
 from typing import Any
 
 from trackroller.errors import InputError
-from trackroller.materials.properties import PROPERTIES, Value, check_number
+from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check_number
 from trackroller.materials.sn_curve import curve_exponent
+
+_OfLimits = make_dataclass(
+    "_OfLimits", [(name, Any, field(default=None)) for name in OF_LIMITS], frozen=True, kw_only=True
+)
 
 
 @dataclass(frozen=True)
-class Material:
+class Material(_OfLimits):  # type: ignore[misc, valid-type]
     """A material whose S-N curve runs through (N_Rm, R_m) and (N_k, sigma_D).
 
     Parameters
@@ -40,6 +44,10 @@ class Material:
         A short description.
     records : mapping of str to Value
         Unit, source and mark of each value, as far as known.
+
+    Other Parameters
+    ----------------
+    Values that the limits declare, such as `yield_strength`; see `trackroller.materials.properties`.
 
     Raises
     ------

@@ -9,6 +9,7 @@ from typing import Any
 from trackroller.errors import InputError
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import Parameter
+from trackroller.parameters.declared import declared
 
 
 def _number(
@@ -48,7 +49,8 @@ _PROPERTIES = (
     _number("scatter_in_cycles", "T_N", "-", "scatter of life N_90/N_10", 1.0, 1e6, True, True),
     _number("scatter_in_stress", "T_S", "-", "scatter of strength S_90/S_10", 1.0, 1e3, True, True),
 )
-PROPERTIES: dict[str, Parameter] = {p.name: p for p in _PROPERTIES}
+OF_LIMITS: dict[str, Parameter] = {row["name"]: Parameter(**row) for row in declared()["materials"]}
+PROPERTIES: dict[str, Parameter] = {p.name: p for p in _PROPERTIES} | OF_LIMITS
 # Other ways to give the S-N curve; `trackroller.materials.sn_curve` turns them into the properties above.
 _ALTERNATIVES = (
     _number("fatigue_limit", "sigma_D", "MPa", "fatigue limit", 0.0, 2e5),

@@ -11,10 +11,10 @@ Units here are those that a user writes: degrees, m/min and hours. The solver wo
 
 from __future__ import annotations
 
-from trackroller.parameters.numbers import PARAMETERS, Parameter
+from trackroller.parameters.numbers import OF_LIMITS, PARAMETERS, Parameter
 from trackroller.parameters.options import OPTIONS, Option, options_text, words_of
 
-__all__ = ["OPTIONS", "PARAMETERS", "Option", "Parameter", "options_text", "words_of"]
+__all__ = ["OF_LIMITS", "OPTIONS", "PARAMETERS", "Option", "Parameter", "options_text", "words_of"]
 
 OUTPUT_GROUPS, CONTACT_MODELS = words_of("outputs"), words_of("contact_model")
 SPIN_MODELS, ACCURACIES, LIFE_RULES = words_of("spin_model"), words_of("accuracy"), words_of("life_rule")

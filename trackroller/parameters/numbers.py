@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from trackroller.parameters.declared import declared
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -165,4 +167,6 @@ _ALL = (
     ),
 )
 
-PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL}
+# They change lives and utilisations; forces and stresses do not depend on them.
+OF_LIMITS: dict[str, Parameter] = {row["name"]: Parameter(**row) for row in declared()["parameters"]}
+PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL} | OF_LIMITS

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.parameters.declared import declared
 
 
 @dataclass(frozen=True)
@@ -133,9 +134,9 @@ _OPTIONS = (
             "contact": "size of the patches, largest pressure and shear, spin pole, adhesion area",
             "friction_work": "friction power and energy",
             "peak_stress": "largest von Mises stress of each body and its place",
-            "life": "overrollings and hours to failure",
             "tractions": "pressure, shear and creepage over each patch",
             "subsurface": "stresses on two sections through the peak",
+            **declared()["groups"],
         },
         kind="words",
         required=True,

@@ -6,7 +6,7 @@ import functools
 import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields, make_dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ import numpy as np
 from trackroller.errors import InputError, check_names
 from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.numerics.rows import once_each
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, PARAMETERS
 from trackroller.roller.fields import FIELDS, Default, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.table import CaseTable, MaterialArrays
@@ -22,8 +22,16 @@ from trackroller.roller.table import CaseTable, MaterialArrays
 __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "to_table"]
 
 
+_LimitFields = make_dataclass(
+    "_LimitFields",
+    [(name, Any, field(default=None if math.isnan(p.default) else p.default)) for name, p in OF_LIMITS.items()],
+    frozen=True,
+    kw_only=True,
+)
+
+
 @dataclass(frozen=True)
-class Case:
+class Case(_LimitFields):  # type: ignore[misc, valid-type]
     """One locating-bearing track roller on its guideway.
 
     The defaults are the driven example of the publication. A plain mapping with the same keys is accepted wherever a
@@ -62,6 +70,10 @@ class Case:
     guide_profile, roller_profile : mapping or None
         Drawn or measured cross-sections, for the option `normal="halfspace"`; see
         `trackroller.contact.profiles.canonical`.
+
+    Other Parameters
+    ----------------
+    Fields that the limits declare, such as `permissible_radial_force`; see "Parameters, options and results".
 
     Raises
     ------

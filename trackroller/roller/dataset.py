@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trackroller import __version__
+from trackroller.damage import LIMITS
+from trackroller.damage.limit import variables
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIMES
 
 if TYPE_CHECKING:
@@ -26,28 +27,6 @@ def file_attributes(title: str, action: str) -> dict[str, str]:
         "history": f"{action} by trackroller {__version__}",
         "source": f"trackroller {__version__}",
     }
-
-
-@dataclass(frozen=True)
-class Variable:
-    """A result variable.
-
-    Parameters
-    ----------
-    name, group : str
-        Name in a data set, and the group of `outputs` that brings the variable.
-    dims : tuple of str
-        Dimensions after `case`.
-    units, symbol, long_name : str
-        Unit as the CF conventions write it, symbol of the publication, and name for figures and reports.
-    """
-
-    name: str
-    group: str
-    dims: tuple[str, ...]
-    units: str
-    symbol: str
-    long_name: str
 
 
 _C, _CB = ("contact",), ("contact", "body")
@@ -103,14 +82,6 @@ _GROUPS = {
         ("peak_y", _CB, "mm", "y_C", "position of the peak stress in the rolling direction"),
         ("peak_z", _CB, "mm", "z_C", "depth of the peak stress"),
     ),
-    "life": (
-        ("life_cycles", _CB, "1", "N", "overrollings to failure"),
-        ("life_error_estimate", _CB, "1", "k delta(sigma)/sigma", "estimated relative error of the life"),
-        ("life_hours", _CB, "h", "L_h", "life in hours of travel"),
-        ("roller_life_hours", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
-        ("guide_life_hours", (), "h", "L_h,G", "hours to the first failure of the guide"),
-        ("pair_life_hours", (), "h", "L_h", "hours to the first failure of roller or guide"),
-    ),
     "tractions": (
         ("patch_x", ("contact", "x"), "mm", "x_C", "lateral position in the patch"),
         ("patch_y", ("contact", "y"), "mm", "y_C", "position in the patch in the rolling direction"),
@@ -143,7 +114,8 @@ _GROUPS = {
     ),
 }
 
-VARIABLES = {row[0]: Variable(row[0], group, *row[1:]) for group, rows in _GROUPS.items() for row in rows}
+VARIABLES = {v.name: v for group, rows in _GROUPS.items() for v in variables(group, *rows)}
+VARIABLES |= {v.name: v for limit in LIMITS.values() for v in limit.results}
 
 VALIDITY_BITS = {
     "half_space": "a or b above 0.3 of the smallest radius of curvature: the bodies are not half-spaces",

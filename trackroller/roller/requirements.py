@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, OF_LIMITS, PARAMETERS
 from trackroller.roller.case import CaseTable
 
 if TYPE_CHECKING:
     from trackroller.roller.equilibrium import ContactLaw
 
 # these parameters only convert forces and stresses to power, cycles and hours
-AFTERWARDS = ("velocity", "guide_overrollings_per_hour")
+AFTERWARDS = ("velocity", "guide_overrollings_per_hour", *OF_LIMITS)
 
 
 def is_mirror_symmetric(table: CaseTable) -> np.ndarray:

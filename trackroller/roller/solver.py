@@ -11,6 +11,7 @@ from numba.core.registry import cpu_target
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.settings import converged_up_to
+from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
@@ -201,6 +202,7 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
     results = Results.start(scene, balance(scene))
     wanted = set(options.outputs)
+    wanted |= {need for limit in LIMITS.values() if limit.group in wanted for need in limit.needs}
     stages.forces(results)
     stages.force_error(results, options)
     stages.contact(results, options)
@@ -208,7 +210,7 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     if "friction_work" in wanted:
         stages.friction_work(results, options)
     stages_stress.stop(results, options)
-    if wanted & {"peak_stress", "life", "subsurface"}:
+    if wanted & {"peak_stress", "subsurface"}:
         stages_stress.peak_stress(results, options)
     if "tractions" in wanted:
         stages.tractions(results, options)

@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, make_dataclass
 
 import numpy as np
 
 from trackroller.materials import Material
+from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.rows import Rows
+from trackroller.parameters import OF_LIMITS
+
+OPTIONAL_VALUES = tuple(name for name, value in PROPERTIES.items() if value.allow_missing)
+_OptionalValues = make_dataclass(
+    "_OptionalValues", [(name, np.ndarray) for name in OPTIONAL_VALUES], bases=(Rows,), frozen=True
+)
+_LimitFields = make_dataclass("_LimitFields", [(name, np.ndarray) for name in OF_LIMITS], bases=(Rows,), frozen=True)
 
 
 @dataclass(frozen=True)
-class MaterialArrays(Rows):
-    """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D [MPa], N_Rm, N_k [1]."""
+class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
+    """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D [MPa], N_Rm, N_k [1].
+
+    The base class adds the optional values of a material, NaN where they are not given.
+    """
 
     name: np.ndarray
     youngs_modulus: np.ndarray
@@ -40,13 +51,15 @@ class MaterialArrays(Rows):
             fatigue_limit=values("fatigue_strength_ratio") * values("tensile_strength"),
             cycles_at_tensile_strength=values("cycles_at_tensile_strength"),
             cycles_at_fatigue_limit=values("cycles_at_fatigue_limit"),
+            **{name: values(name) for name in OPTIONAL_VALUES},
         )
 
 
 @dataclass(frozen=True)
-class CaseTable(Rows):
+class CaseTable(_LimitFields):  # type: ignore[misc, valid-type]
     """Checked cases as arrays of shape (n,), with the units of `PARAMETERS` and the friction coefficient resolved.
 
+    The base class adds the parameters that the limits declare.
     The mappings of a case (friction law, drawn profiles) stand as canonical JSON in arrays of str objects, "" for none.
     """
 

@@ -17,7 +17,7 @@ import pylife.materiallaws.woehlercurve  # noqa: F401  registers the accessor `.
 
 import trackroller as tr
 from trackroller.contact.linear import creepage_coefficients
-from trackroller.damage.fatigue import SNCurve, life_cycles
+from trackroller.damage.sn_curve import SNCurve
 from trackroller.parameters import LIFE_RULES
 
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data"
@@ -160,7 +160,7 @@ def pylife_lives() -> list[Row]:
     for rule in LIFE_RULES:
         curve = pd.Series({"SD": limit, "ND": knee, "k_1": exponent, "k_2": below[rule]}).woehler
         theirs = curve.cycles(stress)
-        ours = life_cycles(stress, SNCurve(strength, limit, first, knee), rule)
+        ours = SNCurve(strength, limit, first, knee, rule).life_cycles(stress)
         finite = np.isfinite(theirs)
         assert (np.isfinite(ours) == finite).all(), rule
         rows.append(row(f"life_cycles, {rule}", "pyLife", ours[finite], theirs[finite], theirs[finite]))

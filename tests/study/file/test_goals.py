@@ -16,10 +16,11 @@ from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.analysis.table import StudyView
+from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import expressions
-from trackroller.report.figures.sn_diagram import curve, sn_diagram
+from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.inputs import as_material
@@ -299,7 +300,8 @@ def test_lines_of_the_diagram_are_those_of_pylife():
     cycles = np.geomspace(1e4, 1e7, 7)
     for probability in (0.1, 0.5, 0.9):
         expected = line.woehler.load(cycles, failure_probability=probability)
-        found = curve(as_material(STEEL | {"scatter_in_cycles": 4.0}), "elementary", probability, cycles)
+        curve = SNCurve.of(as_material(STEEL | {"scatter_in_cycles": 4.0})).changed(failure_probability=probability)
+        found = curve.allowable_stress(cycles)
         np.testing.assert_allclose(found, expected, rtol=1e-6)
 
 
@@ -309,9 +311,7 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
     ds["axial_force"] = ("case", np.arange(40.0))
     stress = np.linspace(100, 800, 40)[:, None, None] * np.array([1.0, 0.9])[None, :, None] * np.ones(2)
     ds["peak_stress"] = (("case", "contact", "body"), stress)
-    from trackroller.damage.fatigue import SNCurve, life_cycles
-
-    ds["life_cycles"] = (("case", "contact", "body"), life_cycles(stress, SNCurve(720.0, 360.0, 1e4, 5e6), rule))
+    ds["life_cycles"] = (("case", "contact", "body"), SNCurve(720.0, 360.0, 1e4, 5e6, rule).life_cycles(stress))
     ds["regime"] = ("case", (np.arange(40) % 4 == 0).astype(np.int8))
     study = {
         "name": "a",

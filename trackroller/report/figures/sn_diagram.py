@@ -9,8 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from trackroller.analysis.table import BODIES, StudyView
-from trackroller.damage import fatigue
-from trackroller.damage.fatigue import curve_of
+from trackroller.damage.sn_curve import CONVENTIONS, PROBABILITIES, SNCurve
 from trackroller.materials import Material
 from trackroller.materials.properties import REQUIRED
 from trackroller.report.figures import style
@@ -23,25 +22,6 @@ BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limi
 MAX_MATERIALS = 6
 _DASHES = {0.1: (0, (1, 1.2)), 0.9: (0, (4, 1.5))}
 Points = dict[str, tuple[np.ndarray, np.ndarray]]
-
-
-def curve(material: Material, rule: str, probability: float, cycles: np.ndarray) -> np.ndarray:
-    """Return the stress [MPa] of the S-N curve at a failure probability over cycles [1], shape as `cycles`.
-
-    Parameters
-    ----------
-    material : with a scatter range for probabilities other than 0.5
-    rule : life rule beyond the knee
-    """
-    t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
-    return fatigue.allowable_stress(
-        cycles, curve_of(material), rule, failure_probability=probability, scatter_cycles=t_n, scatter_stress=t_s
-    )
-
-
-def scatters(material: Material) -> bool:
-    """Say whether the material gives a scatter range."""
-    return material.scatter_in_cycles is not None or material.scatter_in_stress is not None
 
 
 def sn_diagram(view: StudyView) -> style.Drawn:
@@ -110,7 +90,7 @@ def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str
         stress = view.column(f"peak_stress_{body}")[mine]
         if np.isnan(stress).all():  # a study of lives alone
             with np.errstate(invalid="ignore"):
-                stress = curve(known[material], rule, 0.5, life[mine])
+                stress = SNCurve.of(known[material], rule).allowable_stress(life[mine])
         found[material] = stress, life[mine]
     return found
 
@@ -127,9 +107,10 @@ def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
 
 def _lines(axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[float, float]) -> None:
     """Draw the S-N curve of a material, with its scatter if it gives one."""
-    at = np.geomspace(*ends, 400)
-    for probability in fatigue.PROBABILITIES if scatters(material) else (0.5,):
-        stress, width = curve(material, rule, probability, at), 1.0 if probability == 0.5 else 0.8
+    at, median = np.geomspace(*ends, 400), SNCurve.of(material, rule)
+    for probability in PROBABILITIES if median.scatters else (0.5,):
+        stress = median.changed(failure_probability=probability).allowable_stress(at)
+        width = 1.0 if probability == 0.5 else 0.8
         axes.plot(at, stress, color=colour, linewidth=width, linestyle=_DASHES.get(probability, "-"), zorder=2)
     knees = [material.cycles_at_tensile_strength, material.cycles_at_fatigue_limit]
     ends_look: dict[str, Any] = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
@@ -159,8 +140,8 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, M
     entries.append(("90 % of the cases", {"color": "0.5", "linewidth": 4}))
     entries.append(("their median", {"marker": "o", "markerfacecolor": "white", **none}))
     entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", {"marker": "|", "markersize": 8, **none}))
-    if any(scatters(known[n]) for n in names):
-        dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in fatigue.PROBABILITIES]
+    if any(SNCurve.of(known[n]).scatters for n in names):
+        dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in PROBABILITIES]
         entries += [(f"{100 * p:.0f} % fail", look) for p, look in dashes]
     return entries
 
@@ -169,7 +150,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
         "with the peak von Mises stress (MPa) and the life in overrollings of the rolling cases. "
-        f"{fatigue.CONVENTIONS[rule]}."
+        f"{CONVENTIONS[rule]}."
     )
     left = int((~view.rolling).sum())
     caption += f" {count(left)} cases that do not roll are not drawn." if left and view.rolling.any() else ""
@@ -178,7 +159,8 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str
     said = []
     for body, _ in shown:
         names = material_of(view, body)
-        most, limit = (np.array([curve_of(known[n])[i] if n in known else np.nan for n in names]) for i in (0, 1))
+        ends = ("tensile_strength", "fatigue_limit")
+        most, limit = (np.array([getattr(known[n], end) if n in known else np.nan for n in names]) for end in ends)
         said.append(strength(body, view.column(f"peak_stress_{body}"), limit, most, view.rolling))
     texts = [s.text for s in said if s] + [_scatter_words(known, names) for _, names in shown[:1]]
     return style.FigureInfo("sn_diagram", caption, " ".join(t for t in texts if t))
@@ -187,8 +169,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str
 def _scatter_words(known: Mapping[str, Material], names: Points) -> str:
     """Say at which share of the median life one in ten has failed, for each material that gives its scatter."""
     said = []
-    for name in (n for n in names if scatters(known[n])):
-        k = known[name].woehler_exponent
-        own = known[name].scatter_in_cycles, known[name].scatter_in_stress
-        said.append(f"{rounded(float(fatigue.scatter_ranges(k, *own)[0]) ** -0.5, 2)} times its median life ({name})")
+    for name in (n for n in names if SNCurve.of(known[n]).scatters):
+        scatter = float(SNCurve.of(known[name]).scatter_ranges[0])
+        said.append(f"{rounded(scatter**-0.5, 2)} times its median life ({name})")
     return f"By the scatter of the material, 10 % have failed at {listing(said)}." if said else ""

@@ -11,7 +11,8 @@ import numpy as np
 
 from trackroller.analysis.columns import at_surface
 from trackroller.analysis.table import BODIES
-from trackroller.damage import fatigue
+from trackroller.damage.limit import roller_overrollings
+from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, REGIMES
 from trackroller.report.numbers import life, number, plain, rounded, unit_text
 from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source
@@ -173,7 +174,7 @@ def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Ma
     for body in (b for b in BODIES if f"{b}_life_hours" in ds):
         hours, material = float(ds[f"{body}_life_hours"]), materials[body]
         if material.scatter_in_cycles or material.scatter_in_stress:
-            for p in fatigue.PROBABILITIES:
+            for p in PROBABILITIES:
                 text = life(_hours_at(ds, body, inputs, material, p))
                 rows.append(Row(f"{body}, until {100 * p:.0f} % have failed", text, "h"))
         elif math.isnan(hours):
@@ -184,20 +185,14 @@ def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Ma
 
 
 def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Material, probability: float) -> float:
-    cycles = fatigue.life_cycles(
-        ds["peak_stress"].sel(body=body).values,
-        fatigue.curve_of(material),
-        rule=str(ds.attrs["life_rule"]),
-        failure_probability=probability,
-        scatter_cycles=material.scatter_in_cycles,
-        scatter_stress=material.scatter_in_stress,
-    )
-    if body == "guide":
-        rate = inputs.get("guide_overrollings_per_hour")
-        return float(np.min(fatigue.guide_hours(cycles, math.nan if rate is None else rate)))
-    alpha = math.radians(inputs["contact_angle"])
-    radius = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
-    return float(np.min(fatigue.roller_hours(cycles, inputs["velocity"], radius)))
+    curve = SNCurve.of(material, str(ds.attrs["life_rule"])).changed(failure_probability=probability)
+    rate = inputs.get("guide_overrollings_per_hour")
+    if body == "roller":
+        alpha = math.radians(inputs["contact_angle"])
+        radius = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
+        rate = roller_overrollings(inputs["velocity"], radius)
+    cycles = curve.life_cycles(ds["peak_stress"].sel(body=body).values)
+    return float(np.min(cycles / (math.nan if rate is None else rate)))
 
 
 def _verdict(regime: str, ds: xr.Dataset, lives: list[Row], found: Limits, inputs: Mapping[str, Any]) -> str:

@@ -10,7 +10,7 @@ import xarray as xr
 from trackroller.analysis.effects import estimate
 from trackroller.analysis.labels import factor_name
 from trackroller.analysis.table import StudyView
-from trackroller.damage.fatigue import DECADES
+from trackroller.damage.sn_curve import DECADES
 from trackroller.report.numbers import capital, count, level_text, listing, percent, rounded, unit_text
 from trackroller.report.tables.cases import Table, factor_cell
 from trackroller.report.words import indices as words

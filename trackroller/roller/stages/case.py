@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import fatigue
-from trackroller.damage.pair import first_failure
-from trackroller.parameters import CONTACT_MODELS
+from trackroller.damage import LIMITS
+from trackroller.damage.limit import Solved
+from trackroller.parameters import CONTACT_MODELS, PARAMETERS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
 from trackroller.roller.geometry import rolling_radius
@@ -30,32 +31,28 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
     v = block.values
     if "friction_work" in options.outputs:
         v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
-    if "life" in options.outputs:
-        life(table, v, options)
+    limits(table, v, options)
     validity(table, block)
 
 
-def life(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
-    """Add overrollings and hours to failure and their relative error to the results `v`, from the peak stress.
+def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> Solved:
+    """Return cases, materials and results as the limits receive them."""
+    names = [field.name for field in fields(table.roller) if field.name != "name"]
+    return Solved(
+        {name: getattr(table, name) for name in PARAMETERS},
+        {name: np.stack([getattr(body, name) for body in (table.roller, table.guide)], axis=1) for name in names},
+        values,
+        rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)),
+        vars(options),
+    )
 
-    The relative error of the life is the exponent of the S-N curve times the relative error of the stress.
-    """
-    per_body, errors = [], []
-    for j, material in enumerate((table.roller, table.guide)):
-        curve = fatigue.SNCurve(*(np.asarray(value)[:, None] for value in fatigue.curve_of(material)))
-        per_body.append(fatigue.life_cycles(v["peak_stress"][:, :, j], curve, rule=options.life_rule))
-        exponent = fatigue.woehler_exponent(curve)
-        if options.life_rule == "haibach":  # The curve is flatter below the fatigue limit.
-            exponent = np.where(v["peak_stress"][:, :, j] < curve.fatigue_limit, 2.0 * exponent - 1.0, exponent)
-        errors.append(exponent * v["error_estimate"][:, :, j])
-    v["life_cycles"] = np.stack(per_body, axis=2)
-    v["life_error_estimate"] = np.stack(errors, axis=2)
-    r_a = rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle))
-    roller = fatigue.roller_hours(per_body[0], table.velocity[:, None], r_a[:, None])
-    guide = fatigue.guide_hours(per_body[1], table.guide_overrollings_per_hour[:, None])
-    v["life_hours"] = np.stack([roller, guide], axis=2)
-    v["roller_life_hours"], v["guide_life_hours"] = roller.min(axis=1), guide.min(axis=1)
-    v["pair_life_hours"], v["first_to_fail"] = first_failure(v["roller_life_hours"], v["guide_life_hours"])
+
+def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
+    """Add the results of the limits whose group is asked for to the results `v`."""
+    solved = solved_of(table, v, options)
+    for limit in LIMITS.values():
+        if limit.group in options.outputs:
+            v |= limit.evaluate(solved)
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:

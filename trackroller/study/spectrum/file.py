@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.fatigue import PROBABILITIES
+from trackroller.damage.sn_curve import PROBABILITIES
 from trackroller.errors import InputError, check_names
 from trackroller.files import files_beside, find_beside, parse_mapping, read_text
 from trackroller.numerics.numbers import number_in

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.damage import fatigue, miner
+from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.materials import load_database
 from trackroller.parameters import PARAMETERS, REGIMES
 from trackroller.roller.case import to_table
@@ -102,16 +103,9 @@ def damage_per_shift(
     """
     life = np.full(stress.shape, np.nan)
     for i, material in enumerate(bodies):
-        t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
-        if probability == 0.5 or t_n or t_s:
-            life[..., i] = fatigue.life_cycles(
-                stress[..., i],
-                fatigue.curve_of(material),
-                rule,
-                failure_probability=probability,
-                scatter_cycles=t_n,
-                scatter_stress=t_s,
-            )
+        curve = SNCurve.of(material, rule).changed(failure_probability=probability)
+        if probability == 0.5 or curve.scatters:
+            life[..., i] = curve.life_cycles(stress[..., i])
     return life, miner.block_damage(cycles, life)
 
 
@@ -189,7 +183,7 @@ def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset,
         "title": spectrum.name,
         "description": spectrum.description,
         "life_rule": rule,
-        "life_conventions": f"{fatigue.AMPLITUDE}; {fatigue.CONVENTIONS[rule]}; linear damage sum, failure at "
+        "life_conventions": f"{fatigue.AMPLITUDE}; {CONVENTIONS[rule]}; linear damage sum, failure at "
         f"D = {spectrum.critical_damage:g}",
         "critical_damage": spectrum.critical_damage,
     }

@@ -1,0 +1,173 @@
+"""Protocol of a limit: what one file of this room declares, and what its function receives.
+
+A limit ends the life of a roller or of its guide. Its file holds the formulas and one object `LIMIT`. Output groups,
+result variables, fields of a case, values of a material, the JSON schema and the documentation follow from it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trackroller.parameters import PARAMETERS, Parameter
+from trackroller.parameters.variables import Variable
+
+BODIES = ("roller", "guide")
+SN_SCATTER = "S-N scatter"
+Results = dict[str, np.ndarray]
+
+
+def roller_overrollings(velocity: ArrayLike, rolling_radius: ArrayLike) -> np.ndarray:
+    """Return the overrollings of a point of the roller, one in each revolution.
+
+    Parameters
+    ----------
+    velocity : array_like
+        v > 0 [m/min].
+    rolling_radius : array_like
+        r_A > 0 [mm].
+
+    Returns
+    -------
+    numpy.ndarray
+        v / (2 pi r_A) [1/h].
+    """
+    return np.asarray(velocity) * 60e3 / (2 * np.pi * np.asarray(rolling_radius))
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Solved rollers as a limit receives them; every array has the case as first axis.
+
+    Parameters
+    ----------
+    cases : mapping of str to numpy.ndarray
+        Parameters of the cases by name, (n,), in the units of `PARAMETERS`.
+    materials : mapping of str to numpy.ndarray
+        Values of the materials of roller and guide by name, (n, 2), in the units of `PROPERTIES`; NaN if not given.
+    values : mapping of str to numpy.ndarray
+        Results of the solver and of the groups that the limit needs, by name: (n,), (n, contact), or
+        (n, contact, body).
+    rolling_radius : numpy.ndarray
+        r_A, (n,) [mm].
+    options : mapping
+        Options of the solution by name, such as `life_rule` and `failure_probability`.
+    """
+
+    cases: Mapping[str, np.ndarray]
+    materials: Mapping[str, np.ndarray]
+    values: Mapping[str, np.ndarray]
+    rolling_radius: np.ndarray
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def overrollings_per_hour(self) -> np.ndarray:
+        """Return the overrollings of a point of roller and guide, (n, 2) [1/h]; NaN for a guide without a number."""
+        roller = roller_overrollings(self.cases["velocity"], self.rolling_radius)
+        return np.stack([roller, self.cases["guide_overrollings_per_hour"]], axis=1)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How far a limit is used, and the hours until it is reached, (n, body) each; NaN where a limit has no such number.
+
+    `utilisation` is the load over the load at which the limit is reached [1]. A limit that has no time has no
+    `life_hours`, and the other way round.
+    """
+
+    utilisation: np.ndarray
+    life_hours: np.ndarray
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A limit, declared once.
+
+    Parameters
+    ----------
+    name, title : str
+        Name in data sets, and its words in tables, sheets and reports.
+    group, meaning : str
+        Group of `outputs` that brings the results, with its meaning for the documentation. A group of the solver has
+        its meaning there.
+    evaluate : callable
+        Function of a `Solved` that returns the results by name.
+    verdict : callable
+        Function of a `Solved` and of the results that returns a `Verdict`.
+    needs : tuple of str
+        Groups of the solver that have to be computed first: "peak_stress", "friction_work", "tractions".
+    results : tuple of Variable
+        What `evaluate` returns.
+    parameters : tuple of Parameter
+        Fields of a case that belong to this limit. They change no force and no stress.
+    materials : tuple of Parameter
+        Values of a material that belong to this limit.
+    requires : tuple of str
+        Fields of a case and values of a material without which there is no verdict.
+    distribution : str
+        What the failure probability of the life rests on: "S-N scatter", "Weibull 10/9", "none".
+    """
+
+    name: str
+    title: str
+    group: str
+    evaluate: Callable[[Solved], Results]
+    verdict: Callable[[Solved, Results], Verdict]
+    meaning: str = ""
+    needs: tuple[str, ...] = ()
+    results: tuple[Variable, ...] = ()
+    parameters: tuple[Parameter, ...] = ()
+    materials: tuple[Parameter, ...] = ()
+    requires: tuple[str, ...] = ()
+    distribution: str = "none"
+
+
+def variables(group: str, *rows: tuple[str, tuple[str, ...], str, str, str]) -> tuple[Variable, ...]:
+    """Return result variables of a group from rows of name, dimensions, unit, symbol and long name."""
+    return tuple(Variable(name, group, *rest) for name, *rest in rows)  # type: ignore[arg-type]
+
+
+def declarations(limits: Iterable[Limit]) -> str:
+    """Return the groups, fields of a case and values of a material of limits as the JSON that `parameters` reads."""
+    limits = tuple(limits)
+    told = {
+        "groups": {limit.group: limit.meaning for limit in limits if limit.meaning},
+        "parameters": [asdict(parameter) for limit in limits for parameter in limit.parameters],
+        "materials": [asdict(value) for limit in limits for value in limit.materials],
+    }
+    return json.dumps(told, indent=1) + "\n"
+
+
+def lacks(limit: Limit, solved: Solved, names: Mapping[str, np.ndarray]) -> list[str]:
+    """Return one sentence for each value that a limit requires and that a case or a material does not have.
+
+    Parameters
+    ----------
+    limit : Limit
+        The limit.
+    solved : Solved
+        The cases.
+    names : mapping of str to numpy.ndarray
+        Names of the materials by body, (n,) each.
+    """
+    out = []
+    scatter = ("scatter_in_cycles",) if limit.distribution == SN_SCATTER else ()
+    for name in limit.requires + (scatter if solved.options["failure_probability"] != 0.5 else ()):
+        if name in PARAMETERS:
+            if np.isnan(solved.cases[name]).any():
+                out.append(f"{limit.name}: the case gives no {name}. Add it to the case, or --set {name}=NUMBER.")
+            continue
+        unknown = np.isnan(solved.materials[name])
+        if name in scatter:  # The scatter of the strength gives that of the life.
+            unknown &= np.isnan(solved.materials["scatter_in_stress"])
+        for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
+            out.append(
+                f"{limit.name}: material '{material}' has no {name}. Enter it in config/materials.yaml under "
+                f"materials.{material}, or in the case: {{like: {material}, {name}: NUMBER}}."
+            )
+    return out

@@ -1,0 +1,27 @@
+"""Declare what a result variable is: its dimensions, unit, symbol and name."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A result variable.
+
+    Parameters
+    ----------
+    name, group : str
+        Name in a data set, and the group of `outputs` that brings the variable.
+    dims : tuple of str
+        Dimensions after `case`.
+    units, symbol, long_name : str
+        Unit as the CF conventions write it, symbol of the publication, and name for figures and reports.
+    """
+
+    name: str
+    group: str
+    dims: tuple[str, ...]
+    units: str
+    symbol: str
+    long_name: str
