@@ -7,6 +7,7 @@ import pytest
 from validation.house import LONGEST_FUNCTION, MOST_ARGUMENTS, MOST_LINES, survey
 
 LINES_OF_CODE = 21_400  # 525 of them for designs over their conditions
+FOR_LIMITS = 1_800  # what the limits of the room `damage`, with what declares and serves them, may take
 # formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
 LONG_FUNCTIONS = {
     "trackroller/halfspace/kernels.py:point_kernel": "six stresses below a point load",
@@ -47,7 +48,7 @@ def test_functions_have_few_arguments(house):
 
 
 def test_the_package_keeps_its_budget(house):
-    assert sum(house.code.values()) <= LINES_OF_CODE
+    assert sum(house.code.values()) <= LINES_OF_CODE + FOR_LIMITS
 
 
 def test_the_counter_finds_what_it_counts(tmp_path):
