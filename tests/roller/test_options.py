@@ -16,9 +16,8 @@ import pytest
 import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
 from trackroller.roller.accuracy import table_errors
-from trackroller.roller.options import Options, model_in_use
+from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.study.file.load import parse_study
-from trackroller.study.store.plan import case_options
 
 ROOT = Path(__file__).parents[2]
 
@@ -26,7 +25,7 @@ ROOT = Path(__file__).parents[2]
 def test_signature_and_docstring_of_solve_have_all_options_with_their_defaults():
     taken = {name: p for name, p in inspect.signature(tr.solve).parameters.items() if name not in ("cases", "database")}
     assert sorted(taken) == sorted(OPTIONS) == sorted(field.name for field in dataclasses.fields(Options))
-    assert {name: p.default for name, p in taken.items()} == {o.name: o.default for o in OPTIONS.values()}
+    assert {p.default for p in taken.values()} == {None}, "None stands for the study file or the default of OPTIONS"
     told = re.findall(r"^    (\w+) : ", inspect.getdoc(tr.solve).replace("\n", "\n    "), flags=re.MULTILINE)
     assert told[: len(taken) + 2] == list(inspect.signature(tr.solve).parameters)
 
@@ -59,7 +58,7 @@ def test_a_spin_model_needs_the_contact_model_that_has_one():
     with pytest.raises(tr.InputError, match="spin_model"):
         parse_study(grid | {"contact_model": "kalker"})
     study = parse_study(grid | {"contact_model": ["sliding", "kalker"]})
-    options, _ = case_options(study, study.design())
+    options, _ = options_of_cases(study.design(), {})
     assert [Options(**told).spin_model for told in options if told["contact_model"] == "kalker"] == ["skewed"] * 2
     assert {told["spin_model"] for told in options if told["contact_model"] == "sliding"} == {"edge", "skewed"}
 

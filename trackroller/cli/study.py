@@ -15,7 +15,7 @@ from trackroller.errors import InputError
 from trackroller.report.terminal import print_table
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain as stages_of
-from trackroller.roller.options import Options
+from trackroller.roller.options import Options, options_of_cases
 from trackroller.study.cost import bytes_a_case, duration
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.load import load_study
@@ -25,7 +25,7 @@ from trackroller.study.run import run_study
 from trackroller.study.status import find_study, status_of
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.plan import case_options, chunk_size, study_folder
+from trackroller.study.store.plan import chunk_size, study_folder
 
 MOST = 20_000  # --explain examines at most this many cases of a study
 
@@ -184,7 +184,7 @@ def _explain_study(path: Path, no_shortcuts: bool) -> None:
     study = load_study(path)
     design = study.design()
     table = to_table(design.drop_vars(list(design.coords)), study.materials)
-    options, group = case_options(study, design)
+    options, group = options_of_cases(design, {})
     if len(table) > MOST:
         print(f"stages of the first {MOST} of {len(table)} cases")
         table, group = table.take(np.arange(MOST)), group[:MOST]

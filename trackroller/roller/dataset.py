@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -221,3 +221,29 @@ def build(
         )
     ds = xr.Dataset(variables, coords=coords, attrs=dict(attrs))
     return ds.isel(case=0) if single else ds
+
+
+def joined(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
+    """Join results of different cases along `case`; what a part lacks is missing there.
+
+    A missing result is NaN, or 0 if it is a whole number; NaN also fills the ends of shorter grids.
+    """
+    blocks = sorted(blocks, key=lambda block: -len(block.variables))
+    whole = {name: 0 for block in blocks for name, values in block.variables.items() if values.dtype.kind in "iu"}
+    dims = {dim for block in blocks for dim in block.dims} - {"case"}
+    sizes = {dim: max(block.sizes.get(dim, 0) for block in blocks) for dim in dims}
+    for i, block in enumerate(blocks):
+        if short := {dim: (0, n - block.sizes[dim]) for dim, n in sizes.items() if block.sizes.get(dim, n) < n}:
+            blocks[i] = block.pad(short)
+    import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
+
+    return xr.concat(
+        blocks,
+        "case",
+        data_vars="all",
+        coords="minimal",
+        compat="override",
+        join="override",
+        combine_attrs="override",
+        fill_value=whole,
+    )

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import json
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, make_dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.errors import InputError
@@ -19,6 +22,9 @@ from trackroller.roller.accuracy import (
     table_errors,
 )
 from trackroller.roller.stop import parse_condition
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 MEASURED_OF_TABLE = {"forces", "contact"}  # outputs whose errors by the table of the exact theory are measured
 _Fields = make_dataclass(
@@ -68,6 +74,40 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         """Return the attributes of a result that record the options."""
         told = {o.name: o.attribute(getattr(self, o.name), self.contact_model) for o in OPTIONS.values()}
         return {name: value for name, value in told.items() if value is not None}
+
+
+def options_of_cases(cases: xr.Dataset, given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], np.ndarray]:
+    """Return the different options of a design's cases, and the index of each case's options, shape (n,).
+
+    Parameters
+    ----------
+    cases : xarray.Dataset
+        Cases along `case`. The attribute `options` (JSON) holds what the study file says, and a coordinate that is
+        called like an option holds the option of each case.
+    given : mapping
+        Options of the call, which take precedence over the attribute.
+
+    Raises
+    ------
+    InputError
+        If the call gives an option that the cases vary.
+    """
+    stated = json.loads(cases.attrs.get("options", "{}")) | given
+    varying = [name for name in OPTIONS if name in cases.coords]
+    for name in varying:
+        if name in given:
+            levels = ", ".join(dict.fromkeys(map(str, np.atleast_1d(cases[name].values))))
+            remedy = f"Leave {name} out, or choose the cases with one value of it."
+            raise InputError(name, given[name], f"the cases vary it themselves ({levels})", remedy)
+    if not varying:
+        return [stated], np.zeros(cases.sizes.get("case", 1), dtype=int)
+    keys = list(zip(*[np.atleast_1d(cases[name].values).tolist() for name in varying], strict=True))
+    known = {key: i for i, key in enumerate(dict.fromkeys(keys))}
+    different = [stated | dict(zip(varying, key, strict=True)) for key in known]
+    for options in different:  # a grid also pairs a spin model with contact models that have none
+        if not OPTIONS["spin_model"].applies(options.get("contact_model", OPTIONS["contact_model"].default)):
+            options["spin_model"] = OPTIONS["spin_model"].default
+    return different, np.array([known[key] for key in keys])
 
 
 def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_model: str) -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from trackroller.materials import MaterialDatabase
 
-CASE, MATERIALS = "case", "materials"  # names of the attributes, both JSON
+CASE, MATERIALS, STUDY = "case", "materials", "study"  # names of attributes: JSON, JSON, YAML
 
 
 def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Dataset:
@@ -42,6 +42,16 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
         values["friction_coefficient"] = float(to_table(case, database).friction_coefficient[0])
     return ds.assign_attrs({CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))})
+
+
+def with_design(ds: xr.Dataset, design: xr.Dataset) -> xr.Dataset:
+    """Return the results of a study's design with the design: its variables as coordinates, and its attributes.
+
+    The results of other cases come back as they are.
+    """
+    if STUDY not in design.attrs:
+        return ds
+    return ds.assign_coords(dict(design.variables)).assign_attrs(design.attrs)
 
 
 def plain_inputs(case: Case) -> dict[str, Any]:

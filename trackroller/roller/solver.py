@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,15 +14,15 @@ from trackroller.contact.settings import converged_up_to
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.materials import load_database
-from trackroller.parameters import CONTACT_MODELS, DEFAULT_OUTPUTS, MAPPING_FIELDS, OPTIONS
+from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS
 from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
-from trackroller.roller.dataset import VARIABLES, build, file_attributes
+from trackroller.roller.dataset import VARIABLES, build, file_attributes, joined
 from trackroller.roller.failures import with_reasons
-from trackroller.roller.options import Options, model_in_use
-from trackroller.roller.record import with_inputs
+from trackroller.roller.options import Options, model_in_use, options_of_cases
+from trackroller.roller.record import with_design, with_inputs
 from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
@@ -47,38 +47,42 @@ WINDOW = 16 * BLOCK  # cases among which equal mechanics are searched
 
 def solve(
     cases: Any,
-    outputs: Iterable[str] | str = DEFAULT_OUTPUTS,
+    outputs: Iterable[str] | str | None = None,
     *,
-    contact_model: str = "kalker",
-    spin_model: str = "skewed",
-    accuracy: str | float | Accuracy = "standard",
-    hertz: str = "exact",
-    stress_bodies: str = "both",
-    life_rule: str = "elementary",
-    normal: str = "hertz",
+    contact_model: str | None = None,
+    spin_model: str | None = None,
+    accuracy: str | float | Accuracy | None = None,
+    hertz: str | None = None,
+    stress_bodies: str | None = None,
+    life_rule: str | None = None,
+    normal: str | None = None,
     stop_if: str | None = None,
-    shortcuts: bool = True,
-    slip_terms: Collection[str] | str = (),
+    shortcuts: bool | None = None,
+    slip_terms: Collection[str] | str | None = None,
     database: MaterialDatabase | None = None,
 ) -> xr.Dataset:
     """Compute contact forces, tractions, stresses and life of track rollers.
 
+    An option that is not given takes the value of the study file that a design comes from, or otherwise its default,
+    which stands first in its list.
+
     Parameters
     ----------
     cases : Case, mapping, list of them, or xarray.Dataset
-        What is solved. A list, and a data set with the dimension `case`, give results along `case`.
+        What is solved. A list, and a data set with the dimension `case`, give results along `case`. The results of a
+        study's design can be analysed and reported: see `trackroller.open_study`.
     outputs : str or iterable of str
-        Groups of results; a group is computed only if it is asked for: "forces", "contact", "friction_work",
-        "peak_stress", "life", "tractions", "subsurface".
+        Groups of results; a group is computed only if it is asked for: "forces", "contact", "peak_stress", "life" (by
+        default these four), "friction_work", "tractions", "subsurface".
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
         "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). "kalker" uses its table at
         accuracy "preview", and for forces within a tolerance that the table keeps.
     spin_model : str
         Position of the spin pole, assumptions 0, 1, 2 of the publication: "concentric", "edge", "skewed". It matters to
-        "sliding" only.
+        "sliding" only. Default: "skewed".
     accuracy : str, float or Accuracy
-        Discretisation: "preview", "standard", "reference", or a relative tolerance of forces and peak stress in (0, 1),
+        Discretisation: "standard", "preview", "reference", or a relative tolerance of forces and peak stress in (0, 1),
         which takes the cheapest settings that were measured to keep it. The attributes of a result state its expected
         errors. See `trackroller.roller.accuracy`.
     hertz : str
@@ -93,7 +97,7 @@ def solve(
         Condition such as "peak_stress > R_m". Where it holds, no peak stress is searched for, and the case is marked
         `stopped`. See `trackroller.roller.stop`.
     shortcuts : bool
-        Whether symmetry and repetition among the cases are used. The numbers are the same to rounding.
+        Whether symmetry and repetition among the cases are used (default). The numbers are the same to rounding.
     slip_terms : str or collection of str
         What the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: "profile", the slip of
         the guide's profile by eq. (20), which sliding always counts, and "curve", the turning of the roller with the
@@ -130,19 +134,51 @@ def solve(
     >>> dict(both.roller_life_hours.sizes)
     {'case': 2}
     """
-    given = locals()  # the options by name; the signature stays explicit for readers and editors
-    options = Options(**{name: given[name] for name in OPTIONS if name in given})
-    single = isinstance(cases, Case) or (hasattr(cases, "keys") and not hasattr(cases, "data_vars"))
+    named = {
+        "outputs": outputs,
+        "contact_model": contact_model,
+        "spin_model": spin_model,
+        "accuracy": accuracy,
+        "hertz": hertz,
+        "stress_bodies": stress_bodies,
+        "life_rule": life_rule,
+        "normal": normal,
+        "stop_if": stop_if,
+        "shortcuts": shortcuts,
+        "slip_terms": slip_terms,
+    }
+    given = {name: value for name, value in named.items() if value is not None}
     if hasattr(cases, "data_vars"):
-        single = "case" not in cases.dims
+        return _solve_design(cases, given, database)
+    single = isinstance(cases, Case) or hasattr(cases, "keys")
+    ds = _solve_table(to_table(cases, database), Options(**given), single)
+    if not single:
+        return ds
+    return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database or load_database())
+
+
+def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: MaterialDatabase | None) -> xr.Dataset:
+    """Solve a data set of cases, each with the options that belong to it."""
+    different, group = options_of_cases(cases, given)
+    options = [Options(**one) for one in different]
     table = to_table(cases, database)
+    if len(options) == 1:
+        return with_design(_solve_table(table, options[0], "case" not in cases.dims), cases)
+    rows = [np.flatnonzero(group == number) for number in range(len(options))]
+    parts = [
+        _solve_table(table.take(own), one, single=False).assign_coords(case=own)
+        for own, one in zip(rows, options, strict=True)
+    ]
+    return with_design(joined(parts).sel(case=np.arange(len(table))).drop_vars("case"), cases)
+
+
+def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset:
+    """Solve checked cases with the same options."""
     _check_cases(table, options)
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
     ds = with_reasons(_assemble(join(windows), options, single), table, options)
     _tell_errors(ds, table, options)
-    if not single or hasattr(cases, "data_vars"):
-        return ds
-    return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database or load_database())
+    return ds
 
 
 def _check_cases(table: CaseTable, options: Options) -> None:

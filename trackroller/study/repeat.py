@@ -11,11 +11,12 @@ import xarray as xr
 
 from trackroller.errors import InputError, WorkError
 from trackroller.parameters import PARAMETERS
+from trackroller.roller.options import options_of_cases
 from trackroller.roller.record import solve_command
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import with_history
 from trackroller.study.store import chunks
-from trackroller.study.store.plan import case_options, locate, study_folder
+from trackroller.study.store.plan import locate, study_folder
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -82,10 +83,10 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
     if place[number] < 0:
         raise WorkError("this case is not solved yet: run the study first.")
-    options, group = case_options(study, design)
+    options, group = options_of_cases(design, {})
     state = found.states.isel(case=place[[number]])
     before = chunks.read(found.paths[state["file"].item()]).isel(case=state["row"].values)
-    row = design.drop_vars(list(design.coords)).isel(case=[number])
+    row = design.drop_vars(list(design.coords)).drop_attrs().isel(case=[number])
     solved = solve(row, database=study.materials, **options[group[number]])
     again = chunks.from_results(solved, state["case"].values)
     differences = compare(before, chunks.join([before.isel(case=[]), again]))  # a failed case lacks results of others

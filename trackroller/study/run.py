@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trackroller.study.cluster import workers
-from trackroller.study.gather import gather
 from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store.folder import Tell
+from trackroller.study.store.gather import gather
 from trackroller.study.store.plan import Plan, working_plan
 
 if TYPE_CHECKING:

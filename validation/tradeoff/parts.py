@@ -16,7 +16,7 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.files import write_whole
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
-from trackroller.study.provenance import git_commit, versions
+from trackroller.study.store.provenance import git_commit, versions
 from validation.tradeoff import settings
 from validation.tradeoff.measure import measure
 from validation.tradeoff.paper import paper_table

@@ -41,7 +41,7 @@ rule gather:
         study=study_inputs(PLAN.study),
         design=rules.design.output,
         chunks=expand(f"{RESULTS}/plan/{{chunk}}.solved", chunk=PLAN.chunks),
-        code=digest_file(f"{RESULTS}/code", "trackroller.study.gather"),
+        code=digest_file(f"{RESULTS}/code", "trackroller.study.store.gather"),
     output:
         f"{RESULTS}/study.nc",
     log:

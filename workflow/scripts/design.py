@@ -1,7 +1,7 @@
 """Write the design of a study."""
 
 from trackroller.cli.workflow import log_to, workflow_plan
-from trackroller.study.gather import write_design
+from trackroller.study.store.gather import write_design
 
 log_to(snakemake.log[0])
 plan = workflow_plan(snakemake.params.config, main=False)

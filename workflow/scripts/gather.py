@@ -3,7 +3,7 @@
 import logging
 
 from trackroller.cli.workflow import log_to, workflow_plan
-from trackroller.study.gather import gather
+from trackroller.study.store.gather import gather
 
 log_to(snakemake.log[0])
 gather(workflow_plan(snakemake.params.config, main=False), tell=logging.getLogger("trackroller").info)

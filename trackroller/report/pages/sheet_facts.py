@@ -20,7 +20,7 @@ from trackroller.report.words.flags import Flag, flags_of
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.limits import Limits, limits
 from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of, solve_command
-from trackroller.study.provenance import versions
+from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -14,7 +14,7 @@ from trackroller.report.pages.spectrum import block_table, life_rows, sentences,
 from trackroller.report.terminal import print_table
 from trackroller.report.words.flags import flags_of
 from trackroller.roller.record import inputs_of, is_default, materials_of
-from trackroller.study.provenance import versions
+from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,6 +17,7 @@ from trackroller.roller.fields import own_frictions
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign, sample
+from trackroller.study.design.stored import stored
 
 if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
@@ -96,8 +96,8 @@ def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase)
     Returns
     -------
     Dataset with dimension `case`: one variable a parameter (friction coefficients as numbers, materials by name).
-    Coordinates along `case`: models that vary, and auxiliary factors of expressions. Attributes: study, design,
-    seed, the factors and the shape of a grid.
+    Coordinates along `case`: models that vary, and auxiliary factors of expressions. The places of the design stand
+    as `trackroller.study.design.stored` says.
     """
     n = design.size or 1
     columns = _columns(config, design, n, materials)
@@ -109,18 +109,12 @@ def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase)
         attrs = {"long_name": name.replace("_", " ")}
         data[name] = ("case", np.array([str(v) for v in columns.pop(name)], dtype=object), attrs)
     coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
+    if "material_pair" in design.columns:
+        columns["material_pair"] = design.columns["material_pair"]
     for name, values in columns.items():
         coords[name] = ("case", readable(values), {"long_name": name.replace("_", " ")})
-    dataset = xr.Dataset(data, coords)
-    shape = design.meta.get("shape") if design.method == "grid" else None
-    dataset.attrs = {
-        "study": config.name,
-        "design": design.method,
-        "seed": config.seed,
-        "factors": json.dumps(list(design.factors)),
-        "grid_shape": json.dumps(list(shape) if shape is not None else None),
-    }
-    return dataset
+    places, attrs = stored(design)
+    return xr.Dataset(data, coords | places, {"study_name": config.name, "seed": config.seed, **attrs})
 
 
 def _columns(config: StudyFile, design: SampledDesign, n: int, materials: MaterialDatabase) -> dict[str, np.ndarray]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -97,6 +98,8 @@ class Study:
         Returns
         -------
         xarray.Dataset
-            Dimension `case`, one variable a parameter, materials by name.
+            Dimension `case`, one variable a parameter, materials by name. The attributes hold the study file and the
+            options that `solve` takes for these cases.
         """
-        return build.build(self.config, self.drawn, self.materials)
+        options = json.dumps(self.options)
+        return build.build(self.config, self.drawn, self.materials).assign_attrs(study=self.merged(), options=options)

@@ -18,7 +18,7 @@ import xarray as xr
 
 from trackroller.files import write_whole
 from trackroller.parameters import REGIMES
-from trackroller.roller.dataset import file_attributes
+from trackroller.roller.dataset import file_attributes, joined
 from trackroller.study.store.folder import StudyFolder, Tell
 from trackroller.study.store.identity import chunk_name
 
@@ -52,28 +52,9 @@ def failure(cases: np.ndarray, reason: str) -> xr.Dataset:
 
 
 def join(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
-    """Join blocks of different cases; what a block lacks is missing there.
-
-    A missing result is NaN, or 0 if it is a whole number; NaN also fills the ends of shorter grids.
-    """
-    blocks = sorted(blocks, key=lambda block: -len(block.variables))
-    whole = {name: 0 for block in blocks for name, values in block.variables.items() if values.dtype.kind in "iu"}
-    dims = {dim for block in blocks for dim in block.dims} - {"case"}
-    sizes = {dim: max(block.sizes.get(dim, 0) for block in blocks) for dim in dims}
-    for i, block in enumerate(blocks):
-        if short := {dim: (0, n - block.sizes[dim]) for dim, n in sizes.items() if block.sizes.get(dim, n) < n}:
-            blocks[i] = block.pad(short)
-    joined = xr.concat(
-        blocks,
-        "case",
-        data_vars="all",
-        coords="minimal",
-        compat="override",
-        join="override",
-        combine_attrs="override",
-        fill_value=whole,
-    )
-    return joined.assign_attrs(seconds=sum(block.attrs.get("seconds", 0.0) for block in blocks))
+    """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add up."""
+    blocks = list(blocks)
+    return joined(blocks).assign_attrs(seconds=sum(block.attrs.get("seconds", 0.0) for block in blocks))
 
 
 def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:

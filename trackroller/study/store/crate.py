@@ -26,8 +26,8 @@ from trackroller.files import sha256, write_text, write_whole
 from trackroller.materials import builtin_database, load_database
 from trackroller.materials.file import find_user_file
 from trackroller.study.file.load import load_study
-from trackroller.study.provenance import versions
 from trackroller.study.repeat import compare
+from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

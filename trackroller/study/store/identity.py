@@ -9,7 +9,7 @@ A fingerprint is the SHA-256 (first 128 bits, as hexadecimal digits) of
 
 Two cases with the same fingerprint have the same results. A case that is in the store is therefore never solved again,
 whatever study, chunk or order it came from. The versions of NumPy and numba are recorded with a study
-(`trackroller.study.provenance`); they do not count, because they change the last digits only.
+(`trackroller.study.store.provenance`); they do not count, because they change the last digits only.
 """
 
 from __future__ import annotations

@@ -23,11 +23,10 @@ import xarray as xr
 from trackroller.errors import InputError, WorkError
 from trackroller.files import sha256, write_text
 from trackroller.numerics.numbers import all_equal
-from trackroller.parameters import OPTIONS
 from trackroller.roller.case import to_table
+from trackroller.roller.options import options_of_cases
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import case_columns
-from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.growth import with_history
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
@@ -83,20 +82,6 @@ def study_folder(study_name: str, results: Path | str = "results") -> StudyFolde
     return StudyFolder(Path(results) / check_name(study_name))
 
 
-def case_options(study: Study, design: xr.Dataset) -> tuple[list[dict[str, Any]], np.ndarray]:
-    """Return the different options of `solve` in a design, and the index of each case's options, shape (n,)."""
-    varying = [name for name in OPTION_FACTORS if name in design.coords]
-    if not varying:
-        return [study.options], np.zeros(design.sizes["case"], dtype=int)
-    keys = list(zip(*[design[name].values.tolist() for name in varying], strict=True))
-    known = {key: i for i, key in enumerate(dict.fromkeys(keys))}
-    options = [study.options | dict(zip(varying, key, strict=True)) for key in known]
-    for told in options:  # a grid also pairs a spin model with contact models that have none
-        if not OPTIONS["spin_model"].applies(told["contact_model"]):
-            told["spin_model"] = OPTIONS["spin_model"].default
-    return options, np.array([known[key] for key in keys])
-
-
 def identify(study: Study, design: xr.Dataset) -> np.ndarray:
     """Return the fingerprint of each case of a design, dtype S32, shape (n,).
 
@@ -105,7 +90,7 @@ def identify(study: Study, design: xr.Dataset) -> np.ndarray:
     InputError
         If a case of the design is not valid.
     """
-    options, group = case_options(study, design)
+    options, group = options_of_cases(design, {})
     table = to_table(design.drop_vars(list(design.coords)), study.materials)
     return fingerprints(table, *options, group=group)
 
@@ -246,12 +231,12 @@ def _new_plan(study: Study, folder: StudyFolder, found: Inventory, tell: Tell) -
         tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
     design = study.design()
     cases = identify(study, design)
-    options, group = case_options(study, design)
+    options, group = options_of_cases(design, {})
     wanted, first = np.unique(cases, return_index=True)
     place = found.find(wanted)
     missing = np.sort(first[place < 0])
     size = chunk_size(study, len(missing))
-    fields = design[list(case_columns(design))].drop_attrs().drop_vars(list(design.coords))
+    fields = design.drop_vars(list(design.coords))[list(case_columns(design))].drop_attrs()
     # a value that all cases share is written once
     fields = fields.map(lambda column: column[0] if all_equal(column.values) else column).assign_coords(case=cases)
     sizes: dict[str, int] = {}

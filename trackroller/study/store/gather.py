@@ -14,21 +14,17 @@ import xarray as xr
 
 from trackroller.errors import WorkError
 from trackroller.files import write_whole
-from trackroller.numerics.numbers import all_equal
-from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.roller.dataset import file_attributes
-from trackroller.study import provenance
-from trackroller.study.design.factors import Factor, readable
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import StudyFolder, Tell, record_checksum
 from trackroller.study.store.inventory import Inventory
+from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan, locate
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
-Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
 
 
 def write_design(study: Study, folder: StudyFolder) -> None:
@@ -74,33 +70,15 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
     if missing := int((place < 0).sum()):
         damaged = "".join(f" Corrupt: {why}." for why in found.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
-    grid = study.drawn.factors if study.drawn.method == "grid" else {}
-    sizes = dict(zip(grid, study.drawn.meta["shape"], strict=True)) if grid else {"case": count}
 
     def save(beside: Path) -> None:
-        results, more, attrs = _collect(found, place, folder.root)
-        unstacked = {
-            name: _variable((*sizes, *v.dims[1:]), v.values.reshape(*sizes.values(), *v.shape[1:]), v.attrs)
-            for name, v in results.items()
-        }
-        coords = _labels(study, design, sizes, grid)
-        for name, v in more.items():
-            coords.setdefault(name, _variable(v.dims, v.values, v.attrs, coordinate=True))
-        told = _attributes(study, design, attrs)
-        xr.Dataset(unstacked, coords, told).to_netcdf(beside, engine="netcdf4")
+        labelled(study, design, *_collect(found, place, folder.root)).to_netcdf(beside, engine="netcdf4")
 
     write_whole(folder.gathered, save)
     record_checksum(folder, folder.gathered)
     if tell is not None:
         tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered
-
-
-def _attributes(study: Study, design: xr.Dataset, attrs: dict[str, Any]) -> dict[str, Any]:
-    """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
-    names = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
-    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in {*study.factors, "seconds"}}
-    return kept | provenance.attributes(study, names)
 
 
 def _collect(
@@ -146,53 +124,3 @@ def _room(shape: tuple[int, ...], dtype: np.dtype, folder: Path) -> np.ndarray:
         values: np.ndarray = np.memmap(file, dtype, "r+", shape=shape)
     values[...] = missing
     return values
-
-
-def _labels(study: Study, design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:
-    """Return the axes of a grid, the number of each case, and every parameter over the axes that it depends on."""
-    labels: Variables = {}
-
-    def add(name: str, dims: tuple[str, ...], values: np.ndarray) -> None:
-        known = design.get(name.removesuffix("_value"))
-        attrs = known.attrs if known is not None else {"long_name": name.replace("_", " ")}
-        labels.setdefault(name, _variable(dims, values, attrs, coordinate=True))
-
-    for dim, factor in grid.items():
-        add(dim, (dim,), readable(factor.take(np.arange(sizes[dim]))))
-        if dim == "material_pair":
-            for i, name in enumerate(MATERIAL_FIELDS):
-                add(name, (dim,), np.array([pair[i] for pair in factor.levels], dtype=object))
-    number = np.arange(design.sizes["case"])
-    words = {"long_name": "case number, for `trackroller repeat`", "units": "1"}
-    labels["case"] = _variable(tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True)
-    columns = {str(name): column.values for name, column in design.variables.items() if name != "case"}
-    if "material_pair" in study.drawn.columns and "material_pair" not in grid:
-        columns["material_pair"] = readable(study.drawn.columns["material_pair"])
-    for name, values in columns.items():
-        if name in grid and set(grid[name].levels) & {*FRICTION_LEVELS, None}:
-            name = f"{name}_value"
-        add(name, *_varying(values.reshape(*sizes.values()), list(sizes)))
-    return labels
-
-
-def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.ndarray]:
-    """Return the dimensions that values depend on, and the values over these dimensions."""
-    for dim in tuple(dims):
-        axis = dims.index(dim)
-        if all_equal(np.moveaxis(values, axis, 0)):
-            values = values.take([0], axis=axis).squeeze(axis)
-            dims.remove(dim)
-    return tuple(dims), values
-
-
-def _variable(
-    dims: tuple[Hashable, ...], values: np.ndarray, attrs: dict[str, Any], coordinate: bool = False
-) -> tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]:
-    """Return dimensions, values, attributes and encoding of a variable of the file; only results have a fill value."""
-    encoding: dict[str, Any] = {"coordinates": None}  # one attribute of the file lists all of them
-    encoding["_FillValue"] = np.nan if values.dtype.kind == "f" and not coordinate else None
-    if dims and values.dtype.kind not in "OSU":
-        encoding |= {"zlib": True, "complevel": 4, "shuffle": True}
-    flags = ("flag_values", "flag_masks")  # these take the type of their variable
-    told = {key: np.asarray(value, values.dtype) if key in flags else value for key, value in attrs.items()}
-    return tuple(dims), values, told, encoding

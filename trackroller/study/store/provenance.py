@@ -22,7 +22,7 @@ _PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "SALib", "snakemake
 
 def git_commit() -> str:
     """Return the commit of the source tree, with '+changed' after an edit; 'unknown' outside a source tree."""
-    root = Path(__file__).resolve().parents[2]
+    root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"
     try:

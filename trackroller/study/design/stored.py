@@ -1,0 +1,124 @@
+"""Store a design in a data set of cases, and read it back; nothing is drawn again.
+
+Places (quantiles, codes or numbers of levels) of random and classical designs stand in the coordinate `design_place`.
+Those of a grid and of a table follow from the values themselves. The attribute `design_meta` holds the numbers of the
+method as JSON, such as the groups of a Saltelli design.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.study.design.draws import of_columns
+from trackroller.study.design.factors import TAIL, Factor
+from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.outputs import flat
+
+PLACE, FACTOR, META = "design_place", "design_factor", "design_meta"
+FOLLOWING = ("grid", "table")  # designs whose places follow from the values
+_CODED = ("central_composite", "box_behnken", "plackett_burman")
+
+
+def stored(design: SampledDesign) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the coordinates and attributes that hold a design.
+
+    Parameters
+    ----------
+    design : the drawn design
+
+    Returns
+    -------
+    Coordinates along `case`, and attributes, for an xarray.Dataset.
+    """
+    meta = {"columns": list(design.columns), "size": design.size, **design.meta}
+    attrs = {"design": design.method, META: json.dumps(meta)}
+    if design.method in FOLLOWING:
+        return {}, attrs
+    words = {"long_name": "place in the design: quantile, code, or number of the listed value", "units": "1"}
+    names = np.array(list(design.factors), dtype=object)
+    return {PLACE: (("case", FACTOR), design.unit, words), FACTOR: (FACTOR, names, {"long_name": "factor"})}, attrs
+
+
+def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]) -> SampledDesign:
+    """Return the design that a data set of cases holds.
+
+    Parameters
+    ----------
+    ds : cases or results with the coordinates and attributes of `stored`
+    parsed : all factors of the study file
+    dims : dimensions of `ds` that count cases
+
+    Returns
+    -------
+    SampledDesign, equal to the one that was stored
+
+    Raises
+    ------
+    InputError : the design is missing, or rows and factors are not those of the study file
+    """
+    method, meta = str(ds.attrs.get("design", "")), json.loads(ds.attrs.get(META, "null"))
+    remedy = "Rows and study file do not belong together. Run the study again."
+    if not method or meta is None:
+        raise InputError("study", sorted(map(str, ds.attrs)), f"results with the attributes design and {META}", remedy)
+    names, size = meta.pop("columns"), meta.pop("size")
+    rows = int(np.prod([ds.sizes[d] for d in dims]))
+    if rows != max(size, 1):
+        raise InputError("study", f"{rows} rows", f"the {size} rows of its design {method}", "Gather the study again.")
+    if method == "table":
+        columns = {name: _column(ds, name, dims) for name in names}
+        free, unit = of_columns({name: values for name, values in columns.items() if name not in parsed})
+        return SampledDesign(columns, free, method, unit, meta)
+    free = {name: factor for name, factor in parsed.items() if factor.varies}
+    if method == "grid":
+        unit = np.indices(meta["shape"]).reshape(len(free), rows).T.astype(float)
+    else:
+        unit = flat(ds, PLACE, dims)
+        if [str(name) for name in ds[FACTOR].values] != list(free):
+            raise InputError("study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", remedy)
+    design = SampledDesign({}, free, method, unit, meta)
+    places = dict(zip(free, _levels(design).T, strict=True))
+    for name in names:
+        factor = parsed[name]
+        if factor.discrete:
+            design.columns[name] = factor.take(places.get(name, np.zeros(rows)))
+        else:
+            design.columns[name] = _column(ds, name, dims)
+    _check_rows(ds, design, dims, remedy)
+    return design
+
+
+def _column(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
+    """Return a column of a design: numbers as floats, texts as objects."""
+    if name not in ds.variables:
+        raise InputError("study", name, "a column of the results", "Gather the study again.")
+    values = flat(ds, name, dims)
+    return values.astype(float if values.dtype.kind in "fiu" else object)
+
+
+def _levels(design: SampledDesign) -> np.ndarray:
+    """Return the places with the number of the listed value for each list, shape (n, factors)."""
+    return (design.unit + 1) / 2 if design.method == "plackett_burman" else design.places
+
+
+def _check_rows(ds: xr.Dataset, design: SampledDesign, dims: tuple[str, ...], remedy: str) -> None:
+    """Refuse results whose values are not those of the stored places."""
+    for j, (name, factor) in enumerate(design.factors.items()):
+        if name not in ds.variables or not factor.ordered or ds[name].dtype.kind not in "fiu":
+            continue
+        if factor.discrete:
+            wanted = design.columns[name]
+        else:
+            unit = design.unit[:, j]
+            wanted = factor.from_unit((unit + 1) / 2 if design.method in _CODED else unit, _tail(design.method))
+        if not np.allclose(flat(ds, name, dims), wanted, rtol=1e-6, atol=1e-12):
+            raise InputError("study", name, "the values of its design", remedy)
+
+
+def _tail(method: str) -> float:
+    return TAIL if method in (*_CODED, "morris") else 0.0

@@ -1,0 +1,121 @@
+"""Label the results of a study: a grid gets a dimension for each factor, a sample the dimension `case`."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.numerics.numbers import all_equal
+from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
+from trackroller.study.design.factors import Factor, readable
+from trackroller.study.design.stored import FACTOR, META, PLACE
+from trackroller.study.store import provenance
+
+if TYPE_CHECKING:
+    from trackroller.study.file.study import Study
+
+Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
+
+
+def labelled(
+    study: Study,
+    design: xr.Dataset,
+    results: Mapping[Hashable, xr.Variable],
+    axes: Mapping[Hashable, xr.Variable],
+    attrs: Mapping[str, Any],
+) -> xr.Dataset:
+    """Return the data set of a solved study.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    design : xarray.Dataset
+        Its n cases, as `Study.design` returns them.
+    results : mapping
+        Results by name, each with `case` as its first dimension.
+    axes : mapping
+        Coordinates of the other dimensions.
+    attrs : mapping
+        Attributes of the solver.
+
+    Returns
+    -------
+    xarray.Dataset
+        Results with parameters, factors and the places of the design as coordinates. The attributes hold what is needed
+        to repeat the study, and the study file itself.
+    """
+    grid = study.drawn.factors if study.drawn.method == "grid" else {}
+    shape = study.drawn.meta["shape"] if grid else (design.sizes["case"],)
+    sizes = dict(zip(grid or ("case",), shape, strict=True))
+    unstacked = {
+        name: _variable((*sizes, *v.dims[1:]), v.values.reshape(*shape, *v.shape[1:]), v.attrs)
+        for name, v in results.items()
+    }
+    coords = _labels(design, sizes, grid)
+    for name, v in axes.items():
+        coords.setdefault(name, _variable(v.dims, v.values, v.attrs, coordinate=True))
+    return xr.Dataset(unstacked, coords, _attributes(study, design, attrs))
+
+
+def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
+    names = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
+    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in {*study.factors, "seconds"}}
+    return kept | {META: design.attrs[META]} | provenance.attributes(study, names)
+
+
+def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:
+    """Return the axes of a grid, the number of each case, and every parameter over the axes that it depends on."""
+    labels: Variables = {}
+
+    def add(name: str, dims: tuple[str, ...], values: np.ndarray) -> None:
+        known = design.get(name.removesuffix("_value"))
+        attrs = known.attrs if known is not None else {"long_name": name.replace("_", " ")}
+        labels.setdefault(name, _variable(dims, values, attrs, coordinate=True))
+
+    for dim, factor in grid.items():
+        add(dim, (dim,), readable(factor.take(np.arange(sizes[dim]))))
+        if dim == "material_pair":
+            for i, name in enumerate(MATERIAL_FIELDS):
+                add(name, (dim,), np.array([pair[i] for pair in factor.levels], dtype=object))
+    number = np.arange(design.sizes["case"])
+    words = {"long_name": "case number, for `trackroller repeat`", "units": "1"}
+    labels["case"] = _variable(tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True)
+    for name, values in ((str(name), v.values) for name, v in design.variables.items() if v.dims == ("case",)):
+        if name == "case":
+            continue
+        if name in grid and set(grid[name].levels) & {*FRICTION_LEVELS, None}:
+            name = f"{name}_value"
+        add(name, *_varying(values.reshape(*sizes.values()), list(sizes)))
+    for name in (PLACE, FACTOR):
+        if name in design.variables:
+            place = design[name]
+            labels[name] = _variable(place.dims, place.values, place.attrs, coordinate=True)
+    return labels
+
+
+def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.ndarray]:
+    """Return the dimensions that values depend on, and the values over these dimensions."""
+    for dim in tuple(dims):
+        axis = dims.index(dim)
+        if all_equal(np.moveaxis(values, axis, 0)):
+            values = values.take([0], axis=axis).squeeze(axis)
+            dims.remove(dim)
+    return tuple(dims), values
+
+
+def _variable(
+    dims: tuple[Hashable, ...], values: np.ndarray, attrs: dict[str, Any], coordinate: bool = False
+) -> tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]:
+    """Return dimensions, values, attributes and encoding of a variable of the file; only results have a fill value."""
+    encoding: dict[str, Any] = {"coordinates": None}  # one attribute of the file lists all of them
+    encoding["_FillValue"] = np.nan if values.dtype.kind == "f" and not coordinate else None
+    if dims and values.dtype.kind not in "OSU":
+        encoding |= {"zlib": True, "complevel": 4, "shuffle": True}
+    flags = ("flag_values", "flag_masks")  # these take the type of their variable
+    told = {key: np.asarray(value, values.dtype) if key in flags else value for key, value in attrs.items()}
+    return tuple(dims), values, told, encoding
