@@ -11,9 +11,10 @@ import xarray as xr
 
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.stored import FACTOR
 from trackroller.study.outputs import case_dims, flat, read_study
 
-INNER = ("contact", "body", "y", "x", "n", "section_x", "section_y", "section_z", "component")
+INNER = ("contact", "body", "y", "x", "n", "section_x", "section_y", "section_z", "component", FACTOR)
 CATEGORIES = ("material_pair", "roller_material", "guide_material")
 CONTACT_RESULTS = (
     "normal_force",
