@@ -6,7 +6,7 @@ STAMP := $(VENV)/.ready
 CI_STAMP := $(VENV)/.ci-ready
 STUDY ?= config/studies/default.yaml
 CORES ?= all
-SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile validation/rules
+SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
 .PHONY: env env-ci lock study validate test test-quick test-browser lint docs explorer explorer-check test-slurm test-long clean-results
@@ -65,9 +65,6 @@ lint: $(STAMP)
 # the site in site/: generated pages must be up to date, and no link may be dead
 docs: $(CI_STAMP)
 	$(BIN)/python docs/generate.py --check
-	$(BIN)/python -m validation.adopt.extremes --check
-	$(BIN)/python -m validation.adopt.paper --check
-	$(BIN)/python -m validation.adopt.tradeoff --check
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 # the pages in a browser; needs Chromium, and axe-core from `npm ci` in web/

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import sys
 from pathlib import Path
@@ -18,13 +17,10 @@ from trackroller.damage.limit import declarations
 from trackroller.parameters.declared import FILE as DECLARED
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.dataset import COMMENTS, VALIDITY_BITS, VARIABLES
-from validation.adopt.common import PICTURES, shortened
-from validation.pages import markdown
-from validation.tradeoff import page as tradeoff_page
-from validation.written import render as render_written
+from validation.pages import TEMPLATES
+from validation.pages import render as render_written
 
 FOLDER = Path(__file__).parent
-TRADEOFF_DATA = ("The ladders", "Order of convergence", "Single stages")  # tables that only the data file holds
 USES = {"preview": "a first look", "standard": "studies", "reference": "to check `standard`; single cases"}
 HEAD = """# Parameters, options and results
 
@@ -150,7 +146,8 @@ def presets() -> str:
 def pages() -> dict[Path, str]:
     """Return the path and the text of each page that this program writes."""
     place = FOLDER / "validation"
-    written = {place / name: render_written(name, **more) for name, more in WRITTEN.items()}
+    names = sorted(path.name for path in TEMPLATES.glob("*.md") if path.name != "readme.md")
+    written = {place / name: render_written(name, presets=presets()) for name in names}
     readme = FOLDER.parent / "README.md"
     before, _, rest = readme.read_text(encoding="utf-8").partition(START)
     table = render_written("readme.md").partition("\n")[2]  # without the remark on its first line
@@ -158,24 +155,11 @@ def pages() -> dict[Path, str]:
     return {
         DECLARED: declarations(LIMITS.values()),
         FOLDER / "parameters.md": render(),
-        place / "tradeoff.md": tradeoff(),
         **written,
     }
 
 
 START, END = "<!-- measured -->\n", "<!-- end -->\n"  # of the table in the README
-WRITTEN = {"accuracy.md": {"presets": presets()}, "contact-models.md": {}, "index.md": {}}
-
-
-def tradeoff() -> str:
-    """Return the page on error against cost, from the data that `validation.adopt.tradeoff` copied."""
-    summary, figures = (
-        json.loads((FOLDER / "data" / name).read_text(encoding="utf-8"))
-        for name in ("tradeoff.json", "tradeoff_figures.json")
-    )
-    made_by = "made by docs/generate.py from docs/data/tradeoff.json"
-    shown = shortened(tradeoff_page.blocks(summary, figures), TRADEOFF_DATA, "docs/data/tradeoff.json")
-    return markdown(shown, made_by, PICTURES)
 
 
 def main(check: bool) -> int:

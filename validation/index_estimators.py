@@ -1,22 +1,19 @@
 """Compare the sensitivity estimators with SALib, and the designs with pyDOE, where the truth is known.
 
-    python -m validation.index_estimators [--seeds N] [--only sobol first delta pairs pawn morris designs] [--record]
+    python -m validation.index_estimators [--seeds N] [--only sobol first delta pairs pawn morris designs]
 
 Each estimator runs on samples of many seeds. The table gives, for each function and estimator: the largest bias and
 root mean square error over the factors, the smallest and mean coverage of the 95 % intervals, the mean half width and
-the time of one analysis. `before` are the numbers of the previous estimators, read from
-`validation/index_estimators_before.json`; `--record` writes that file from the present estimators.
+the time of one analysis.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pydoe
@@ -44,7 +41,6 @@ from validation.known_indices import (
     saltelli_rows,
 )
 
-BEFORE = Path(__file__).with_name("index_estimators_before.json")
 RESAMPLES = 300
 DELTA_RESAMPLES = 10  # SALib's 100 would take ten times longer and change the mean little
 Estimate = tuple[np.ndarray, np.ndarray, np.ndarray]  # values, lower and upper bounds
@@ -244,13 +240,12 @@ FACTS: dict[str, Callable[[], list[str]]] = {"morris": morris_facts, "repeat": r
 COLUMNS = ("bias", "rmse", "least_coverage", "coverage", "half_width", "ms")
 
 
-def table(found: Numbers, before: dict[str, dict[str, float]]) -> str:
-    """Return the comparison as text, with the numbers of the previous estimators where there are any."""
+def table(found: Numbers) -> str:
+    """Return the comparison as text."""
     lines = [f"{'':28}" + "".join(f"{name:>15}" for name in COLUMNS)]
     for key, rows in found.items():
         lines.append(key)
-        every = {"before": before[key], **rows} if key in before else rows
-        for who, numbers in every.items():
+        for who, numbers in rows.items():
             lines.append(f"  {who:26}" + "".join(f"{numbers[name]:15.3f}" for name in COLUMNS))
     return "\n".join(lines)
 
@@ -260,21 +255,16 @@ def main(argv: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=200)
     parser.add_argument("--only", nargs="+", choices=(*ESTIMATORS, *FACTS), default=(*ESTIMATORS, *FACTS))
-    parser.add_argument("--record", action="store_true", help="write the numbers of the present estimators")
     args = parser.parse_args(argv)
     found: Numbers = {}
     for kind, name, data, truth in cases():
         if kind in args.only:
             seeds = args.seeds if kind in ("sobol", "first") else max(2, args.seeds // 2)  # the others are slow
             found[name] = {who: measure(one, data, truth, seeds) for who, one in ESTIMATORS[kind].items()}
-    before = json.loads(BEFORE.read_text(encoding="utf-8")) if BEFORE.is_file() else {}
     if found:
-        print(table(found, before))
+        print(table(found))
     for name in [name for name in FACTS if name in args.only]:
         print("\n".join(FACTS[name]()))
-    if args.record:
-        numbers = {key: {n: round(v, 5) for n, v in rows["ours"].items()} for key, rows in found.items()}
-        BEFORE.write_text(json.dumps(before | numbers, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -1,71 +1,98 @@
-"""Pages of headings, paragraphs, tables and figures, as Markdown for the documentation and as one HTML file.
+"""Write the pages of the documentation that show measured numbers.
 
-A page is a list of blocks (kind, value): 'h1' to 'h3' and 'p' hold text with `code`, *emphasis* and links as in
-Markdown, 'list' several such texts; 'table' holds (heads, rows); 'figure' a mapping with name, caption and sentence of
-a PNG.
+Each page has a template in `validation/templates` (Jinja). A template states no measured number itself: it takes every
+number from a file of `docs/data`, which stands under its name without the ending, from the functions of its evidence
+(`FACTS`) or from the package.
 """
 
 from __future__ import annotations
 
-import base64
-import html
-from collections.abc import Sequence
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from trackroller.report.html import inline
+import jinja2
 
-Block = tuple[str, Any]
+from trackroller.report.numbers import rounded
+from validation.benchmarks import programs
+from validation.extremes import page as extremes
+from validation.paper import page as paper
+from validation.tradeoff import page as tradeoff
 
-
-def markdown(content: Sequence[Block], made_by: str, folder: str = "figures") -> str:
-    """Return the page as Markdown with figures from a folder beside it."""
-    lines = [f"<!-- {made_by}; do not edit -->"]
-    for kind, value in content:
-        if kind in ("h1", "h2", "h3"):
-            lines += [f"{'#' * int(kind[1])} {value}", ""]
-        elif kind == "p":
-            lines += [value, ""]
-        elif kind == "list":
-            lines += [*(f"- {text}" for text in value), ""]
-        elif kind == "figure":
-            lines += [f"![{value['caption']}]({folder}/{value['name']}.png)", "", f"*{value['sentence']}*", ""]
-        else:
-            heads, rows = value
-            for cells in (heads, ["---"] * len(heads), *rows):
-                lines.append("| " + " | ".join(str(c).replace("|", "\\|") for c in cells) + " |")
-            lines.append("")
-    return "\n".join(lines).rstrip() + "\n"
+TEMPLATES = Path(__file__).with_name("templates")
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+FACTS: dict[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
+    "paper.md": paper.facts,
+    "tradeoff.md": tradeoff.facts,
+    "extremes.md": extremes.facts,
+}
 
 
-_CSS = (
-    "body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;"
-    "font-size:12px;display:block;overflow-x:auto}td,th{border:1px solid #ccc;padding:2px 7px;text-align:left}"
-    "img{max-width:100%;width:24em}figure{display:inline-block;margin:.5em;vertical-align:top;width:24em}"
-    "figcaption{font-size:12px}"
-)
+def percent(share: float, figures: int = 2) -> str:
+    """Return a share as per cent in so many figures, '0.032 %'."""
+    return f"{rounded(100 * share, figures)} %"
 
 
-def page_html(content: Sequence[Block], figures: Path, title: str) -> str:
-    """Return the page as one HTML file that holds its figures."""
-    body = []
-    for kind, value in content:
-        if kind in ("h1", "h2", "h3", "p"):
-            body.append(f"<{kind}>{inline(value)}</{kind}>")
-        elif kind == "list":
-            body.append("<ul>" + "".join(f"<li>{inline(text)}</li>" for text in value) + "</ul>")
-        elif kind == "figure":
-            data = base64.b64encode((figures / f"{value['name']}.png").read_bytes()).decode()
-            body.append(
-                f'<figure><img alt="{html.escape(value["caption"])}" src="data:image/png;base64,{data}">'
-                f"<figcaption>{inline(value['caption'])} {inline(value['sentence'])}</figcaption></figure>"
-            )
-        else:
-            heads, rows = value
-            cells = ["<tr>" + "".join(f"<th>{inline(h)}</th>" for h in heads) + "</tr>"]
-            cells += ["<tr>" + "".join(f"<td>{inline(str(c))}</td>" for c in row) + "</tr>" for row in rows]
-            body.append("<table>" + "".join(cells) + "</table>")
-    return (
-        f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{html.escape(title)}</title>'
-        f"<style>{_CSS}</style></head><body>{''.join(body)}</body></html>\n"
+def ratio(value: float) -> str:
+    """Return a ratio in two figures, as '6.3' or '12,000'."""
+    return rounded(value, 2)
+
+
+def pair(value: Any, digits: int | None = None) -> str:
+    """Return a number, or the numbers of both contacts, with so many digits after the point; %g without."""
+    values = value if isinstance(value, list) else [value]
+    return " / ".join(f"{v:g}" if digits is None else f"{v:.{digits}f}" for v in values)
+
+
+def peer(rows: list[dict[str, Any]], quantity: str, against: str) -> dict[str, Any]:
+    """Return the row of a comparison with other programs."""
+    return next(r for r in rows if r["quantity"] == quantity and r["against"] == against)
+
+
+def table(heads: Sequence[object], rows: Iterable[Sequence[object]]) -> str:
+    """Return a table in Markdown."""
+    lines = (heads, ["---"] * len(heads), *rows)
+    return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |" for cells in lines)
+
+
+def pictures(figures: Iterable[Mapping[str, str]], part: str = "") -> str:
+    """Return the figures of an index whose names hold `part`, each with its caption and its sentence."""
+    shown = [f for f in figures if part in f["name"]]
+    return "\n\n".join(f"![{f['caption']}](../figures/{f['name']}.png)\n\n*{f['sentence']}*" for f in shown)
+
+
+def measured() -> dict[str, Any]:
+    """Return what the templates may use: every data file by its name, and the functions of this module."""
+    data = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (DOCS / "data").glob("*.json")}
+    return data | {"programs": programs(), "peer": peer, "table": table, "pictures": pictures}
+
+
+def render(name: str, **more: Any) -> str:
+    """Return the text of a page.
+
+    Parameters
+    ----------
+    name : str
+        File of the template, such as "accuracy.md".
+    **more
+        Further values for the template.
+
+    Returns
+    -------
+    str
+        Markdown, beginning with a remark that names the template.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
     )
+    environment.filters |= {"percent": percent, "ratio": ratio, "rounded": rounded, "pair": pair}
+    values = measured() | more
+    if name in FACTS:
+        values |= FACTS[name](values)
+    made_by = f"<!-- made by docs/generate.py from validation/templates/{name} and docs/data; do not edit -->\n"
+    return made_by + environment.get_template(name).render(values)

@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from validation.adopt import common, extremes
 from validation.extremes.checks import examine, run_cases
 from validation.extremes.kernels import KERNELS
 from validation.extremes.random_cases import random_extremes
@@ -45,8 +44,3 @@ def test_random_extremes_are_finite_or_flagged_and_quiet(seed):
         assert not np.isnan(ds[name].values[carries]).any()
         assert np.isnan(ds[name].values[~carries]).all()
     assert (ds.regime.values == 3).mean() < 0.1
-
-
-def test_the_page_is_what_its_data_say():
-    kept = (common.PAGES / "extremes.md").read_text(encoding="utf-8")
-    assert kept == extremes.page(), "run: python -m validation.adopt.extremes"

@@ -6,8 +6,11 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
+from trackroller.study.store import sources
 from trackroller.study.store.sources import source_files
+from validation.benchmarks import programs
 
 ROOT = Path(__file__).parents[2]
 SOLVER = {
@@ -34,7 +37,7 @@ def modules(rules: str) -> list[tuple[str, ...]]:
 
 @pytest.mark.parametrize("room", ["paper", "extremes", "tradeoff", "contact_models", "peers"])
 def test_evidence_depends_on_the_whole_solver_and_on_its_own_code(room):
-    files = source_files(modules(f"validation/rules/{room}.smk")[0])
+    files = source_files([f"validation.{room}.__main__", sources.SOLVER])
     found = {path.relative_to(ROOT).as_posix() for path in files}
     assert {f"trackroller/{name}" for name in SOLVER} <= found
     own = {p.relative_to(ROOT).as_posix() for p in (ROOT / "validation" / room).glob("*.py")}
@@ -42,12 +45,27 @@ def test_evidence_depends_on_the_whole_solver_and_on_its_own_code(room):
 
 
 def test_every_rule_that_computes_names_its_code():
-    """Each rule with a script has an input `code`, except the rule solve: the code is part of a chunk's name there."""
-    for path in [*(ROOT / "workflow" / "rules").glob("*.smk"), *(ROOT / "validation" / "rules").glob("*.smk")]:
-        for rule in re.split(r"^rule ", path.read_text(encoding="utf-8"), flags=re.M)[1:]:
-            name = rule.partition(":")[0]
-            if "script:" in rule and name not in ("solve", "tradeoff_gather"):
-                assert "code=digest_file(" in rule, f"{path.name}: {name}"
+    """Each rule that runs code has an input `code`, except the rule solve: the code is part of a chunk's name there."""
+    for path in [*(ROOT / "workflow" / "rules").glob("*.smk"), ROOT / "validation" / "Snakefile"]:
+        for rule in re.split(r"^ *rule\b", path.read_text(encoding="utf-8"), flags=re.M)[1:]:
+            name = rule.partition(":")[0].strip()
+            if ("script:" in rule or "shell:" in rule) and name != "solve":
+                assert "code=" in rule and "digest_file(" in rule, f"{path.name}: {name}"
+
+
+def test_programs_of_the_evidence_run_with_the_interpreter_of_the_workflow():
+    """`python` of the PATH may be another interpreter without the packages, or one of another version."""
+    text = (ROOT / "validation" / "Snakefile").read_text(encoding="utf-8")
+    commands = re.findall(r"shell:\s+(.*)", text)
+    assert len(commands) > 5 and "OWN_PYTHON=sys.executable" in text
+    assert all(command.startswith('\'"$OWN_PYTHON" -m ') for command in commands)
+
+
+def test_each_program_has_a_small_instance():
+    """The small instance that CI runs gives every program of the evidence fewer cases, and names no other program."""
+    small = yaml.safe_load((ROOT / "validation" / "config" / "small.yaml").read_text(encoding="utf-8"))
+    others = {"tradeoff", "extremes", "contact_models", "kalker_table", "index_estimators", "probability_intervals"}
+    assert set(small) == set(programs()) | others
 
 
 @pytest.mark.parametrize("target", ["analysis", "report"])

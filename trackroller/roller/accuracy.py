@@ -2,7 +2,7 @@
 
 A ladder is a list of measured settings of one stage, sorted by cost; each setting is a rung. There is one ladder for
 the quadrature of forces, one for the search of the peak stress, and one for the elements of each rolling contact model
-(`roller/accuracy.json`, written by `python -m validation.adopt.tradeoff`). A preset or a tolerance takes from each
+(`roller/accuracy.json`, written by `python -m validation.adopt tradeoff`). A preset or a tolerance takes from each
 ladder the cheapest setting whose measured error is small enough.
 """
 

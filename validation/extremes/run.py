@@ -1,11 +1,10 @@
-"""Run the catalogue of edge scenes and gather the findings in one record (JSON)."""
+"""Run the catalogue of edge scenes and gather the findings in one record, ready for JSON."""
 
 from __future__ import annotations
 
-import json
 import math
 from collections import Counter
-from pathlib import Path
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from trackroller.roller.solver import solve
 from validation.extremes.checks import FAILED, NEEDED, examine, run_cases
 from validation.extremes.kernels import KERNELS
 from validation.extremes.random_cases import random_extremes
-from validation.extremes.scenes import BASE, scaled, scenes
+from validation.extremes.scenes import BASE, Scene, scaled
 
 Record = dict[str, Any]
 ACCURACIES = {"sliding": "standard", "kalker": "standard", "fastsim": "preview"}
@@ -75,10 +74,10 @@ def regime_map(points: int = 61) -> Record:
     return {"axial": axial.tolist(), "friction": friction.tolist(), "maps": maps}
 
 
-def run(random: dict[str, int] | None = None, points: int = 61) -> Record:
-    """Run the whole catalogue."""
+def run(catalogue: Sequence[Scene], random: dict[str, int] | None = None, points: int = 61) -> Record:
+    """Run the scenes of a catalogue, the kernels, `random` cases of each contact model, and a map of regimes."""
     rows = []
-    for scene in scenes():
+    for scene in catalogue:
         for model in scene.models:
             solved, findings = examine(scene, model, ACCURACIES[model])
             regimes = "".join(str(r) for r in solved.regime())
@@ -123,11 +122,3 @@ def run(random: dict[str, int] | None = None, points: int = 61) -> Record:
         "random": [random_record(m, n) for m, n in (random or RANDOM).items()],
         "map": regime_map(points),
     }
-
-
-def write(record: Record, path: Path) -> None:
-    """Write the record as JSON, whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part")
-    part.write_text(json.dumps(record) + "\n", encoding="utf-8")
-    part.replace(path)

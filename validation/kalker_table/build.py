@@ -1,12 +1,13 @@
 """Build the table of `trackroller.contact.table` from solutions by elements.
 
 snakemake -s validation/Snakefile --cores all kalker_table      solves the levels side by side, then joins them
-python -m validation.adopt.kalker_table                         takes the table over into the package
+python -m validation.adopt kalker_table                         takes the table over into the package
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -44,8 +45,13 @@ def _solve(nodes: Nodes, level: int, poisson: float, elements: int) -> np.ndarra
     return out
 
 
-def solve_level(level: int) -> dict[str, np.ndarray]:
-    """Return the arrays at rho = level/PARTS: `forces`, and `poisson` where Poisson's ratio has nodes."""
+def solve_level(level: int, small: bool = False) -> dict[str, np.ndarray]:
+    """Return the arrays at rho = level/PARTS: `forces`, and `poisson` where Poisson's ratio has nodes.
+
+    `small` takes 16 nodes and few elements: it shows that a level is solved.
+    """
+    if small:
+        return {"forces": _solve(replace(FORCES, chi=2, half_theta=FORCES.half_theta[::8], ratios=2), level, 0.3, 8)}
     elements = SLIDING_ELEMENTS if level == PARTS else ELEMENTS[level >= MOSTLY_SLIDING]
     arrays = {"forces": _solve(FORCES, level, table.POISSON, elements)}
     if level in POISSON.levels[:-1]:  # Poisson's ratio changes nothing in full sliding

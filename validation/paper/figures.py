@@ -67,9 +67,9 @@ def _renamed(drawn: Drawn, name: str, number: str, model: str, scene: str = "dri
 def _values(source: str, name: str, contact: int) -> float:
     known = reference()
     if source == "published program":
-        value: Any = known["published_program"]["driven"]["published"][name]
+        value: Any = known["driven"]["published"][name]
     elif source == "CONTACT":
-        value = known["contact"]["driven"][name]
+        value = known["driven"]["contact"][name]
     else:
         value = solved("driven", source.rpartition(" ")[2])[name].values.tolist()
     value = value[contact]

@@ -50,11 +50,12 @@ class Sizes:
 
 
 def load_sizes(path: Path | str) -> Sizes:
-    """Return sizes from a YAML file such as validation/config/tradeoff.yaml; refuse anything else in it."""
+    """Return the sizes under `tradeoff` in a YAML file such as validation/config/sizes.yaml; refuse anything else."""
     with Path(path).open(encoding="utf-8") as file:
-        given = yaml.safe_load(file)
+        content = yaml.safe_load(file)
+    given = content.get("tradeoff") if isinstance(content, dict) else None
     if not isinstance(given, dict):
-        raise InputError(str(path), given, "a mapping with " + ", ".join((*MODELS, "stages", "seed")))
+        raise InputError(f"tradeoff in {path}", given, "a mapping with " + ", ".join((*MODELS, "stages", "seed")))
     designs, parts = {}, {}
     for key in given:
         if key not in (*MODELS, "stages", "seed"):

@@ -9,12 +9,14 @@ from pathlib import Path
 import pytest
 
 from validation.benchmarks import TIMED, command, programs
-from validation.written import TEMPLATES, measured, percent, ratio, render
+from validation.pages import TEMPLATES, measured, percent, pictures, ratio, render, table
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(path.name for path in TEMPLATES.glob("*.md") if path.name != "readme.md")
 # limits and levels that a definition sets, not measured results
 GIVEN = ("within 5 %", "exceeds 10 %", "axial force of 15 %", "to about 1 %", "90 %", "95 %", "99 %")
+# pages whose tables name numbers of the publication and of its program as they are printed
+QUOTED = ("paper.md", "tradeoff.md", "extremes.md")
 
 
 def literal(template: str) -> str:
@@ -27,7 +29,7 @@ def test_percent_and_ratio_are_rounded_to_two_figures():
     assert ratio(6.34) == "6.3" and ratio(11_940) == "12,000"
 
 
-@pytest.mark.parametrize("name", [*PAGES, "readme.md"])
+@pytest.mark.parametrize("name", sorted({*PAGES, "readme.md"} - {*QUOTED}))
 def test_a_template_states_no_measured_share_or_speed_itself(name):
     text = literal((TEMPLATES / name).read_text(encoding="utf-8")).replace("\n", " ")
     for allowed in GIVEN:
@@ -47,6 +49,19 @@ def test_a_page_is_what_its_template_and_the_data_give(name):
         assert kept == written, "run: python docs/generate.py"
 
 
+def test_tables_and_pictures_are_markdown():
+    assert table(("a", "b"), [(1, "x|y")]) == "| a | b |\n| --- | --- |\n| 1 | x\\|y |"
+    index = [{"name": name, "caption": "What.", "sentence": "Found."} for name in ("one_a", "two_b")]
+    assert pictures(index, "one") == "![What.](../figures/one_a.png)\n\n*Found.*"
+
+
+def test_every_figure_that_a_page_shows_is_there():
+    for name in PAGES:
+        text = (ROOT / "docs" / "validation" / name).read_text(encoding="utf-8")
+        for figure in re.findall(r"\]\(\.\./(figures/[^)]*)\)", text):
+            assert (ROOT / "docs" / figure).is_file(), (name, figure)
+
+
 def test_the_readme_holds_the_measured_table():
     table = render("readme.md").partition("\n")[2]
     assert table in (ROOT / "README.md").read_text(encoding="utf-8"), "run: python docs/generate.py"
@@ -56,7 +71,7 @@ def test_a_changed_number_changes_the_page(monkeypatch):
     """The page follows its data: another measured value stands in the text."""
     data = measured()
     data["force_errors"] = data["force_errors"] | {"exceeded": 0.123}
-    monkeypatch.setattr("validation.written.measured", lambda: data)
+    monkeypatch.setattr("validation.pages.measured", lambda: data)
     assert "`force_error_estimate` is exceeded in 12 % of" in render("accuracy.md", presets="")
 
 

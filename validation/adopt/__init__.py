@@ -1,1 +1,0 @@
-"""Take measured results over into the documentation and the package."""
