@@ -94,7 +94,6 @@ def test_fastsim_is_a_step_towards_kalker(contact_records, kalker):
 
 def test_gridded_tractions_give_the_stress_of_the_formula():
     """The kernel fed with sliding tractions on a grid finds the peak of the closed slip field."""
-    from trackroller.contact.models import traction_share
     from trackroller.halfspace.peak import find_peaks
     from trackroller.roller.case import to_table
     from trackroller.roller.equilibrium import solve_equilibrium
@@ -110,7 +109,7 @@ def test_gridded_tractions_give_the_stress_of_the_formula():
 
     t = sliding.tractions(results.patch, results.slip, results.friction, points=201)
     # cell centres of a grid of 200: the mean of the corners' directions is good enough far from the pole
-    share = traction_share(t, results.friction)
+    share = t.shares(results.friction)
     share = 0.25 * (share[:, :, 1:, 1:] + share[:, :, :-1, 1:] + share[:, :, 1:, :-1] + share[:, :, :-1, :-1])
     stresses = EllipseStresses(results, options)
     rows, nu = stresses.rows(), stresses.poisson_ratio

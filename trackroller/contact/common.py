@@ -56,6 +56,16 @@ class Ellipse(Rows):
         """Return False: Hertz's theory has no edges."""
         return np.zeros(len(self.semi_axis_lateral), bool)
 
+    def grid(self, elements: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return x and y of element centres, (n, elements) [mm], and the pressure there, (n, y, x) [MPa]."""
+        return self.pressures((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
+
+    def pressures(self, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return x and y over the places `unit` (m,) in the unit circle [mm], and Hertz's pressure, eq. (26)."""
+        root = np.sqrt(np.maximum(1.0 - unit[None, :] ** 2 - unit[:, None] ** 2, 0.0))
+        pressure = self.max_pressure[:, None, None] * root
+        return self.semi_axis_lateral[:, None] * unit, self.semi_axis_rolling[:, None] * unit, pressure
+
 
 @dataclass(frozen=True)
 class Resultants(Rows):
@@ -162,3 +172,29 @@ class SurfaceTractions:
     def stick_share(self) -> np.ndarray:
         """Return the share of the loaded grid points that stick, shape (n,) [1]."""
         return self.stick.sum(axis=(1, 2)) / (self.pressure > 0).sum(axis=(1, 2))
+
+    def shares(self, friction: np.ndarray) -> np.ndarray:
+        """Return the traction over its bound mu p; outside the ellipse that of the nearest element.
+
+        Parameters
+        ----------
+        friction : ndarray, shape (n,)
+            Friction coefficient mu of ellipses on alike grids.
+
+        Returns
+        -------
+        ndarray, shape (n, 2, ny, nx)
+            x_C and y_C part of the share.
+        """
+        # a heavy package, and only stresses under tractions on a grid need it
+        from scipy.ndimage import distance_transform_edt  # noqa: PLC0415
+
+        bound = friction[:, None, None] * self.pressure
+        inside = self.pressure > 0
+        safe = np.where(bound > 0, bound, 1.0)
+        share = np.stack([self.shear_lateral / safe, self.shear_rolling / safe], axis=1)
+        if len(share):
+            # the ellipse fills the grid in the same way for every patch
+            _, (j, i) = distance_transform_edt(~inside[0], return_indices=True)
+            share = share[:, :, j, i]
+        return np.ascontiguousarray(share)

@@ -6,12 +6,17 @@ contact frame are those of `trackroller.contact.common`.
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+import math
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.slip import Slip
+from trackroller.parameters.contact_models import ModelDeclaration
+
+if TYPE_CHECKING:
+    from trackroller.contact.settings import Rollers
 
 
 class Patch(Protocol):
@@ -74,7 +79,10 @@ class ContactModel:
     are the numbers of the rollers to which the patches belong. Contact 2 of a roller has a negative `slip.sine`.
     """
 
-    name = ""  # as in `parameters.CONTACT_MODELS`
+    declaration: ModelDeclaration  # name, options, cost and promised accuracy
+    on_solved_patches: ClassVar[type[ContactModel] | None] = None  # the model on solved patches, made with `Patches`
+    elastic = True  # the surfaces move elastically along the patch, so that parts of it can adhere
+    most_slender = math.inf  # largest axis ratio of an ellipse that the model solves
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution
     refines = False  # `surface` is exact for any number of elements of a refined patch
@@ -82,6 +90,23 @@ class ContactModel:
     residual = 1e-7  # relative residual of the equilibrium that the model can reach
     correction: Any = None  # a `kalker.correction.Correction` with which the equilibrium is found, if there is one
     peak_error = 0.0  # relative error of the peak stress that the model adds, per unit friction coefficient
+
+    def __init__(self, given: Rollers, settings: Any) -> None:
+        """Keep what is known of n rollers, and the `Accuracy`, or the `Patches` of a model on solved patches."""
+        self.given, self.settings = given, settings
+
+    @property
+    def name(self) -> str:
+        """Return the word of the option `contact_model`."""
+        return self.declaration.name
+
+    @classmethod
+    def errors(cls) -> dict[str, tuple[float, float, float, float]]:
+        """Return measured errors of the forces by quantity: median, 95 and 99 %, bound; `ModelDeclaration.own_errors`.
+
+        Quantities are those of `roller.accuracy.FORCE_QUANTITIES`.
+        """
+        return {}
 
     def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
         """Return the resultants on the roller, arrays (m,); a cheaper estimate if `fine` is False."""

@@ -8,27 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.halfspace.peak_settings import PeakSettings
+from trackroller.parameters.contact_models import DECLARED
 
 if TYPE_CHECKING:  # these modules load numba, which a plan does not need
     from trackroller.contact.common import Elastic
     from trackroller.contact.friction_laws import FrictionLaw
 
-# Largest residual of a converged row by contact model: of the balance of the roller and, in patches that elements solve
-# for the balance, of the friction law over mu p_max. Every accuracy has the same limits. The normal problem of patches
-# that are no ellipses ends at the last limit.
-CONVERGED = {"sliding": 1e-10, "fastsim": 1e-7, "kalker": 1e-4, "kalker_table": 1e-4}
-CONVERGED_PRESSURE = 1e-7
+CONVERGED_PRESSURE = 1e-7  # largest residual of the normal problem of patches that are no ellipses
 
 
 def converged_up_to(contact_model: str, normal: str) -> float:
     """Return the largest residual with which a row of a contact model and a normal problem counts as converged."""
-    own = CONVERGED[contact_model]
+    own = DECLARED[contact_model].converged_up_to
     return own if normal == "hertz" else max(own, CONVERGED_PRESSURE)
 
 
 @dataclass(frozen=True)
-class Rolling:
-    """What a contact model knows of n rollers beside their patches.
+class Rollers:
+    """Elastic constants, friction law and speed of n rollers, which their contact model keeps.
 
     Parameters
     ----------

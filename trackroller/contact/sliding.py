@@ -173,10 +173,7 @@ def tractions(
     unit = np.linspace(-1.0, 1.0, points)
     if law is not None:
         unit = (2.0 * np.arange(points) + 1.0) / points - 1.0
-    x = ellipse.semi_axis_lateral[:, None] * unit
-    y = ellipse.semi_axis_rolling[:, None] * unit
-    root = np.sqrt(np.maximum(1.0 - unit[None, :] ** 2 - unit[:, None] ** 2, 0.0))
-    pressure = ellipse.max_pressure[:, None, None] * root
+    x, y, pressure = ellipse.pressures(unit)
     slip_x, slip_y = slip_field(ellipse, slip, x[:, None, :], y[:, :, None], spin_model)
     speed = np.hypot(slip_x, slip_y)
     bound = friction[:, None, None] * pressure / np.where(speed > 0, speed, np.inf)

@@ -11,15 +11,25 @@ Units here are those that a user writes: degrees, m/min and hours. The solver wo
 
 from __future__ import annotations
 
+from trackroller.parameters.contact_models import CONTACT_MODELS, EXACTNESS
 from trackroller.parameters.numbers import OF_LIMITS, PARAMETERS, Parameter
 from trackroller.parameters.options import OPTIONS, Option, options_text, words_of
 
-__all__ = ["OF_LIMITS", "OPTIONS", "PARAMETERS", "Option", "Parameter", "options_text", "words_of"]
+__all__ = [
+    "CONTACT_MODELS",
+    "EXACTNESS",
+    "OF_LIMITS",
+    "OPTIONS",
+    "PARAMETERS",
+    "Option",
+    "Parameter",
+    "options_text",
+    "words_of",
+]
 
-OUTPUT_GROUPS, CONTACT_MODELS = words_of("outputs"), words_of("contact_model")
+OUTPUT_GROUPS = words_of("outputs")
 SPIN_MODELS, ACCURACIES, LIFE_RULES = words_of("spin_model"), words_of("accuracy"), words_of("life_rule")
 DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
-EXACTNESS = ("kalker", "kalker_table", "fastsim", "sliding")  # contact models, the most exact first
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")  # the same in prose
 FIRST_TO_FAIL = ("roller", "guide", "none", "unknown")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.parameters.contact_models import DECLARED, MEANINGS
 from trackroller.parameters.declared import declared
 
 
@@ -29,8 +30,8 @@ class Option:
         number), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
     bounds : tuple of float
         Numbers between which a number must lie; the bounds themselves are not allowed.
-    models : tuple of str
-        Contact models to which the option applies; empty for all of them.
+    by_model : bool
+        Whether only those contact models take the option that declare it, see `contact_models.ModelDeclaration`.
     required : bool
         Whether at least one word has to be given (kind "words").
     factor : bool
@@ -49,16 +50,21 @@ class Option:
     values: Mapping[str, str] = field(default_factory=dict)
     kind: str = "word"
     bounds: tuple[float, float] = (0, 1)
-    models: tuple[str, ...] = ()
+    by_model: bool = False
     required: bool = False
     factor: bool = False
     identity: bool = True
     recorded: bool = True
     files: tuple[str, ...] = ("study", "spectrum")
 
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Return the contact models to which the option applies; empty for all of them."""
+        return tuple(name for name, model in DECLARED.items() if self.by_model and self.name in model.options)
+
     def applies(self, contact_model: str) -> bool:
         """Return whether the option has a meaning for a contact model."""
-        return not self.models or contact_model in self.models
+        return not self.by_model or contact_model in self.models
 
     def allowed(self) -> str:
         """Return what is allowed, in words."""
@@ -147,12 +153,7 @@ _OPTIONS = (
         "contact_model",
         "kalker",
         "how friction is distributed over the patch",
-        {
-            "sliding": "Coulomb friction at every point against the local creepage, as published; no adhesion area",
-            "fastsim": "simplified theory of rolling contact (Kalker's FASTSIM)",
-            "kalker": "exact theory of rolling contact; by its table at accuracy preview or if it keeps the tolerance",
-            "kalker_table": "table of solutions of the exact theory; outside its range the exact theory",
-        },
+        MEANINGS,
         factor=True,
     ),
     Option(
@@ -164,7 +165,7 @@ _OPTIONS = (
             "edge": "v_x vanishes on a line through the trailing edge at the pole",
             "skewed": "v_x vanishes on two skewed lines, eqs (24)-(25)",
         },
-        models=("sliding",),
+        by_model=True,
         factor=True,
     ),
     Option(
@@ -232,7 +233,7 @@ _OPTIONS = (
             "curve": "the roller turns with the curve of the guide, which adds to its spin",
         },
         kind="words",
-        models=("fastsim", "kalker", "kalker_table"),
+        by_model=True,
     ),
 )
 

@@ -21,6 +21,7 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
+from trackroller.parameters.contact_models import DECLARED
 
 FORCE_QUANTITIES = ("normal_force", "friction_force", "spin_moment")
 PEAK_OUTPUTS = frozenset(("peak_stress", "life", "subsurface"))
@@ -187,11 +188,15 @@ def accuracy_settings(
 @functools.lru_cache(maxsize=256)
 def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]) -> Accuracy:
     peaks = bool(outputs & PEAK_OUTPUTS)
-    if contact_model == "kalker_table" and tolerance < (finest := rounded_up(table_errors().p99)):
+    declared = DECLARED[contact_model]
+    if not declared.ladder:
+        allowed = f"a preset ({', '.join(ACCURACIES)}): the errors of {contact_model} were not measured"
+        raise InputError("accuracy", tolerance, allowed)
+    if declared.own_errors and tolerance < (finest := finest_tolerance(contact_model)):
         raise InputError(
             "accuracy",
             tolerance,
-            f"kalker_table keeps {finest:g} of mu F_N in 99 % of the cases",
+            f"{contact_model} keeps {finest:g} of mu F_N in 99 % of the cases",
             "Use a preset or a larger tolerance, or contact_model: kalker.",
         )
     wanted = (
@@ -199,10 +204,9 @@ def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]
         *(("friction_energy",) if "friction_work" in outputs else ()),
         *(("peak_stress",) if peaks else ()),
     )
-    rolling = contact_model != "sliding"
+    ladder, rolling = declared.ladder, declared.ladder != "forces"
     elements = PRESETS["standard"].elements
     if rolling:
-        ladder = contact_model if contact_model in ladders() else "kalker"
         rung = _cheapest(ladders()[ladder], (1.0 - PEAK_SHARE) * tolerance if peaks else tolerance, wanted)
         if rung is None:
             shares = {ladder: 1.0 - PEAK_SHARE, "peak": PEAK_SHARE} if peaks else {ladder: 1.0}
@@ -247,17 +251,19 @@ def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]
 
     Quantities whose settings were not measured are missing.
     """
-    if contact_model == "kalker_table":  # measured for the creep forces of a patch only
-        return dict.fromkeys(("friction_force", "spin_moment"), table_errors())
-    rungs = ladders()
+    declared = DECLARED[contact_model]
+    if declared.own_errors:
+        return own_errors(contact_model)
+    rungs, ladder = ladders(), declared.ladder
+    if not ladder:
+        return {}
     own: dict[str, dict[str, Any]]
     own = {
         "forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
         "peak": {"peak": list(vars(settings.peak).values())},
     }
-    if contact_model != "sliding":
-        ladder = contact_model if contact_model in rungs else "kalker"
-        elements = settings.elements if ladder == "kalker" else settings.on_grids
+    if ladder != "forces":
+        elements = settings.elements if declared.interpolates else settings.on_grids
         own = {ladder: {"elements": elements}, "peak": own["peak"]}
     total: dict[str, Levels] = {}
     unknown: set[str] = set()
@@ -271,13 +277,16 @@ def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]
     return {name: levels for name, levels in total.items() if name not in unknown}
 
 
-def table_errors() -> Levels:
-    """Return the measured errors of the creep forces in the table, over mu F_N and mu F_N sqrt(a b)."""
-    from trackroller.contact.table import stored  # loads numba, which a plan at a preset does not need
+def own_errors(contact_model: str) -> dict[str, Levels]:
+    """Return the measured errors of the forces that the class of a contact model states, by quantity."""
+    from trackroller.contact.models import CLASSES  # loads numba, which a plan at a preset does not need
 
-    errors = stored().errors
-    median, p99 = (max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99"))
-    return Levels(median, p99, p99, p99)
+    return {quantity: Levels(*levels) for quantity, levels in CLASSES[contact_model].errors().items()}
+
+
+def finest_tolerance(contact_model: str) -> float:
+    """Return the tolerance of forces that the model keeps in 99 % of the cases."""
+    return rounded_up(max(levels.p99 for levels in own_errors(contact_model).values()))
 
 
 def _sum(one: Levels, other: Levels) -> Levels:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -144,7 +144,7 @@ COMMENTS = {
     "first_to_fail": "none: both lives are unlimited; unknown: the life of the roller or of the guide is not known",
 }
 
-FLAGS: dict[str, tuple[str, tuple[str, ...]]] = {
+FLAGS: dict[str, tuple[str, Sequence[str]]] = {
     "regime": ("regime of the case", REGIMES),
     "converged": ("the residual is within its limit (attribute converged_up_to of residual)", ("no", "yes")),
     "contact_model_used": ("contact model that solved the case", CONTACT_MODELS),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.hertz import shape
-from trackroller.contact.linear import LARGEST_RATIO
+from trackroller.contact.models import CLASSES
 from trackroller.contact.slip import turning_of
 from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.dataset import validity_bit
@@ -80,8 +80,8 @@ def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -
             f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
             "give `smooth`, the standard deviation of the noise in mm, or 'auto'"
         )
-    if contact_model == "fastsim" and options.normal == "hertz" and _is_slender(case):
-        hints.append("The patches are too slender for fastsim: contact_model: kalker goes further")
+    if options.normal == "hertz" and _axis_ratio(case) > CLASSES[contact_model].most_slender:
+        hints.append(f"The patches are too slender for {contact_model}: contact_model: kalker goes further")
     return hints
 
 
@@ -91,12 +91,12 @@ def _beyond_the_axis(case: CaseTable) -> bool:
     return bool(np.isnan(turning_of(case.guide_curve_radius, case.guide_profile_radius, cosine)[0]))
 
 
-def _is_slender(case: CaseTable) -> bool:
-    """Return True if the ellipse is too slender for the creepage coefficients of fastsim."""
+def _axis_ratio(case: CaseTable) -> float:
+    """Return the longer over the shorter semi-axis of the ellipse."""
     geometry = contact_geometry(vars(case))
     ellipse = shape(geometry.curvature_lateral, geometry.curvature_rolling, np.ones(1))
     ratio = float(ellipse.lateral[0] / ellipse.rolling[0])
-    return max(ratio, 1.0 / ratio) > 0.99 * LARGEST_RATIO
+    return max(ratio, 1.0 / ratio)
 
 
 @lru_cache(maxsize=256)

@@ -12,21 +12,21 @@ import numpy as np
 from trackroller.contact.friction_laws import law_of
 from trackroller.errors import InputError
 from trackroller.parameters import OPTIONS
+from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import (
     PRESETS,
     Accuracy,
     Levels,
     accuracy_settings,
     expected_errors,
-    rounded_up,
-    table_errors,
+    finest_tolerance,
 )
 from trackroller.roller.stop import parse_condition
 
 if TYPE_CHECKING:
     import xarray as xr
 
-MEASURED_OF_TABLE = {"forces", "contact"}  # outputs whose errors by the table of the exact theory are measured
+MEASURED_FORCES = {"forces", "contact"}  # outputs to which `ModelDeclaration.own_errors` apply
 _Fields = make_dataclass(
     "_Fields", [(option.name, Any, field(default=option.default)) for option in OPTIONS.values()], frozen=True
 )
@@ -121,22 +121,16 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
     Raises
     ------
     InputError
-        If non-Hertzian patches meet the published table of Hertz's ellipse, full sliding meets the turning of the
-        roller, or the table of the exact theory meets patches or slips that it does not hold.
+        If non-Hertzian patches meet the published table of Hertz's ellipse, or the contact model does not serve the
+        normal problem or a slip term.
     """
     if normal == "halfspace" and hertz != "exact":
         allowed = "exact with normal: halfspace, which solves patch and pressure itself"
         raise InputError("hertz", hertz, allowed, "Leave hertz out, or take normal: hertz (with circles).")
-    if "curve" in slip_terms and contact_model == "sliding":
-        remedy = (
-            "Take contact_model: kalker, or leave 'curve' out: in full sliding it changes no force, it only lengthens "
-            "slip and friction work."
-        )
-        raise InputError("slip_terms", list(slip_terms), "'curve' for fastsim and kalker only", remedy)
-    if contact_model == "kalker_table" and (normal != "hertz" or "profile" in slip_terms):
-        name, value = ("normal", normal) if normal != "hertz" else ("slip_terms", list(slip_terms))
-        allowed = "contact_model: kalker_table holds Hertzian patches with the slip of the tangent plane only"
-        raise InputError(name, value, allowed, "Take contact_model: kalker.")
+    declared = DECLARED[contact_model]
+    declared.check("normal", normal)
+    for term in slip_terms:
+        declared.check("slip_terms", term)
 
 
 def check_spin_model(spin_models: Sequence[str], contact_models: Sequence[str]) -> None:
@@ -179,18 +173,21 @@ def model_in_use(options: Options, friction_law: str) -> str:
 
     Notes
     -----
-    `kalker` takes its table where the table serves: Hertzian patches, constant friction and the slip of the tangent
-    plane, at accuracy preview or within a tolerance of forces that the table was measured to keep.
+    A cheaper model stands in (`kalker_table` for `kalker`) at accuracy preview, or within a tolerance of forces that it
+    was measured to keep, if it serves the normal problem, the slip and the friction of the case. The result names it in
+    `contact_model_used`.
     """
-    if options.contact_model != "kalker" or not _table_suffices(options):
-        return options.contact_model
-    fits = options.normal == "hertz" and "profile" not in options.slip_terms and law_of(friction_law).is_constant
-    return "kalker_table" if fits else "kalker"
+    own = DECLARED[options.contact_model]
+    if not own.cheaper or not _suffices(own.cheaper, options):
+        return own.name
+    other = DECLARED[own.cheaper]
+    serves = options.normal in other.normals and set(options.slip_terms) <= set(other.slip_terms)
+    return other.name if serves and (other.friction_laws or law_of(friction_law).is_constant) else own.name
 
 
-def _table_suffices(options: Options) -> bool:
-    """Return whether the table of the exact theory alone is as exact as asked for."""
+def _suffices(contact_model: str, options: Options) -> bool:
+    """Return whether a model whose forces alone were measured is as exact as asked for."""
     settings = options.settings
     if settings.name in PRESETS:
         return settings.name == "preview"
-    return set(options.outputs) <= MEASURED_OF_TABLE and rounded_up(table_errors().p99) <= settings.tolerance
+    return set(options.outputs) <= MEASURED_FORCES and finest_tolerance(contact_model) <= settings.tolerance

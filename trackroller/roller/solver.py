@@ -15,6 +15,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS
+from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
@@ -184,9 +185,10 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
 def _check_cases(table: CaseTable, options: Options) -> None:
     """Refuse profiles and friction laws that the options cannot serve."""
     laws = table.friction_law[table.friction_law != ""]
-    if options.contact_model == "kalker_table" and laws.size:
+    if laws.size and not DECLARED[options.contact_model].friction_laws:
         remedy = "Take contact_model: kalker, or leave friction_law out."
-        raise InputError("friction_law", laws[0], "constant friction with contact_model: kalker_table", remedy)
+        allowed = f"constant friction with contact_model: {options.contact_model}"
+        raise InputError("friction_law", laws[0], allowed, remedy)
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
             remedy = f"Set normal to halfspace, or remove {name}."
@@ -286,8 +288,10 @@ def _tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
     ds["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
-    tabled = np.any(ds.contact_model_used.values == CONTACT_MODELS.index("kalker_table"))
-    model = "kalker_table" if tabled else options.contact_model
+    cheaper = DECLARED[options.contact_model].cheaper
+    model = options.contact_model
+    if cheaper and np.any(ds.contact_model_used.values == CONTACT_MODELS.index(cheaper)):
+        model = cheaper
     for name, told in error_attributes(options.expected_errors(model, constant)).items():
         if name in ds:
             ds[name].attrs.update(told)

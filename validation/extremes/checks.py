@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.contact.settings import CONVERGED
+from trackroller.contact.settings import converged_up_to
 from trackroller.roller.solver import solve
 from validation.extremes.scenes import FORCES, Scene, mirrored, scaled
 from validation.extremes.search import located
@@ -114,7 +114,7 @@ def solved(run: Run) -> Finding:
 def residual(run: Run) -> Finding:
     """Return the relative residual of the equilibrium."""
     values = np.where(run.regime() == ROLLING, run.result.residual.values, 0.0)
-    return _worst(run, "residual", values, CONVERGED[run.model])
+    return _worst(run, "residual", values, converged_up_to(run.model, "hertz"))
 
 
 def _difference(run: Run, other: xr.Dataset, length: float, modulus: float, mirror: bool) -> np.ndarray:

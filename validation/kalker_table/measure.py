@@ -126,7 +126,7 @@ def measure(designs: int, count: int, seed: int, elements: int, tables: spline.T
     unknown = accuracy.Levels(1.0, 1.0, 1.0, 1.0)  # the errors that the table will state
     with (
         mock.patch.object(spline, "stored", lambda: tables),
-        mock.patch.object(accuracy, "table_errors", lambda: unknown),
+        mock.patch.object(accuracy, "own_errors", lambda name: {"friction_force": unknown}),
     ):
         return _measure(designs, count, seed, elements)
 

@@ -19,7 +19,7 @@ from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.patch import on_half_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
-from trackroller.contact.settings import CONVERGED
+from trackroller.contact.settings import converged_up_to
 from trackroller.contact.slip import Creepage, Slip
 
 NEAR = 0.02  # if the normalised slip changed less than this, the iteration starts from the patch's last solution
@@ -130,7 +130,7 @@ class Correction:
             if not pick.size:
                 continue
             own, slot = rows[pick], _slots(rows[pick], side[pick])
-            tolerance = CONVERGED["kalker"] if forces else TRACTION_TOLERANCE
+            tolerance = converged_up_to("kalker", "hertz") if forces else TRACTION_TOLERANCE
             wanted = {"extrapolate": forces and not started, "between": forces, "tolerance": tolerance}
             settings = dataclasses.replace(self.settings, **wanted)
             before = self.store.get(slot) if started else None
@@ -182,10 +182,13 @@ class Correction:
     ) -> PatchSolution:
         """Solve patches on twice the elements of the solutions `coarse`, arrays (m,), from the tractions at hand."""
         slot, creep = _slots(rows, _side(slip)), Creepage.of_slip(slip, self.settings.profile_slip)
-        start, known = on_half_elements(patch, coarse), self.finer.known[slot]
+        known, elements = self.finer.known[slot], 2 * coarse.traction.shape[-1]
+        start = np.empty((len(rows), 2, elements, elements))
         if known.any():
             start[known] = self.finer.get(slot[known]).traction
-        wanted = {"elements": start.shape[-1], "tolerance": TRACTION_TOLERANCE, "extrapolate": False, "between": forces}
+        if not known.all():
+            start[~known] = on_half_elements(patch.take(~known), coarse.take(~known))
+        wanted = {"elements": elements, "tolerance": TRACTION_TOLERANCE, "extrapolate": False, "between": forces}
         elastic, settings = self.elastic.take(rows), dataclasses.replace(self.settings, **wanted)
         return solve_patch(patch, creep, friction, elastic, settings, start)
 

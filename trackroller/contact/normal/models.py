@@ -22,8 +22,9 @@ from trackroller.contact.normal.measure import roughness
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.contact.protocol import ContactModel, Patch
-from trackroller.contact.settings import Rolling
+from trackroller.contact.settings import Rollers
 from trackroller.contact.slip import Slip
+from trackroller.parameters.contact_models import DECLARED
 
 # Error of the friction forces over mu F_N per `roughness` of the pressure. With the error of the elements it covers the
 # measured error of 79 of 80 contacts with flats beside small blends.
@@ -42,7 +43,7 @@ class GridModel(ContactModel):
 
     Parameters
     ----------
-    given : Rolling
+    given : Rollers
         Elastic constants, friction law and travel speed of the rollers.
     patches : Patches
         Solver of the normal problem of the rollers.
@@ -50,9 +51,11 @@ class GridModel(ContactModel):
 
     refines = True
 
-    def __init__(self, given: Rolling, patches: Patches) -> None:
+    def __init__(self, given: Rollers, patches: Patches) -> None:
         self.given, self.patches = given, patches
-        self._found: dict[tuple[int, int], tuple[float, bool]] = {}
+        # of the normal problem at the last fine call, by roller and contact
+        self._residual = np.zeros((len(given.travel_speed), 2))
+        self._roughness = np.full((len(given.travel_speed), 2), np.nan)
 
     def patch(self, patch: Patch, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
         """Return the solved patches under the normal forces of `patch`; solved ones are returned as they are."""
@@ -86,20 +89,20 @@ class GridModel(ContactModel):
         return replace(slip, contour=contour)
 
     def _remember(self, patch: GridPatch, slip: Slip, rows: np.ndarray) -> None:
-        for row, sine, residual in zip(rows.tolist(), slip.sine, patch.residual, strict=True):
-            self._found[row, int(sine < 0)] = (float(residual), bool(residual <= TOLERANCE))
+        side = (slip.sine < 0).astype(int)
+        self._residual[rows, side] = patch.residual
+        self._roughness[rows, side] = [roughness(pressure) for pressure in patch.pressure]
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
-        both = [[self._found.get((row, side), (0.0, True)) for side in (0, 1)] for row in range(n)]
-        values, met = (np.array([[pair[k] for pair in sides] for sides in both]).reshape(n, 2) for k in (0, 1))
-        return values.astype(float).max(axis=1), np.logical_and.reduce(met.astype(bool), axis=1)
+        return self._residual.max(axis=1), np.all(self._residual <= TOLERANCE, axis=1)
 
 
 class GridSlidingModel(GridModel):
     """Full sliding on solved patches."""
 
-    name = "sliding"
+    declaration = DECLARED["sliding"]
+    elastic = False
     residual = 1e-9  # the normal problem gives the same patch for the same load, so that smaller residuals are reached
 
     def _solved(self, patch, slip, friction, rows) -> normal_sliding.SlidingPatches:
@@ -115,9 +118,9 @@ class GridSlidingModel(GridModel):
 class GridFastsimModel(GridModel):
     """Kalker's simplified theory, strip by strip over solved patches."""
 
-    name = "fastsim"
+    declaration = DECLARED["fastsim"]
 
-    def __init__(self, given: Rolling, patches: Patches) -> None:
+    def __init__(self, given: Rollers, patches: Patches) -> None:
         super().__init__(given, patches)
         steps = 6 * patches.elements // 5
         self.settings = FastsimSettings(steps=steps, law=given.law, profile_slip=given.profile_slip)
@@ -137,15 +140,14 @@ class GridFastsimModel(GridModel):
 class GridKalkerModel(GridModel):
     """Kalker's exact theory of rolling contact with the traction bound of solved pressures."""
 
-    name = "kalker"
+    declaration = DECLARED["kalker"]
     refines = False
     peak_error = 0.01  # of the elements that the tractions are solved on; measured on the same contacts
 
-    def __init__(self, given: Rolling, patches: Patches) -> None:
+    def __init__(self, given: Rollers, patches: Patches) -> None:
         super().__init__(given, patches)
         settings = kalker.KalkerSettings(patches.elements, 1e-8, law=given.law, profile_slip=given.profile_slip)
         self._law = KalkerLaw(given.elastic, settings, given.travel_speed)
-        self._rough: dict[tuple[int, int], float] = {}
         self._per_stress = given.elastic.coupling / given.elastic.shear_modulus
 
     def law(self, patch, slip, friction, rows, fine) -> Resultants:
@@ -155,8 +157,6 @@ class GridKalkerModel(GridModel):
             return _known(self._law(grid, self._drawn(slip, rows), friction, rows, False), grid)
         grid = self.settled(patch, slip, friction, rows)
         self._remember(grid, slip, rows)
-        for row, sine, pressure in zip(rows.tolist(), slip.sine, grid.pressure, strict=True):
-            self._rough[row, int(sine < 0)] = roughness(pressure)
         return _known(self._solved(grid, slip, friction, rows).resultants, grid)
 
     def _solved(self, patch, slip, friction, rows):
@@ -193,8 +193,7 @@ class GridKalkerModel(GridModel):
 
     def force_error(self, n):
         """Return the estimated error of the friction forces over mu F_N, (n, 2): of the elements and of ridges."""
-        rough = np.array([[self._rough.get((i, k), np.nan) for k in (0, 1)] for i in range(n)]).reshape(n, 2)
-        return self._law.error(n) + RIDGE_ERROR * rough
+        return self._law.error(n) + RIDGE_ERROR * self._roughness
 
     def state(self, n):
         """Return the larger residual of both problems, and whether both are met, each (n,)."""

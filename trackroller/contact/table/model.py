@@ -10,10 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Resultants, SurfaceTractions, Works
+from trackroller.contact.common import Resultants, SurfaceTractions, Works
+from trackroller.contact.kalker.model import KalkerModel
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.settings import Accuracy, Rollers
 from trackroller.contact.slip import Slip
 from trackroller.contact.table import spline as table
+from trackroller.parameters.contact_models import DECLARED
 
 
 class TableModel(ContactModel):
@@ -21,26 +24,33 @@ class TableModel(ContactModel):
 
     Parameters
     ----------
-    elastic : Elastic
-        Combined constants of the rollers, arrays (n,).
-    exact : ContactModel
-        Model for tractions and for the rollers outside the table's range. Step of derivatives and residual are those
-        of this model, because a block of rollers may need both.
+    given : Rollers
+        What is known of n rollers.
+    settings : Accuracy
+        Discretisation of `kalker`, which gives tractions and solves the rollers outside the table's range.
     """
 
-    name = "kalker_table"
+    declaration = DECLARED["kalker_table"]
     knows_tractions = False
     # Relative error of the peak stress from the table and from coarse tractions, per unit of the friction coefficient.
     # Measured on random designs against `standard`: the search's own estimate and this error cover 99 % of the peaks.
     peak_error = 0.12
 
-    def __init__(self, elastic: Elastic, exact: ContactModel) -> None:
-        self.elastic, self.exact = elastic, exact
-        self.correction = exact.correction
-        self._beyond = np.zeros(np.shape(elastic.coupling), bool)  # rollers outside the table's range
+    def __init__(self, given: Rollers, settings: Accuracy) -> None:
+        super().__init__(given, settings)
+        self.exact = KalkerModel(given, settings, trusts_table=True)
+        self.correction = self.exact.correction
+        self._beyond = np.zeros(np.shape(given.elastic.coupling), bool)  # rollers outside the table's range
+
+    @classmethod
+    def errors(cls) -> dict[str, tuple[float, float, float, float]]:
+        """Return the measured errors of the creep forces, over mu F_N and mu F_N sqrt(a b)."""
+        errors = table.stored().errors
+        median, p99 = (max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99"))
+        return dict.fromkeys(("friction_force", "spin_moment"), (median, p99, p99, p99))
 
     def _table(self, patch: Any, slip: Slip, friction, rows) -> table.TableSolution:
-        return table.solve_patch(patch, slip.longitudinal, slip.spin, friction, self.elastic.take(rows))
+        return table.solve_patch(patch, slip.longitudinal, slip.spin, friction, self.given.elastic.take(rows))
 
     def law(self, patch: Any, slip: Slip, friction, rows, fine: bool) -> Resultants:
         """Return the resultants on the roller, arrays (m,)."""
@@ -75,7 +85,7 @@ class TableModel(ContactModel):
         """
         found = self._table(patch, slip, friction, rows)
         work, pressed = found.friction_energy_per_distance, np.zeros(len(rows))
-        rest = np.flatnonzero(~found.known | (self.elastic.coupling[rows] != 0.0))
+        rest = np.flatnonzero(~found.known | (self.given.elastic.coupling[rows] != 0.0))
         if rest.size:
             other = self.exact.power(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
             work[rest], pressed[rest] = other.dissipated, other.by_pressure

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.lib.recfunctions import structured_to_unstructured
 
 from trackroller.contact import sliding
-from trackroller.contact.models import traction_share
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
@@ -92,7 +91,7 @@ class EllipseStresses(PatchStresses):
         found = self._shares(flat, results.scene.model.shares)
         if found is None:
             if results.share is None:
-                results.share = traction_share(surface_tractions(results), results.friction[results.good])
+                results.share = surface_tractions(results).shares(results.friction[results.good])
             return results.share[np.cumsum(results.good)[flat] - 1], None
         return found
 

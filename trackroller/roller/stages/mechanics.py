@@ -151,7 +151,7 @@ def steep_friction(results: Results, options: Options) -> None:
     """
     scene = results.scene
     table, loads = scene.table, scene.loads
-    if not loads.falling or options.contact_model == "sliding":
+    if not loads.falling or not scene.model.elastic:
         return
     shear_modulus = Elastic.of_pair(*bodies(table)).shear_modulus
     fall = law_of(table.friction_law[0]).steepest_fall * table.velocity * MM_PER_S

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
@@ -15,7 +15,7 @@ from trackroller.roller.fields import mapping_text
 from trackroller.study.design.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
-OPTION_FACTORS = {option.name: tuple(option.values) for option in OPTIONS.values() if option.factor}
+OPTION_FACTORS = {option.name: option.values for option in OPTIONS.values() if option.factor}
 RESERVED = frozenset(  # names of the data set of a study that a factor of its own cannot have
     (
         *VARIABLES,
@@ -49,7 +49,7 @@ def check_own_name(name: str, where: str) -> None:
         raise InputError(where, name, allowed, f"Rename it, for example {name}_factor.")
 
 
-def choice(value: Any, where: str, options: tuple[str, ...]) -> str:
+def choice(value: Any, where: str, options: Collection[str]) -> str:
     """Check that a value is one of the options.
 
     Parameters

@@ -1,0 +1,82 @@
+"""A contact model from outside: the example of CONTRIBUTING is registered, solved with and removed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.contact.models import CLASSES, register, unregister
+from trackroller.parameters import CONTACT_MODELS, EXACTNESS, OPTIONS, options_text
+from trackroller.roller.accuracy import error_attributes
+from trackroller.roller.options import Options
+from trackroller.study.cost import rate
+from trackroller.study.file.load import parse_study
+
+RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
+
+
+@pytest.fixture
+def film():
+    code = re.search(r"## Add a contact model.*?```python\n(.*?)```", RECIPE.read_text(encoding="utf-8"), re.DOTALL)[1]
+    assert len(code.splitlines()) < 40
+    exec(compile(code, str(RECIPE), "exec"), {})
+    yield "film"
+    unregister("film")
+    assert "film" not in CONTACT_MODELS and "film" not in EXACTNESS and "film" not in OPTIONS["contact_model"].values
+    with pytest.raises(tr.InputError, match="film"):
+        tr.solve(tr.Case(), contact_model="film")
+
+
+def test_the_example_of_the_recipe_solves(film):
+    """Without spin moment the drive torque balance gives F_A1 + F_A2 = -F_Motor; peaks carry the shear."""
+    outputs = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
+    cases = [tr.Case(motor_force=force) for force in (0.0, -20.0, -80.0)]
+    ds = tr.solve(cases, outputs, contact_model=film)
+    assert [ds.contact_model_used.attrs["flag_meanings"].split()[i] for i in ds.contact_model_used.values] == [film] * 3
+    np.testing.assert_allclose(ds.transmitted_force[:2], [0.0, 20.0], atol=1e-6)
+    assert ds.regime.attrs["flag_meanings"].split()[int(ds.regime[2])] == "full_slip"
+    slip = ds.slip.values[1]
+    np.testing.assert_allclose(ds.driving_force[1], -0.3 * ds.normal_force[1] * np.tanh(slip / 1e-2), rtol=1e-9)
+    np.testing.assert_allclose(ds.friction_energy_per_distance[1], -slip * ds.driving_force[1], rtol=1e-9)
+    # rolling freely there is no shear, and the peak is that of the pressure alone
+    bare = tr.solve(tr.Case(friction_coefficient=0.0), ("contact", "peak_stress"), contact_model="sliding")
+    ratios = [found.peak_stress / found.max_pressure for found in (ds.isel(case=0), bare)]
+    np.testing.assert_allclose(*ratios, rtol=1e-3)
+
+
+def test_everything_else_follows_from_the_declaration(film):
+    assert f" {film}" in options_text() and OPTIONS["contact_model"].values[film].startswith("shear grows")
+    study = {"name": "films", "factors": {"contact_model": {"values": [film, "sliding"]}}}
+    assert parse_study(study).factors["contact_model"]["values"] == [film, "sliding"]
+    assert rate({"contact_model": film, "outputs": ("forces",)}) == pytest.approx(1e3)
+    assert error_attributes(Options(contact_model=film).expected_errors(film, True)) == {}
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"accuracy": 1e-3}, "the errors of film were not measured"),
+        ({"normal": "halfspace"}, "film takes hertz only"),
+        ({"slip_terms": "curve"}, "film takes no word only"),
+        ({"spin_model": "edge"}, "only skewed with contact_model: film"),
+    ],
+)
+def test_what_the_declaration_does_not_state_is_refused(film, given, words):
+    with pytest.raises(tr.InputError, match=words):
+        Options(contact_model=film, **given)
+
+
+def test_friction_laws_are_refused(film):
+    with pytest.raises(tr.InputError, match="constant friction with contact_model: film"):
+        tr.solve(tr.Case(friction_law={"kind": "exponential", "speed": 20}), contact_model=film)
+
+
+def test_names_are_unique_and_built_in_models_stay():
+    with pytest.raises(tr.InputError, match="no other contact model"):
+        register(CLASSES["fastsim"])
+    with pytest.raises(tr.InputError, match="registered from outside"):
+        unregister("fastsim")

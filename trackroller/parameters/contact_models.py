@@ -1,0 +1,184 @@
+"""Declare the contact models: what each one can do, what it costs, and where its measured errors stand.
+
+The option `contact_model` of `solve`, of study files and of the command line, the checks of other options, the expected
+cost of a study and the promised accuracy follow from these declarations. Those of the built-in models stand here,
+because help texts and plans need them without the classes, which load numba. A model from outside the package carries
+its declaration in its class, see `trackroller.contact.models.register`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from trackroller.errors import InputError
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Seconds of one core a case at the accuracies preview, standard and reference.
+
+    Parameters
+    ----------
+    forces : tuple of float
+        For the balance of the roller.
+    peaks : tuple of float
+        For the search of the peak stresses, in addition.
+    """
+
+    forces: tuple[float, float, float] = (1e-2, 1e-2, 1e-2)
+    peaks: tuple[float, float, float] = (1e-2, 1e-2, 1e-2)
+
+
+@dataclass(frozen=True)
+class ModelDeclaration:
+    """What the rest of the program has to know of a contact model without loading its class.
+
+    Parameters
+    ----------
+    name : str
+        Word of the option `contact_model`.
+    meaning : str
+        Explanation for documentation, schema and help.
+    converged_up_to : float
+        Largest residual of a converged row: of the balance of the roller and, where elements solve for the balance, of
+        the friction law over mu p_max. Every accuracy has the same limit.
+    rank : int
+        Place among the models by exactness; the largest is the reference of comparisons.
+    options : tuple of str
+        Options that apply to some models only, and to this one.
+    normals : tuple of str
+        Words of the option `normal` that the model serves.
+    slip_terms : tuple of str
+        Words of the option `slip_terms` that the model takes.
+    friction_laws : bool
+        Whether friction may depend on the slip speed.
+    remedy : str
+        What to do where a word is refused.
+    ladder : str
+        Ladder of measured settings in `roller/accuracy.json` from which a tolerance is met: "forces" for quadrature,
+        otherwise elements. Empty if the errors of the model were not measured; a tolerance is refused then.
+    own_errors : bool
+        Whether the errors of the forces are those that the method `errors` of the class returns.
+    interpolates : bool
+        Whether the model interpolates between its elements, so that `Accuracy.elements` serve; otherwise
+        `Accuracy.grid_elements`.
+    cheaper : str
+        Model that stands in for this one at accuracy preview, and for forces within a tolerance that it keeps.
+    cost : Cost
+        Measured cost; orders of magnitude.
+    """
+
+    name: str
+    meaning: str
+    converged_up_to: float = 1e-7
+    rank: int = 0
+    options: tuple[str, ...] = ()
+    normals: tuple[str, ...] = ("hertz",)
+    slip_terms: tuple[str, ...] = ()
+    friction_laws: bool = False
+    remedy: str = "Take contact_model: kalker."
+    ladder: str = ""
+    own_errors: bool = False
+    interpolates: bool = False
+    cheaper: str = ""
+    cost: Cost = Cost()
+
+    def check(self, option: str, value: str) -> None:
+        """Refuse a word of `normal` or `slip_terms` that the model does not serve."""
+        allowed = self.normals if option == "normal" else self.slip_terms
+        if value not in allowed:
+            words = ", ".join(allowed) or "no word"
+            raise InputError(option, value, f"contact_model: {self.name} takes {words} only", self.remedy)
+
+
+# The processor time of one process was measured on `random_designs` of `validation/benchmarks/samples.py`: 100 designs,
+# 20 to 100 of them at reference, 2 to 8 of them on grids. It was divided by that of a complete case in sliding at
+# standard, measured beside it, and multiplied by the 1.9 ms that this case takes on a quiet 2-core machine. Ordinary
+# designs take 60 to 90 % of these times.
+_BUILT_IN = (
+    ModelDeclaration(
+        "sliding",
+        "Coulomb friction at every point against the local creepage, as published; no adhesion area",
+        converged_up_to=1e-10,
+        rank=1,
+        options=("spin_model",),
+        normals=("hertz", "halfspace"),
+        slip_terms=("profile",),
+        friction_laws=True,
+        remedy="Take contact_model: kalker, or leave 'curve' out: in full sliding it changes no force, it only "
+        "lengthens slip and friction work.",
+        ladder="forces",
+        cost=Cost((8e-4, 8e-4, 8e-4), (6e-4, 1.1e-3, 3.8e-3)),
+    ),
+    ModelDeclaration(
+        "fastsim",
+        "simplified theory of rolling contact (Kalker's FASTSIM)",
+        rank=2,
+        options=("slip_terms",),
+        normals=("hertz", "halfspace"),
+        slip_terms=("profile", "curve"),
+        friction_laws=True,
+        ladder="fastsim",
+        cost=Cost((2.6e-3, 0.013, 0.045), (1.1e-3, 1e-3, 7.5e-3)),
+    ),
+    ModelDeclaration(
+        "kalker",
+        "exact theory of rolling contact; by its table at accuracy preview or if it keeps the tolerance",
+        converged_up_to=1e-4,
+        rank=4,
+        options=("slip_terms",),
+        normals=("hertz", "halfspace"),
+        slip_terms=("profile", "curve"),
+        friction_laws=True,
+        ladder="kalker",
+        interpolates=True,
+        cheaper="kalker_table",
+        cost=Cost((5e-4, 3e-3, 0.016), (1.5e-3, 3.3e-3, 5e-3)),
+    ),
+    ModelDeclaration(
+        "kalker_table",
+        "table of solutions of the exact theory; outside its range the exact theory",
+        converged_up_to=1e-4,
+        rank=3,
+        options=("slip_terms",),
+        slip_terms=("curve",),
+        ladder="kalker",
+        own_errors=True,
+        interpolates=True,
+        cost=Cost((4e-4, 4e-4, 1e-3), (1.2e-3, 4e-3, 0.024)),
+    ),
+)
+# Cost of solved patches (`normal: halfspace`) by kalker; other models take less.
+SOLVED_PATCHES = Cost((0.2, 0.4, 0.7), (0.03, 0.2, 2.8))
+
+DECLARED: dict[str, ModelDeclaration] = {}
+MEANINGS: dict[str, str] = {}  # values of the option `contact_model`
+CONTACT_MODELS: list[str] = []  # in the order of the numbers in `contact_model_used`
+EXACTNESS: list[str] = []  # the most exact model first
+
+
+def declare(model: ModelDeclaration) -> None:
+    """Add a contact model to the option `contact_model`; its number in results is the next free one."""
+    if model.name in DECLARED:
+        raise InputError("contact_model", model.name, "a name that no other contact model has")
+    DECLARED[model.name] = model
+    _derive()
+
+
+def withdraw(name: str) -> None:
+    """Remove a contact model again. The built-in models stay: results are read by their numbers."""
+    if name in [model.name for model in _BUILT_IN]:
+        raise InputError("contact_model", name, "a model that was registered from outside")
+    del DECLARED[name]
+    _derive()
+
+
+def _derive() -> None:
+    MEANINGS.clear()
+    MEANINGS.update({name: model.meaning for name, model in DECLARED.items()})
+    CONTACT_MODELS[:] = DECLARED
+    EXACTNESS[:] = sorted(DECLARED, key=lambda name: -DECLARED[name].rank)
+
+
+for _model in _BUILT_IN:
+    declare(_model)
