@@ -18,14 +18,16 @@ from functools import partial
 import numpy as np
 import pydoe
 from SALib.analyze import delta as salib_delta
-from SALib.analyze import hdmr, pawn, rbd_fast
+from SALib.analyze import hdmr, rbd_fast
 from SALib.analyze import morris as salib_morris
+from SALib.analyze import pawn as salib_pawn
 from SALib.analyze import sobol as salib_sobol
 from SALib.sample import sobol as sobol_sample
 
 from trackroller.analysis import givendata, indices
 from trackroller.analysis.delta import delta
 from trackroller.analysis.pairs import pairs
+from trackroller.analysis.pawn import pawn, pawn_interval
 from trackroller.analysis.sobol import sobol
 from trackroller.study.design import arrays
 from trackroller.study.design.sampling import sample
@@ -133,14 +135,14 @@ def their_pairs(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
 def our_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
     """Return PAWN of the last factor, a category."""
     kind = unit[:, -1].astype(int)
-    value = givendata.pawn(y, kind, noise=False)[0]
-    low, high = givendata.pawn_interval(y, kind, value, seed)
+    value = pawn(y, kind, noise=False)[0]
+    low, high = pawn_interval(y, kind, value, seed)
     return np.array([value]), np.array([low]), np.array([high])
 
 
 def their_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
     """Return SALib's PAWN of the last factor; it has no interval."""
-    return _symmetric(pawn.analyze(problem(1), unit[:, -1:], y)["median"], np.array([np.nan]))
+    return _symmetric(salib_pawn.analyze(problem(1), unit[:, -1:], y)["median"], np.array([np.nan]))
 
 
 ESTIMATORS: dict[str, dict[str, Estimator]] = {

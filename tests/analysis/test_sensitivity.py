@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 from trackroller.analysis import convergence, indices
-from trackroller.analysis.givendata import first_order, given_data, pawn, prcc
+from trackroller.analysis.givendata import first_order, given_data, prcc
+from trackroller.analysis.pawn import pawn
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError

@@ -32,20 +32,23 @@ def sizes(total: int, smallest: int = 16, points: int = 7) -> np.ndarray:
     return np.array(found[::-1])
 
 
-def course(estimate: Callable[[int], Estimates], at: Sequence[int] | np.ndarray, names: Sequence[str]) -> Estimates:
+def course(
+    estimate: Callable[[int], Estimates], at: Sequence[int] | np.ndarray, whole: Estimates, names: Sequence[str]
+) -> Estimates:
     """Estimate indices and their intervals from the first samples of a design.
 
     Parameters
     ----------
     estimate : number of samples -> estimates, each shape (k,)
-    at : sample sizes, shape (m,)
+    at : sample sizes, shape (m,), the last one that of the design
+    whole : estimates of the whole design
     names : indices, each with its _low and _high
 
     Returns
     -------
     name_course, name_course_low, name_course_high, each shape (m, k).
     """
-    rows = [estimate(int(size)) for size in at]
+    rows = [*(estimate(int(size)) for size in at[:-1]), whole]
     keys = [(name, end) for name in names for end in ("", "_low", "_high")]
     return {f"{name}_course{end}": np.stack([row[name + end] for row in rows]) for name, end in keys}
 

@@ -13,41 +13,18 @@ from scipy.stats import rankdata
 
 from trackroller.analysis.delta import delta
 from trackroller.analysis.indices import Estimates, Z, constant
+from trackroller.analysis.pawn import bins, pawn, pawn_interval, thinned
 
 MIN_ROWS = 30
-PAWN_BINS = 10
-PAWN_ROWS = 2048, 4096  # rows behind the interval and behind the noise of PAWN
 GROUPS = 20  # of the grouped jackknife
 HARMONICS, ROWS_PER_HARMONIC = 10, 16  # of RBD-FAST: SALib's number, fewer for small samples
-FAST_RESAMPLES = 32
+FAST_RESAMPLES, FAST_ROWS = 32, 4096  # of the bootstrap
 MEASURES = {
     "first": ("first", "first_low", "first_high"),
     "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
     "pawn": ("pawn", "pawn_low", "pawn_high", "pawn_noise"),
     "prcc": ("prcc", "prcc_low", "prcc_high"),
 }
-
-
-def bins(values: np.ndarray, count: int, ordered: bool = True) -> np.ndarray:
-    """Return the bin of each row.
-
-    Parameters
-    ----------
-    values : factor, shape (n,)
-    count : number of bins
-    ordered : whether more and less mean something
-
-    Returns
-    -------
-    Bin numbers, shape (n,): bins of equal count, or one bin a value if there are few values or no order.
-    """
-    different, index = np.unique(values, return_inverse=True)
-    if len(different) <= count or not ordered:
-        return index
-    order = np.argsort(values, kind="stable")
-    out = np.empty(len(values), dtype=int)
-    out[order] = np.arange(len(values)) * count // len(values)
-    return out
 
 
 def given_data(
@@ -95,7 +72,7 @@ def given_data(
             for name, value in zip(MEASURES["delta"], delta(y, unit[:, j], bool(ordered[j]), seed), strict=True):
                 out[name][j] = value
         if "pawn" in measures:
-            group = bins(unit[:, j], PAWN_BINS, bool(ordered[j]))
+            group = bins(unit[:, j], bool(ordered[j]))
             out["pawn"][j], out["pawn_noise"][j] = pawn(y, group, seed)
             out["pawn_low"][j], out["pawn_high"][j] = pawn_interval(y, group, out["pawn"][j], seed, resamples)
     return out
@@ -115,7 +92,9 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     Notes
     -----
     Continuous factors: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur. SALib's bootstrap draws
-    half of the rows, so its half width is scaled by sqrt(1/2) (m out of n bootstrap [2]_).
+    half of the rows, so its half width is scaled by sqrt(1/2) (m out of n bootstrap [2]_). The bootstrap of a long
+    sample takes 4096 of its rows, and its half width is scaled by one over the root of the rows. For an inert factor
+    the true half width falls faster, as one over the rows; the interval is then too wide.
     Categories and columns whose values repeat: `first_order` of the groups, because RBD-FAST orders equal values by
     their rows. It is biased for a category (0.88 for a share of 0.96), and in a table with the rows of a grid it
     takes other factors for this one (0.63 for a share of 0.004). ``validation/index_estimators.py`` compares both.
@@ -132,15 +111,17 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     out = {name: np.full(count, np.nan) for name in MEASURES["first"]}
     if len(y) < MIN_ROWS or constant(y):
         return out
+    some = thinned(len(y), FAST_ROWS)
     for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
         x = unit[:, j]
         values, group = np.unique(x, return_inverse=True)
         if ordered[j] and 2 * len(values) > len(x):
-            problem = {"num_vars": 1, "names": ["x"], "bounds": [[0.0, 1.0]]}
             harmonics = max(2, min(HARMONICS, len(y) // ROWS_PER_HARMONIC))
+            plain = rbd_fast.compute_first_order(rbd_fast.permute_outputs(x, y), harmonics)
+            value, rng = float(rbd_fast.unskew_S1(plain, harmonics, len(y))), np.random.default_rng(seed)
             with np.errstate(invalid="ignore"):  # a resample may miss a rare event altogether
-                found = rbd_fast.analyze(problem, x[:, None], y, harmonics, FAST_RESAMPLES, seed=seed)
-            value, half = float(found["S1"][0]), 0.5**0.5 * float(found["S1_conf"][0])
+                spread = rbd_fast.bootstrap(x[some], y[some], harmonics, FAST_RESAMPLES, 0.95, rng)
+            half = float(spread) * (0.5 * len(some) / len(y)) ** 0.5
         else:
             value, error = first_order(y, group, seed)
             half = Z * error
@@ -183,82 +164,6 @@ def _epsilon(sums: np.ndarray, square: np.ndarray) -> np.ndarray:
     whole = square - rows * mean**2
     between = (total**2 / np.maximum(number, 1)).sum(axis=-1) - rows * mean**2
     return 1 - (whole - between) / (rows - filled) * (rows - 1) / whole
-
-
-def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) -> tuple[float, float]:
-    """Estimate the PAWN index of one factor.
-
-    Parameters
-    ----------
-    y : output, shape (n,), finite
-    group : bin of each row, shape (n,)
-    seed : of the permutations
-    noise : whether to estimate the noise
-
-    Returns
-    -------
-    Median over the bins of the Kolmogorov-Smirnov distance between the output in the bin and in all rows, and the
-    value below which an inert factor stays in 95 % of cases (60 permutations).
-
-    Notes
-    -----
-    SALib's PAWN agrees for continuous factors. It has no interval and no noise, drops the row with the largest
-    value, and is wrong for lists (0.50 for three categories whose index is 0.36).
-
-    References
-    ----------
-    Pianosi & Wagener (2018), Environ. Model. Softw. 108, 197-207.
-    """
-    order = np.argsort(y, kind="stable")
-    last = np.append(np.diff(y[order]) != 0, True)  # equal outputs: compare after the last of them
-    value = _distance(group[order], last, np.ones(len(y)))
-    if not noise:
-        return value, np.nan
-    rng = np.random.default_rng(seed)
-    if len(group) > PAWN_ROWS[1]:
-        group = group[:: len(group) // PAWN_ROWS[1]]
-        last = np.ones(len(group), dtype=bool)
-    shrink = np.sqrt(len(group) / len(y))  # the noise of a distance falls as one over the root of the rows
-    once = np.ones(len(group))
-    drawn = [_distance(rng.permutation(group), last, once) for _ in range(60)]
-    return value, float(np.percentile(drawn, 95) * shrink)
-
-
-def pawn_interval(
-    y: np.ndarray, group: np.ndarray, value: float, seed: int = 0, resamples: int = 300
-) -> tuple[float, float]:
-    """Estimate the 95 % interval of a PAWN index by the bootstrap.
-
-    Parameters
-    ----------
-    y, group, seed : as in `pawn`
-    value : the index
-    resamples : number of resamples
-
-    Returns
-    -------
-    Low and high. A long sample is thinned, and its spread is scaled by one over the root of the rows.
-    """
-    shrink = max(1.0, len(y) / PAWN_ROWS[0]) ** 0.5
-    every = np.linspace(0, len(y) - 1, min(len(y), PAWN_ROWS[0])).astype(int)
-    y, group = y[every], group[every]
-    order = np.argsort(y, kind="stable")
-    last, group = np.append(np.diff(y[order]) != 0, True), group[order]
-    rng, rows = np.random.default_rng(seed), len(group)
-    weights = (np.bincount(rng.integers(0, rows, rows), minlength=rows).astype(float) for _ in range(resamples))
-    half = Z * float(np.std([_distance(group, last, weight) for weight in weights], ddof=1)) / shrink
-    return max(0.0, value - half), min(1.0, value + half)
-
-
-def _distance(group: np.ndarray, last: np.ndarray, weight: np.ndarray) -> float:
-    """Return the median Kolmogorov-Smirnov distance of the groups from all rows, which are sorted by the output."""
-    number = np.bincount(group, weight)
-    whole = np.cumsum(weight)[last] / len(group)
-    return float(
-        np.median(
-            [np.abs(np.cumsum((group == g) * weight)[last] / number[g] - whole).max() for g in np.flatnonzero(number)]
-        )
-    )
 
 
 def prcc(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -15,15 +15,18 @@ References
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.linalg import lapack
 
 from trackroller.analysis.indices import Estimates, Z, constant
 
 TRUSTED = 0.8  # share of variance that a fit must predict
-DEGREES = ((8, 4), (6, 3), (4, 2), (3, 1), (2, 1))  # of a factor alone and in a product; the best prediction wins
+# Degrees of a factor alone and in a product. Each pair contains the next one; the best prediction wins.
+DEGREES = ((8, 4), (6, 3), (4, 2), (3, 1), (2, 1))
 ROWS_PER_TERM = 2.5
 MAX_ROWS = 4096
 MAX_KINDS = 8  # categories of a factor
@@ -57,17 +60,19 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     if count < 2 or len(y) < 30 or constant(y):
         return out
     y = (y - y.mean()) / y.std()
-    fits = [fit for degrees in DEGREES if (fit := _fit(y, unit, ordered, degrees)) is not None]
-    if not fits:
+    columns = _columns(unit, ordered)
+    if columns is None:
         return out
-    best = max(fits, key=lambda fit: fit.predicted)
-    out["fit_share"] = np.array(max(0.0, best.predicted))
-    if best.predicted < TRUSTED:
+    missed = held_out(y, columns.table, columns.widths)
+    scores = [-np.inf if one is None else float(1 - (one**2).mean()) for one in missed]
+    if max(scores, default=-np.inf) == -np.inf:
         return out
-    share = _shares(y, best.columns, best.term)
-    part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
-    left = np.array([_shares(y[part != g], best.columns[part != g], best.term) for g in range(GROUPS)])
-    half = Z * np.sqrt((GROUPS - 1) / GROUPS * ((left - left.mean(axis=0)) ** 2).sum(axis=0))
+    best = int(np.argmax(scores))
+    out["fit_share"] = np.array(max(0.0, scores[best]))
+    if scores[best] < TRUSTED:
+        return out
+    width = columns.widths[best]
+    share, half = _jackknife(y, columns.table[:, :width], columns.term[:width], seed)
     out["fit_alone"] = share[:count]
     for (i, j), value, wide in zip(combinations(range(count), 2), share[count:], half[count:], strict=True):
         for name, number in zip(NAMES, (value, value - wide, value + wide), strict=True):
@@ -75,48 +80,64 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     return out
 
 
-class _Fit(NamedTuple):
-    columns: np.ndarray  # shape (n, columns)
+class _Columns(NamedTuple):
+    table: np.ndarray  # shape (n, columns): the columns of the simplest polynomial first
     term: np.ndarray  # number of the factor or (after the factors) of the pair of each column; -1 for the constant
-    predicted: float  # share of variance of held-out rows
+    widths: list[int]  # number of columns of each polynomial of `DEGREES`
 
 
-def _fit(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, degrees: tuple[int, int]) -> _Fit | None:
-    """Fit the polynomial; None if the sample is too small or a factor has too many categories."""
-    alone, joint = degrees
-    found = [orthonormal(unit[:, j], bool(ordered[j]), alone) for j in range(unit.shape[1])]
-    bases = [base for base in found if base is not None]
-    if len(bases) < len(found):
+def _columns(unit: np.ndarray, ordered: np.ndarray) -> _Columns | None:
+    """Return the columns of the largest polynomial; None if a factor has too many categories."""
+    rows, count = unit.shape
+    alone, joint = DEGREES[0]
+    bases = [base for j in range(count) if (base := orthonormal(unit[:, j], bool(ordered[j]), alone)) is not None]
+    if len(bases) < count:
         return None
-    columns = [np.ones((len(y), 1)), *bases]
-    for i, j in combinations(range(len(bases)), 2):
-        one, other = (bases[p][:, :joint] if ordered[p] else bases[p] for p in (i, j))
-        columns.append((one[:, :, None] * other[:, None, :]).reshape(len(y), -1))
-    term = np.repeat(np.arange(len(columns)) - 1, [part.shape[1] for part in columns])
-    table = np.concatenate(columns, axis=1)
-    missed = held_out(y, table)
-    return None if missed is None else _Fit(table, term, float(1 - (missed**2).mean()))
+    degree = [np.arange(base.shape[1]) + 1 if ordered[j] else np.ones(base.shape[1]) for j, base in enumerate(bases)]
+    parts = [(np.ones((rows, 1)), np.zeros(1)), *zip(bases, degree, strict=True)]
+    for i, j in combinations(range(count), 2):
+        one, other = (slice(joint if ordered[place] else None) for place in (i, j))
+        product = (bases[i][:, one, None] * bases[j][:, None, other]).reshape(rows, -1)
+        parts.append((product, np.maximum.outer(degree[i][one], degree[j][other]).ravel()))
+    term = np.repeat(np.arange(len(parts)) - 1, [len(degrees) for _, degrees in parts])
+    limits = np.array(DEGREES)[:, (term >= count).astype(int)]
+    member = np.concatenate([degrees for _, degrees in parts]) <= limits  # shape (polynomials, columns)
+    order = np.argsort(-member.sum(axis=0), kind="stable")
+    table = np.concatenate([columns for columns, _ in parts], axis=1)
+    return _Columns(table[:, order], term[order], [int(columns.sum()) for columns in member])
 
 
-def held_out(y: np.ndarray, table: np.ndarray) -> np.ndarray | None:
-    """Return the residual of a linear fit at each row that was held out of the fit.
+def held_out(y: np.ndarray, table: np.ndarray, widths: Sequence[int]) -> list[np.ndarray | None]:
+    """Return the residuals of linear fits at each row that was held out of the fit.
 
     Parameters
     ----------
     y : shape (n,) or (n, m)
-    table : columns of the fit, shape (n, columns)
+    table : columns, shape (n, columns)
+    widths : each fit takes so many columns, from the first on
 
     Returns
     -------
-    Residuals of the shape of `y`; None if the rows are too few or the columns depend on each other.
+    For each width residuals of the shape of `y`; None if the rows are too few or the columns depend on each other.
+
+    Notes
+    -----
+    One QR decomposition serves every fit, because its first columns are that of the first columns of the table.
     """
-    if len(y) < ROWS_PER_TERM * table.shape[1]:
-        return None
-    basis, triangle = np.linalg.qr(table)
-    if np.abs(np.diag(triangle)).min() < 1e-8 * len(y) ** 0.5:
-        return None
-    lever = (basis**2).sum(axis=1).reshape(-1, *[1] * (y.ndim - 1))
-    return np.asarray((y - basis @ (basis.T @ y)) / np.maximum(1e-9, 1 - lever))
+    rows = len(y)
+    widest = max((width for width in widths if rows >= ROWS_PER_TERM * width), default=0)
+    basis, triangle = np.linalg.qr(table[:, :widest])
+    dependent = np.abs(np.diag(triangle)) < 1e-8 * rows**0.5
+    projected = basis.T @ y
+
+    def residual(width: int) -> np.ndarray | None:
+        if width > widest or dependent[:width].any():
+            return None
+        part = basis[:, :width]
+        lever = np.einsum("ij,ij->i", part, part).reshape(-1, *[1] * (y.ndim - 1))
+        return np.asarray((y - part @ projected[:width]) / np.maximum(1e-9, 1 - lever))
+
+    return [residual(width) for width in widths]
 
 
 def orthonormal(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:
@@ -132,10 +153,36 @@ def orthonormal(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:
     return np.asarray(np.linalg.qr(raw)[0][:, 1:] * len(x) ** 0.5)
 
 
-def _shares(y: np.ndarray, table: np.ndarray, term: np.ndarray) -> np.ndarray:
-    """Return the share of variance of each term: its squared coefficients less their expected sampling error."""
-    inverse = np.linalg.pinv(table.T @ table)
-    found = inverse @ (table.T @ y)
-    rest = float(((y - table @ found) ** 2).sum() / max(1, len(y) - len(term)))
-    squares = found**2 - rest * np.diag(inverse)
-    return np.array([squares[term == p].sum() for p in range(int(term.max()) + 1)]) / y.var()
+def _jackknife(y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the share of variance of each term and its half width (95 %) by a grouped jackknife.
+
+    The normal equations of all rows less those of a group are the normal equations without the group.
+    """
+    part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
+    gram, moment = np.zeros((GROUPS, *[table.shape[1]] * 2)), np.zeros((GROUPS, table.shape[1]))
+    for g in range(GROUPS):
+        group = table[part == g]
+        gram[g], moment[g] = group.T @ group, group.T @ y[part == g]
+    square, rows = np.bincount(part, y**2, GROUPS), np.bincount(part, minlength=GROUPS)
+    whole = gram.sum(axis=0), moment.sum(axis=0), square.sum(), rows.sum()
+    share = _shares(*whole, term=term)
+    sums = (gram, moment, square, rows)
+    left = np.array([_shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term) for g in range(GROUPS)])
+    left = left[np.isfinite(left).all(axis=1)]
+    spread = ((left - left.mean(axis=0)) ** 2).sum(axis=0) if len(left) > 1 else np.full_like(share, np.nan)
+    return share, Z * np.sqrt((len(left) - 1) / max(1, len(left)) * spread)
+
+
+def _shares(gram: np.ndarray, moment: np.ndarray, square: float, rows: int, *, term: np.ndarray) -> np.ndarray:
+    """Return the share of variance of each term: its squared coefficients less their expected sampling error.
+
+    `gram`, `moment` and `square` are the products of the columns with each other, of the columns with y and of y with
+    itself. NaN if the columns depend on each other.
+    """
+    factor, failed = lapack.dpotrf(gram)
+    if failed or np.diag(factor).min() < 1e-6 * rows**0.5:
+        return np.full(int(term.max()) + 1, np.nan)
+    coefficient = lapack.dpotrs(factor, moment)[0]
+    error = np.diag(lapack.dpotri(factor)[0]) * (square - moment @ coefficient) / max(1, rows - len(term))
+    variance = square / rows - (moment[0] / rows) ** 2  # the first column is the constant
+    return np.bincount(term + 1, coefficient**2 - error)[1:] / variance

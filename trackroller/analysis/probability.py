@@ -77,10 +77,13 @@ def _empty(unit: np.ndarray) -> float:
 
 def _unexplained(hits: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> np.ndarray:
     """Return the variance that a fitted sum of functions of each factor misses in held-out rows, shape (m,)."""
-    best = np.full(hits.shape[1], np.inf)
-    for degree in DEGREES:
-        found = [orthonormal(unit[:, j], bool(ordered[j]), degree) for j in range(unit.shape[1])]
-        table = np.concatenate([np.ones((len(hits), 1)), *(part for part in found if part is not None)], axis=1)
-        if (missed := held_out(hits, table)) is not None:
-            best = np.minimum(best, (missed**2).mean(axis=0))
-    return best
+    bases = [orthonormal(unit[:, j], bool(ordered[j]), max(DEGREES)) for j in range(unit.shape[1])]
+    known = [(base, bool(ordered[j])) for j, base in enumerate(bases) if base is not None]
+    degree = [np.arange(base.shape[1]) + 1 if rising else np.ones(base.shape[1]) for base, rising in known]
+    degrees = np.concatenate([np.zeros(1), *degree])
+    order = np.argsort(degrees, kind="stable")
+    table = np.concatenate([np.ones((len(hits), 1)), *(base for base, _ in known)], axis=1)[:, order]
+    missed = held_out(hits, table, [int((degrees <= limit).sum()) for limit in DEGREES])
+    return np.min(
+        [np.full(hits.shape[1], np.inf), *((one**2).mean(axis=0) for one in missed if one is not None)], axis=0
+    )

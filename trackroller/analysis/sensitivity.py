@@ -82,7 +82,7 @@ def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     def part(blocks: int) -> indices.Estimates:
         return sobol(lean[:blocks].ravel(), count, False, how.seed, how.resamples)
 
-    out |= convergence.course(part, at, ("S1", "ST")) | given
+    out |= convergence.course(part, at, part(blocks) if second else out, ("S1", "ST")) | given
     return Found(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
 
 
@@ -95,7 +95,8 @@ def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
 
     total = int(design.meta["trajectories"])
     at = convergence.sizes(total, smallest=4)
-    out = part(total) | convergence.course(part, at, ("mu_star",))
+    out = part(total)
+    out |= convergence.course(part, at, out, ("mu_star",))
     return Found(out, int(out["effects_used"].sum()), total * (step - 1), at)
 
 
@@ -122,7 +123,7 @@ def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
         every = max(1, len(y) // n)  # the first rows of a table may be sorted, so take every so many rows
         return firsts(y[::every], places[::every], ordered, how.seed)
 
-    out |= convergence.course(part, at, ("first",))
+    out |= convergence.course(part, at, out, ("first",))
     return Found(out, int(out.pop("rows_used")), len(y), at)
 
 

@@ -10,8 +10,9 @@ import pytest
 import xarray as xr
 
 from trackroller.analysis.delta import delta
-from trackroller.analysis.givendata import bins, given_data, pawn, pawn_interval
+from trackroller.analysis.givendata import given_data
 from trackroller.analysis.pareto import study_pareto
+from trackroller.analysis.pawn import bins, pawn, pawn_interval
 from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
@@ -266,7 +267,7 @@ def test_pawn_interval_is_as_wide_as_the_index_scatters_from_sample_to_sample():
     found = []
     for seed in range(20):
         x = np.random.default_rng(100 + seed).random(600)
-        y, group = x + np.random.default_rng(seed).normal(0, 0.3, 600), bins(x, 10)
+        y, group = x + np.random.default_rng(seed).normal(0, 0.3, 600), bins(x)
         value = pawn(y, group, noise=False)[0]
         found.append((value, *pawn_interval(y, group, value, resamples=100)))
     mean = np.mean([value for value, _, _ in found])
