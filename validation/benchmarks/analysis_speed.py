@@ -1,6 +1,6 @@
 """Processor time of the analysis of a large study, by part, on made-up results.
 
-    OPENBLAS_NUM_THREADS=1 python -m validation.benchmarks.analysis_speed [ROWS] [--output FILE]
+    OPENBLAS_NUM_THREADS=1 python -m validation.benchmarks.analysis_speed [--rows N] [--output FILE]
 
 A Latin hypercube of eight factors, one of them a list, with the results of `tests/synthetic_results.py` instead of
 solved ones. The parts are the functions below `analyse_dataset`; a part that calls another one includes it. The
@@ -9,9 +9,7 @@ goal is 45 s for 100,000 rows.
 
 from __future__ import annotations
 
-import argparse
 import cProfile
-import json
 import pstats
 import sys
 import time
@@ -24,6 +22,7 @@ import xarray as xr
 
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.study.file.load import parse_study
+from validation.benchmarks.command import run
 
 TESTS = Path(__file__).resolve().parents[2] / "tests"
 STUDY: dict[str, Any] = {
@@ -85,17 +84,5 @@ def measure(rows: int = 100_000) -> dict[str, Any]:
     return {"rows": rows, "outputs": result.sizes["output"], "seconds": whole, "parts": parts}
 
 
-def main() -> None:
-    """Print the times as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("rows", type=int, nargs="?", default=100_000)
-    parser.add_argument("--output", type=Path)
-    args = parser.parse_args()
-    text = json.dumps(measure(args.rows), indent=1)
-    print(text)
-    if args.output:
-        args.output.write_text(text + "\n", encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)
