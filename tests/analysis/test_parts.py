@@ -191,7 +191,7 @@ def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
     assert ("ST" in sens) == (exchange == "factors") and np.isfinite(sens["take_times"]).all()
     table = decisions.part_tables(sens)[0]
     assert [row[1] for row in table.rows] == ["Load", "Friction coefficient", "Roller material"]
-    text = " ".join(s.text for head, said in summary.in_short(StudyView.of(ds), sens, []) for s in said)
+    text = " ".join(s.text for head, said in summary.in_short(StudyView.of(ds, sens), []) for s in said)
     assert "By groups, roller material accounts for" in text and "load" in text
     assert (text.index("By groups") < text.index("explains")) if exchange == "groups" else "(total index)" in text
 

@@ -11,6 +11,7 @@ from trackroller.analysis.givendata import first_order, given_data, prcc
 from trackroller.analysis.pawn import pawn
 from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.analysis.sobol import sobol
+from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.report.words import indices as words
 from trackroller.study.design.sampling import sample
@@ -453,7 +454,7 @@ def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
 
     solved({"name": "i", "design": "saltelli", "samples": 128, "factors": CARRIERS}, fake, tmp_path / "study.nc")
     analyse(tmp_path / "study.nc", tmp_path / "sensitivity.nc")
-    infos = draw_all(tmp_path / "study.nc", tmp_path / "figures", tmp_path / "sensitivity.nc")
+    infos = draw_all(StudyView.read(tmp_path / "study.nc", tmp_path / "sensitivity.nc"), tmp_path / "figures")
     said = {i.name: i.sentence for i in infos}
     assert {
         "tornado-roller_life_hours",

@@ -59,16 +59,16 @@ def shown(gathered, place):
     """Return the captions of all figures by name, each rendered and not saved, and the text of the report."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(style, "save", lambda figure, out_dir, name: figure.draw_without_rendering())
-        infos = draw_all(gathered, place / "figures")
-    text = write_report(gathered, place / "figures", place / "report.html").read_text(encoding="utf-8")
+        infos = draw_all(StudyView.read(gathered), place / "figures")
+    text = write_report(StudyView.read(gathered), place / "figures", place / "report.html").read_text(encoding="utf-8")
     return {i.name: i for i in infos}, re.sub(r'src="data[^"]*"', "", text)
 
 
 def compared(gathered, place):
     """Return the captions of the figures that compare models, and the text of the report."""
     with xr.open_dataset(gathered) as ds, style.look():
-        infos = [drawn[1] for f in drawers(ds) if (drawn := f())]
-    page = write_report(gathered, place / "figures", place / "report.html")
+        infos = [drawn[1] for f in drawers(StudyView.of(ds)) if (drawn := f())]
+    page = write_report(StudyView.read(gathered), place / "figures", place / "report.html")
     return {i.name: i for i in infos}, page.read_text(encoding="utf-8")
 
 
@@ -91,7 +91,7 @@ def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(o
     assert "normal forces up to a friction of 0.04" in text and "Contact models compared" in text
     assert "The sliding model is within 5 % of kalker" in drawn["models-error"].sentence
     with xr.open_dataset(own[0]) as ds:
-        paired = ladder.pairs(ds)
+        paired = ladder.pairs(StudyView.of(ds))
     assert paired.sizes["design"] == 4 and paired.attrs["reference"] == "kalker"
     found = ladder.errors(paired)
     driven = found.isel(design=np.flatnonzero(paired["motor_force"] == -10))
@@ -112,7 +112,7 @@ def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(o
 
 def test_best_designs_and_pareto_set_are_those_of_one_model(own):
     with xr.open_dataset(own[0]) as ds:
-        told, front = contents(ds), study_pareto(ds)
+        told, front = contents(StudyView.of(ds)), study_pareto(ds)
         exact = ds["roller_life_hours"].where(ds["regime"] == 0).sel(contact_model="kalker")
         valid = (ds["regime"] == 0) & ((ds["validity"] & 0b100001111) == 0)
         best = {row[0]: row[1:] for row in told["decide"][0].rows}
@@ -126,7 +126,7 @@ def test_best_designs_and_pareto_set_are_those_of_one_model(own):
 def test_three_drives_get_room_and_many_are_told_by_their_sign(tmp_path):
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "motor_force": {"values": [0, -10, 10]}}
     with xr.open_dataset(study(tmp_path, factors, outputs=["forces", "contact"])) as ds:
-        figure = next(f()[0] for f in drawers(ds) if f.func.__name__ == "error")
+        figure = next(f()[0] for f in drawers(StudyView.of(ds)) if f.func.__name__ == "error")
     figure.draw_without_rendering()
     bottom = [axes for axes in figure.axes if axes.get_xlabel()]
     boxes = [axes.xaxis.label.get_window_extent() for axes in bottom]
@@ -144,8 +144,8 @@ def test_motor_force_in_the_base_and_another_factor(tmp_path):
     assert "over spin (spin creepage" in drawn["models-error-factors"].caption
     assert not any("Paper" in i.caption + i.sentence for i in drawn.values())
     with xr.open_dataset(gathered) as ds:
-        paired = ladder.pairs(ds)
-        titles = [drawn[0]._suptitle.get_text() for f in drawers(ds) if (drawn := f())]
+        paired = ladder.pairs(StudyView.of(ds))
+        titles = [drawn[0]._suptitle.get_text() for f in drawers(StudyView.of(ds)) if (drawn := f())]
     assert any("Held: contact angle 30°" in t for t in titles) and not any("200 N" in t for t in titles)
     alpha = np.deg2rad(30)  # spin of the paper's roller: sin(alpha)/r_A times 4 over the sum of curvatures
     r_a = 21.75 - 6 * np.cos(alpha)
@@ -173,16 +173,16 @@ def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_
 def test_without_kalker_fastsim_is_the_reference(tmp_path):
     factors = {"axial_force": {"values": [0, 20]}}
     with xr.open_dataset(study(tmp_path, factors, models=["sliding", "fastsim"], outputs=["forces"])) as ds:
-        paired = ladder.pairs(ds)
-        names = {drawn[1].name for f in drawers(ds) if (drawn := f())}
+        paired = ladder.pairs(StudyView.of(ds))
+        names = {drawn[1].name for f in drawers(StudyView.of(ds)) if (drawn := f())}
     assert paired.attrs["reference"] == "fastsim" and list(paired.contact_model.values) == ["sliding", "fastsim"]
     assert "models-error" in names
     assert "too little to compare" in " ".join(comparison.sentences(paired))
 
 
 def test_one_model_or_none_is_not_compared():
-    ds = grid_study()
-    assert ladder.pairs(ds) is None and comparison.report_section(ds) == {} and drawers(ds) == []
+    view = StudyView.of(grid_study())
+    assert ladder.pairs(view) is None and comparison.report_section(view) == {} and drawers(view) == []
 
 
 def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_cases():
@@ -195,7 +195,7 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
         {"regime": ("case", np.zeros(3 * n, "i1")), "normal_force": (("case", "contact"), force)},
         coords={"contact_model": ("case", model), "friction_coefficient": ("case", np.tile(mu, 3)), "contact": [1, 2]},
     ).isel(case=order)
-    paired = ladder.pairs(ds.isel(case=slice(1, None)))
+    paired = ladder.pairs(StudyView.of(ds.isel(case=slice(1, None))))
     lost = str(ds["contact_model"][0].item())
     assert paired.sizes["design"] == (n if lost != "kalker" else n - 1)
     found = ladder.errors(paired).normal_force

@@ -118,14 +118,14 @@ def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
     monkeypatch.setattr("trackroller.report.explorer.page.sample_rows", lambda s, k: sample_rows(s, k, most=300))
     monkeypatch.setattr("trackroller.report.explorer.sample.RARE", 10)
     ds = as_table(sampled_study(2_000), pareto={"roller_life_hours": "max", "friction_coefficient": "max"})
-    content = explorer(ds)
+    content = explorer(StudyView.of(ds))
     header = json.loads(content["header"])
     rows = unpacked(header["columns"], content["rows"])["row"]
     assert header["rows"] == len(rows) < header["cases"] == 2_000
     assert "of 2,000 cases are shown" in content["sampled"]
     front = np.flatnonzero(pareto_rows(ds, 2_000))
     assert len(front) and set(front) <= set(rows)
-    assert explorer(sampled_study(40))["sampled"] == ""
+    assert explorer(StudyView.of(sampled_study(40)))["sampled"] == ""
 
 
 def test_the_pareto_set_marks_the_rows_of_the_data_set():
@@ -143,7 +143,7 @@ def test_the_pareto_set_marks_the_rows_of_the_data_set():
 def test_only_rows_of_the_most_exact_model_are_compared():
     ds = grid_study({"velocity": [1.0, 2.0], "axial_force": [0.0, 30.0]})
     models = ds.rename(velocity="contact_model").assign_coords(contact_model=["sliding", "kalker"])
-    told = [json.loads(explorer(each)["header"])["compared"] for each in (models, ds)]
+    told = [json.loads(explorer(StudyView.of(each))["header"])["compared"] for each in (models, ds)]
     assert told == ["kalker", ""]
 
 
@@ -161,7 +161,7 @@ def test_names_of_users_cannot_end_the_data_and_the_policy_allows_nothing_else(t
 
 
 def test_a_page_of_5400_cases_stays_below_its_size():
-    content = explorer(grid_study())
+    content = explorer(StudyView.of(grid_study()))
     assert json.loads(content["header"])["rows"] == 5400
     assert sum(len(str(part).encode()) for part in content.values()) < 1_200_000
 

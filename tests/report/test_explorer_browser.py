@@ -536,7 +536,7 @@ def test_a_closed_figure_returns_to_its_place_and_keeps_the_focus(browser, place
         (folder / f"{name}.svg").write_text(SVG)
     (folder / "index.json").write_text(json.dumps([{"name": n, "caption": n, "sentence": ""} for n in names]))
     grid.to_netcdf(place / "enlarged.nc")
-    page = browser.open(write_report(place / "enlarged.nc", folder, place / "report.html"))
+    page = browser.open(write_report(StudyView.read(place / "enlarged.nc"), folder, place / "report.html"))
     for close in ("document.querySelector('figure:target .close').click()", "escape"):
         page.box("#regime_map a")
         page.run("document.querySelector('#regime_map a').click()")

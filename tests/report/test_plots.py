@@ -16,13 +16,16 @@ from synthetic_results import PAIRS, grid_study, sampled_study
 
 import trackroller as tr
 from trackroller.analysis.columns import at_surface
-from trackroller.analysis.effects import leading_factor, paired_effect
+from trackroller.analysis.effects import paired_effect
+from trackroller.analysis.ranking import ranked_factors
+from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.report.figures import style
 from trackroller.report.figures.contact import plot_case
 from trackroller.report.figures.contact_patch import case_name
 from trackroller.report.figures.contact_sections import sections, surface_stress
+from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import regime_map
 from trackroller.report.figures.panels import CLASSES, capped
@@ -48,7 +51,7 @@ SMALL = {
 
 def drawn(ds: xr.Dataset, folder) -> set[str]:
     ds.to_netcdf(folder / "study.nc")
-    return {info.name for info in draw_all(folder / "study.nc", folder / "figures")}
+    return {info.name for info in draw_all(StudyView.read(folder / "study.nc"), folder / "figures")}
 
 
 @pytest.fixture
@@ -100,7 +103,9 @@ def test_every_text_has_at_least_seven_points(make):
 
 def test_a_sample_shows_medians_and_bands_and_is_not_coloured_by_its_own_fit():
     ds = sampled_study(300)
-    view = StudyView.of(ds)
+    names = ["friction_coefficient", "roller_profile_radius", "axial_force", "motor_force", "material_pair"]
+    share = xr.DataArray([[0.1, 0.3, 0.1, 0.0, 0.2]], {"output": ["roller_peak_stress"], "factor": names})
+    view = StudyView.of(ds, xr.Dataset({"first": share}, attrs={"method": "lhs"}))
     with style.look():
         figure, info = stress_against_fit(view)
         forces, _ = forces_against_axial(view)
@@ -117,8 +122,9 @@ def test_a_sample_shows_medians_and_bands_and_is_not_coloured_by_its_own_fit():
 
 def test_materials_of_the_same_stresses_share_a_line():
     factors = SMALL | {"material_pair": [PAIRS[0], PAIRS[1], PAIRS[3]]}
+    ds = grid_study(factors)
     with style.look():
-        figure, _ = stress_against_fit(StudyView.of(grid_study(factors)))
+        figure, _ = stress_against_fit(StudyView.of(ds, analyse_dataset(ds)))
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert any(" and " in name for name in names) and len(names) == 4  # two lines, two kinds of marks
 
@@ -183,9 +189,8 @@ def test_held_factors_take_the_base_level_else_the_middle():
     assert len(rows) == 2 and "roller profile radius −7 mm" in said and "driven −30 N" in said
 
 
-def test_the_deciding_factor_explains_most_variance_and_an_effect_is_the_median_of_pairs():
+def test_an_effect_is_the_median_of_pairs():
     view = StudyView.of(grid_study(SMALL))
-    assert leading_factor(view, "roller_life_hours", view.valid) == "material_pair"
     effect = paired_effect(view, "roller_life_hours", "motor_force", view.valid)
     table = view.table[view.valid].set_index([f for f in SMALL if f != "motor_force"])
     driven, free = (table[table["motor_force"] == level]["roller_life_hours"] for level in (-30.0, 0.0))
@@ -312,3 +317,22 @@ def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force, unsave
     ds = solve_sliding(tr.Case(axial_force=150.0, motor_force=motor_force), outputs=OUTPUTS)
     assert int(ds["regime"]) == 2
     assert "contact_1_stress" not in {i.name for i in plot_case(ds, tmp_path)}
+
+
+def test_figures_rank_factors_by_the_indices_of_the_tables_else_by_the_study_file():
+    """The largest index leads, whatever the rows say; without an analysis the order of the study file counts."""
+    ds = grid_study({"material_pair": list(PAIRS[:3]), "friction_coefficient": [0.2, 0.3], "axial_force": [0.0, 30.0]})
+    sens = analyse_dataset(ds)
+    names = ("material_pair", "friction_coefficient", "axial_force")
+    sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.1, 0.2, 0.7]
+    assert list(ranked_factors(sens, "roller_life_hours", names)) == ["axial_force", "friction_coefficient", names[0]]
+    sens["main_share"].loc[{"output": "roller_peak_stress"}] = [0.2, 0.5, 0.3]
+    assert next(iter(ranked_factors(sens, "peak_stress_roller", names))) == "friction_coefficient"
+    assert (
+        list(ranked_factors(sens, "no_such_output", names)) == list(names) == list(ranked_factors(None, "slip", names))
+    )
+    assert next(iter(ranked_factors(sens, "roller_life_hours", names[:2]))) == "friction_coefficient"
+    sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.05, 0.25, 0.7]
+    with style.look():
+        plain, coloured = (by_factor(StudyView.of(ds, s))[1].caption for s in (sens, None))
+    assert "each level of axial force" in plain and "each level of material pair" in coloured

@@ -14,12 +14,14 @@ from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, sampled_study
 
 from trackroller.analysis.table import StudyView
+from trackroller.report.build import build_report
 from trackroller.report.figures.study import draw_all
 from trackroller.report.pages.study import contents, models_used, write_report
 from trackroller.report.tables.cases import regime_table, validity_table
 from trackroller.report.tables.inputs import Row
 from trackroller.report.words.cases import occurrence
 from trackroller.roller.dataset import VALIDITY_BITS
+from trackroller.study.store.folder import StudyFolder
 
 FACTORS = {
     "friction_coefficient": [0.05, 0.3, 0.4],
@@ -52,8 +54,8 @@ class _Balanced(HTMLParser):
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     grid_study(FACTORS).to_netcdf(folder / "study.nc")
-    draw_all(folder / "study.nc", folder / "figures")
-    return write_report(folder / "study.nc", folder / "figures", folder / "report.html")
+    draw_all(StudyView.read(folder / "study.nc"), folder / "figures")
+    return write_report(StudyView.read(folder / "study.nc"), folder / "figures", folder / "report.html")
 
 
 def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
@@ -124,7 +126,7 @@ def test_validity_bits_are_counted_by_mask():
 
 def test_best_designs_roll_and_are_sorted_by_life():
     ds = grid_study(FACTORS)
-    best = {row[0]: row[1:] for row in contents(ds)["decide"][0].rows}
+    best = {row[0]: row[1:] for row in contents(StudyView.of(ds))["decide"][0].rows}
     valid = (ds["regime"] == 0) & ((ds["validity"] & 15) == 0)
     expected = np.sort(ds["roller_life_hours"].where(valid).values.ravel())
     expected = expected[~np.isnan(expected)][::-1][:5]
@@ -134,8 +136,7 @@ def test_best_designs_roll_and_are_sorted_by_life():
 
 def test_a_loads_only_study_and_a_missing_figure_folder_still_give_a_report(tmp_path):
     ds = grid_study({"axial_force": [0.0, 130.0], "radial_force": [-200.0, -100.0]}, only=("normal_force",))
-    ds.to_netcdf(tmp_path / "study.nc")
-    text = write_report(tmp_path / "study.nc", tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
+    text = write_report(StudyView.of(ds), tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
     assert "<figure" not in text and "Best 1" not in text and "lift-off" in text
 
 
@@ -147,12 +148,12 @@ def test_a_study_in_which_everything_failed_shows_the_reasons(tmp_path):
             ds[name] = variable * np.nan
     ds["reason"] = xr.full_like(ds["regime"], "no convergence <x>", dtype=object)
     ds.to_netcdf(tmp_path / "study.nc")
-    text = write_report(tmp_path / "study.nc", tmp_path, tmp_path / "report.html").read_text()
+    text = write_report(StudyView.read(tmp_path / "study.nc"), tmp_path, tmp_path / "report.html").read_text()
     assert "no convergence &lt;x&gt;" in text and "Best 1" not in text
 
 
 def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
-    found = contents(sampled_study(60))
+    found = contents(StudyView.of(sampled_study(60)))
     values, spec = next(row[2:4] for row in found["factors"].rows if row[0].startswith("Friction coefficient"))
     assert spec == "uniform 0.02, 0.4" and "…" in values
     assert "design lhs" in found["facts"] and "60 cases" in found["facts"]
@@ -203,7 +204,7 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     asked["contact_model_used"][:] = 3
     assert models_used(asked) == [Row("Contact model used", "kalker_table in 40 of 40 cases")]
     assert models_used(asked.assign_attrs(contact_model="kalker_table")) == []
-    told = contents(ds)
+    told = contents(StudyView.of(ds))
     valid = dict(told["summary"])["Valid designs"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)
     assert models_used(sampled_study(40)) == []
@@ -215,3 +216,34 @@ def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
     hit[:3] = True
     said = occurrence(view, hit, "Jamming")
     assert said.kind == "cases" and said.text == "Jamming occurs in 3 of 400 designs: cases 0, 1 and 2."
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        "pages.study.report_section",
+        "pages.study.study_pareto",
+        "pages.study.target_tables",
+        "pages.study.explorer",
+        "pages.study.figures",
+        "figures.study.drawers",
+        "figures.study.study_pareto",
+        "figures.factors.coloured",
+        "figures.sensitivity._heat",
+    ],
+)
+def test_a_part_that_cannot_be_made_fails_the_command(part, tmp_path, monkeypatch):
+    """A missing section beside exit code 0 would say that all is well; the report of before stays as it was."""
+
+    def broken(*_, **__):
+        raise RuntimeError("this part cannot be made")
+
+    place = StudyFolder(tmp_path / "friction-and-fit")
+    place.root.mkdir()
+    levels = {"friction_coefficient": [0.2, 0.3], "roller_profile_radius": [-8.0, -7.0], "axial_force": [0.0, 30.0]}
+    grid_study(levels).to_netcdf(place.gathered)
+    (place.root / "report.html").write_text("the report of before")
+    monkeypatch.setattr(f"trackroller.report.{part}", broken)
+    with pytest.raises(RuntimeError, match="cannot be made"):
+        build_report(place)
+    assert (place.root / "report.html").read_text() == "the report of before"

@@ -141,7 +141,7 @@ def test_error_of_full_sliding_that_is_told_is_the_measured_one():
 def test_a_known_model_error_above_5_percent_is_told_with_its_size(middle, told):
     ds = with_error(middle)
     assert (friction_error(StudyView.of(ds)) is not None) == told
-    found = contents(ds)
+    found = contents(StudyView.of(ds))
     sure = " ".join(s.text for s in dict(found["summary"]).get("How sure", []))
     table = next(t for t in found["decide"] if t.name == "pareto")
     for text in (sure, table.note):
@@ -197,7 +197,7 @@ def test_tables_are_exported_as_csv_and_one_workbook_with_units_in_the_head(tmp_
     import zipfile
     from xml.etree import ElementTree as ET
 
-    tables = [t for t in contents(grid_study())["decide"] if t]
+    tables = [t for t in contents(StudyView.of(grid_study()))["decide"] if t]
     paths = export(tables, tmp_path)
     assert paths[-1].name == "tables.xlsx" and len(paths) == len(tables) + 1
     with paths[0].open(encoding="utf-8") as file:
@@ -230,4 +230,4 @@ def test_scattering_values_of_an_inner_outer_design_are_not_offered_as_a_choice(
     ds.attrs["study"] = ds.attrs["study"].replace("design: grid", "design: inner_outer")
     view = StudyView.of(ds)
     assert view.study["design"] == "inner_outer" and ranked(view) is None and best_design(view) is None
-    assert "best_designs" not in {t.name for t in contents(ds)["decide"]}
+    assert "best_designs" not in {t.name for t in contents(StudyView.of(ds))["decide"]}

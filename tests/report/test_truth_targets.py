@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from trackroller.analysis.sensitivity import analyse_dataset
+from trackroller.analysis.table import StudyView
 from trackroller.report.pages.study import contents
 from trackroller.report.words.targets import target, target_tables
 from trackroller.study.file.load import parse_study
@@ -123,7 +124,7 @@ def test_every_sentence_on_targets_is_true(design):
 
 def test_targets_stand_in_the_head_and_in_decide_of_the_report():
     ds, data = random_aims(3, "inner_outer")
-    found = contents(ds, analyse_dataset(ds))
+    found = contents(StudyView.of(ds, analyse_dataset(ds)))
     head = dict(found["summary"])["Best design point"]
     assert [s.kind for s in head] == ["robust", "target"]
     table = next(t for t in found["decide"] if t.name == "targets")

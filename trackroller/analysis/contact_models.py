@@ -27,12 +27,12 @@ FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi
 ENERGY = "friction_energy_per_distance"
 
 
-def pairs(ds: xr.Dataset) -> xr.Dataset | None:
+def pairs(view: StudyView) -> xr.Dataset | None:
     """Return the designs of a study by contact model; None if the study has only one model.
 
     Parameters
     ----------
-    ds : gathered study, a grid unstacked into its factors or with one dimension `case`
+    view : the study as a table
 
     Returns
     -------
@@ -43,9 +43,10 @@ def pairs(ds: xr.Dataset) -> xr.Dataset | None:
     partner), `life` (words), and as JSON `factors` (the other factors), `grid` (whether every combination exists) and
     `base`.
     """
+    ds = view.data
     if MODEL not in ds.variables or "regime" not in ds:
         return None
-    dims, view = study_dims(ds), StudyView.of(ds)
+    dims = study_dims(ds)
     table = pd.DataFrame(input_columns(ds, dims))
     models = [m for m in EXACTNESS[::-1] if m in set(table.get(MODEL, ()))]
     if len(models) < 2:

@@ -8,18 +8,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.stats import binom
 
-from trackroller.analysis.groups import classes
 from trackroller.analysis.table import MOST_LEVELS, StudyView
 
 if TYPE_CHECKING:
-    import xarray as xr
+    pass
 
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # smallest number of rows of a class whose median is compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
 COVERED = 0.8  # share of a class that must lie in levels with enough rows; otherwise pooling cannot be checked
 UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change
-ENDS = ("low", "high")
 MOST = 0.9  # share of pairs that must agree in the direction of an effect
 
 
@@ -44,13 +42,6 @@ class Effect:
     size: int
     rising: int = 0
     falling: int = 0
-
-
-def estimate(part: xr.Dataset, name: str) -> np.ndarray:
-    """Return a value of an analysis and the bounds of its interval, shape (3, ...), NaN for bounds that are missing."""
-    value = part[name].values.astype(float)
-    bounds = (part[f"{name}_{end}"].values if f"{name}_{end}" in part else np.full_like(value, np.nan) for end in ENDS)
-    return np.stack([value, *bounds])
 
 
 def median_interval(values: np.ndarray) -> tuple[float, float]:
@@ -225,24 +216,3 @@ def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) ->
     if not steps.size or not np.isfinite(np.median(steps)):
         return None
     return _of_steps(effect.factor, effect.low, effect.high, steps)
-
-
-def leading_factor(view: StudyView, column: str, rows: np.ndarray, among: tuple[str, ...] | None = None) -> str:
-    """Return the factor (of all, or `among` some) that explains most of the variance of the logarithm of an output."""
-    share = explained(view, column, rows, view.factors if among is None else among)
-    return max(share, key=lambda name: share[name]) if share else ""
-
-
-def explained(view: StudyView, column: str, rows: np.ndarray, among: tuple[str, ...]) -> dict[str, float]:
-    """Return the share of the variance of the logarithm of an output [1] that each factor explains alone."""
-    values = view.column(column)
-    good = rows & np.isfinite(values) & (values > 0)
-    logs = np.log10(values[good])
-    if logs.size < 2 or not np.ptp(logs) > 0:
-        return {}
-    share = {}
-    for name in among:
-        index, _ = classes(view, name, good, 3)
-        means = np.array([logs[index == k].mean() if (index == k).any() else 0.0 for k in range(index.max() + 1)])
-        share[name] = float(np.var(means[index]) / np.var(logs))
-    return share

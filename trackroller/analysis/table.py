@@ -29,14 +29,6 @@ MOST_LEVELS = 12  # a factor with more levels is looked at in classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
 
 
-def load_analysis(path: Path | str | None) -> xr.Dataset | None:
-    """Return the analysis in a file; None without a file, or if the file only says why there is none."""
-    if path is None or not Path(path).is_file():
-        return None
-    found = xr.load_dataset(path)
-    return found if found.data_vars else None
-
-
 @dataclass(frozen=True)
 class StudyView:
     """A study as a table.
@@ -53,6 +45,8 @@ class StudyView:
     derived : factors that other parameters follow from
     study : the study file with its defaults
     met : cases that meet the constraints of the study, shape (n,) bool; None without constraints
+    data : the gathered data set that the table was made from
+    analysis : its sensitivity analysis, None without one
     """
 
     table: pd.DataFrame
@@ -64,9 +58,20 @@ class StudyView:
     derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     study: Mapping[str, Any] = field(default_factory=dict)
     met: np.ndarray | None = None
+    data: xr.Dataset = field(default_factory=xr.Dataset)
+    analysis: xr.Dataset | None = None
 
     @classmethod
-    def of(cls, ds: xr.Dataset) -> StudyView:
+    def read(cls, study_nc: Path | str, analysis_nc: Path | str | None = None) -> StudyView:
+        """Make the table of a gathered study file and its analysis.
+
+        A missing analysis file, and one that only says why there is no analysis, count as no analysis.
+        """
+        known = xr.load_dataset(analysis_nc) if analysis_nc is not None and Path(analysis_nc).is_file() else None
+        return cls.of(xr.load_dataset(study_nc), known)
+
+    @classmethod
+    def of(cls, ds: xr.Dataset, analysis: xr.Dataset | None = None) -> StudyView:
         """Make the table of a gathered study (grid dimensions or one dimension `case`)."""
         dims = study_dims(ds)
         table = pd.DataFrame(case_columns(ds, dims))
@@ -83,8 +88,9 @@ class StudyView:
             if p in ds.variables and p in table and p not in names and table[p].nunique() > 1
         }
         flags = tuple(str(ds["validity"].attrs.get("flag_meanings", "")).split()) if "validity" in ds else ()
-        found = dict(ds.attrs), flags, derived, read_study(ds), allowed_cases(ds, tuple(dims), names)
-        return cls(table, tuple(names), base, grid, *found)
+        met = allowed_cases(ds, tuple(dims), names)
+        analysis = analysis if analysis is not None and analysis.data_vars else None
+        return cls(table, tuple(names), base, grid, dict(ds.attrs), flags, derived, read_study(ds), met, ds, analysis)
 
     def levels(self, name: str, table: pd.DataFrame | None = None) -> list[Any]:
         """List the values of a factor.

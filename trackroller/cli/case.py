@@ -144,6 +144,7 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
         folder = out or Path(f"{path.stem}-figures")
         drawn = plot_case(dataset, folder)
     else:
+        from trackroller.analysis.table import StudyView
         from trackroller.report.figures.study import draw_all
         from trackroller.study.status import find_study
         from trackroller.study.store.plan import study_folder
@@ -152,7 +153,7 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
         if not place.gathered.is_file():
             raise InputError("study", target, f"{place.gathered} is not there yet", "Run the study first.")
         folder = out or place.root / "figures"
-        drawn = draw_all(place.gathered, folder)
+        drawn = draw_all(StudyView.read(place.gathered, place.root / "sensitivity.nc"), folder)
     print(f"{len(drawn)} figures in {folder}")
 
 

@@ -6,7 +6,6 @@ The module itself can be called: `trackroller.report` is both the room of the re
 from __future__ import annotations
 
 import sys
-import tempfile
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
@@ -49,14 +48,10 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
         return write_spectrum(ds, path)
     if "study" not in ds.attrs:
         return write_sheet(ds, path)
-    from trackroller.report.build import build_report  # heavy: pandas and seaborn, for studies only
-    from trackroller.study.store.folder import StudyFolder
+    from trackroller.files import write_text
+    from trackroller.report.build import report_text  # heavy: pandas, SciPy and SALib, for studies only
 
-    with tempfile.TemporaryDirectory() as place:
-        folder = StudyFolder(Path(place))
-        ds.to_netcdf(folder.gathered)
-        text = build_report(folder).read_text(encoding="utf-8")
-    Path(path).write_text(text, encoding="utf-8")
+    write_text(Path(path), report_text(ds))
     return Path(path)
 
 

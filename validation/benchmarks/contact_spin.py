@@ -16,6 +16,7 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller.analysis import contact_models as ladder
+from trackroller.analysis.table import StudyView
 from validation.benchmarks.command import run
 from validation.contact_models.product import spread
 
@@ -58,7 +59,7 @@ def steps(limits: tuple[float, ...]) -> list[tuple[str, float, float]]:
 
 def measure(accuracy: str = "standard") -> dict[str, Any]:
     """Return the errors of full sliding: of all rollers, by mu tan(alpha) and load, and by friction and spin."""
-    paired = ladder.pairs(solved(accuracy))
+    paired = ladder.pairs(StudyView.of(solved(accuracy)))
     errors = {str(name): e.values for name, e in ladder.errors(paired).sel(contact_model="sliding").data_vars.items()}
     mu, lean, spin = (paired[n].values for n in ("friction_coefficient", "lean", "spin"))
     flat = paired["contact_angle"].values <= 60

@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.contact_models import GOOD, errors, pairs
+from trackroller.analysis.table import StudyView
 from trackroller.files import write_whole
 from trackroller.report.build import analyse_study, draw_study, report_study
 from trackroller.report.figures import style
@@ -56,7 +57,7 @@ def write_words(study_nc: str, path: Path) -> None:
     """Write the findings of the comparison, one sentence a line."""
 
     with xr.open_dataset(study_nc) as ds:
-        paired = pairs(ds)
+        paired = pairs(StudyView.of(ds))
         said = sentences(paired) if paired is not None else ["The study has only one contact model."]
     path.write_text("\n".join(said) + "\n", encoding="utf-8")
 
@@ -64,7 +65,7 @@ def write_words(study_nc: str, path: Path) -> None:
 def write_errors(study_nc: str, path: Path) -> None:
     """Write how far each cheaper model is from the exact theory: quantity by quantity, as JSON."""
     with xr.open_dataset(study_nc) as ds:
-        paired = pairs(ds)
+        paired = pairs(StudyView.of(ds))
         if paired is None:
             raise ValueError("the study must compare contact models")
         found = errors(paired)

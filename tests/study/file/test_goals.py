@@ -173,7 +173,7 @@ def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_pat
     kept = ds.isel(case=front["row"].values)
     assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
     assert set(kept["roller_material"].values) == {"PA6"}
-    told = next(t for t in contents(ds)["decide"] if t.name == "pareto")
+    told = next(t for t in contents(StudyView.of(ds))["decide"] if t.name == "pareto")
     assert told.heads[1] == "Life of the roller [h] ↑" and told.rows
     lives = [float(ds["roller_life_hours"][row[0]]) for row in told.rows]
     assert lives == sorted(lives, reverse=True)
@@ -189,7 +189,7 @@ def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
     sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
     assert "delta" in sens and "pawn" not in sens and "first" in sens
-    told = contents(ds, sens)["why"][1]
+    told = contents(StudyView.of(ds, sens))["why"][1]
     assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
     column = told.heads.index("Delta")
@@ -235,7 +235,7 @@ def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set(
     assert index["limited"] > 0.9 > 0.3 > index["free"]
     view = StudyView.of(ds)
     np.testing.assert_array_equal(view.valid, kept)
-    told = dict(contents(ds)["summary"])
+    told = dict(contents(StudyView.of(ds))["summary"])
     assert f"{kept.sum()} of the 360 meet `friction_power < 12`" in told["Valid designs"][0].text
     assert told["Best"][0].values["life"] == ds["roller_life_hours"].values[kept].max() < 1e3
 
@@ -375,7 +375,7 @@ def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
         ds.to_netcdf(tmp_path / "study.nc")
         sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
         lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
-        told = [t for t in contents(ds, sens)["decide"] if t.name.startswith(("b10", "percentiles"))]
+        told = [t for t in contents(StudyView.of(ds, sens))["decide"] if t.name.startswith(("b10", "percentiles"))]
         assert len(told[0].rows) == 2 and told[0].heads[4].startswith("Full slip") and "5" in told[0].rows[0][4]
         assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # the table of percentiles stands apart
     spread = np.hypot(0.1, np.log10(9) / 2.5631)

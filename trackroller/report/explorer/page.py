@@ -17,7 +17,7 @@ import xarray as xr
 
 from trackroller.analysis.columns import study_dims
 from trackroller.analysis.pareto import default_objectives, study_pareto
-from trackroller.analysis.table import StudyView, load_analysis
+from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.files import write_text
 from trackroller.report.explorer.pack import pack, plain_level
@@ -34,21 +34,18 @@ MODEL = "contact_model"  # a Pareto set compares designs solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
 
 
-def explorer(ds: xr.Dataset, view: StudyView | None = None, sens: xr.Dataset | None = None) -> dict[str, Any]:
+def explorer(view: StudyView) -> dict[str, Any]:
     """Return what the template of the explorer needs.
 
     Parameters
     ----------
-    ds : gathered study
-    view : the same study as a table, if it is there already
-    sens : analysis of the study, for the design points of an inner/outer design
+    view : the study as a table, with its analysis for the design points of an inner/outer design
 
     Returns
     -------
     `header` (JSON), `rows` (base64), `script` and `style` (text), `sampled` (a sentence, '' if all cases are shown)
     """
-    view = StudyView.of(ds) if view is None else view
-    columns = collect(ds, view)
+    ds, columns = view.data, collect(view.data, view)
     settings, more = solve_inputs(ds, view, {c.name: c for c in columns})
     columns += more
     state = next(c for c in columns if c.name == "state").values
@@ -70,7 +67,7 @@ def explorer(ds: xr.Dataset, view: StudyView | None = None, sens: xr.Dataset | N
         "goals": view.study.get("pareto") or default_objectives(ds),
         "constraints": list(view.study.get("constraints") or ()),
         "compared": view.held_level(MODEL) if MODEL in view.factors else "",
-        "points": design_points(ds, sens),
+        "points": design_points(ds, view.analysis),
         "columns": packed,
     }
     said = f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, all cases of rare"
@@ -173,12 +170,11 @@ def write_explorer(study_nc: Path, out: Path | None = None) -> Path:
         raise InputError(
             "study", str(study_nc), "a folder results/NAME with study.nc, or such a file", "Run the study."
         )
-    ds = xr.load_dataset(path)
-    view = StudyView.of(ds)
+    view = StudyView.read(path, path.with_name("sensitivity.nc"))
     content = {
         "name": str(view.study.get("name") or path.parent.name),
         "description": str(view.study.get("description") or ""),
-        "explorer": explorer(ds, view, load_analysis(path.with_name("sensitivity.nc"))),
+        "explorer": explorer(view),
     }
     out = path.with_name("explorer.html") if out is None else Path(out)
     write_text(out, secured(render("explorer.html.j2", content)))

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
+from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison_panels import LETTERS, Frame, frame, label_axis, line, panels, rolling
 from trackroller.report.figures.panels import capped, legend, mark_unlimited
@@ -21,16 +22,16 @@ LEAST = 6e-4  # error at the lower end of the axes [1]
 COLUMNS = 3  # at most this many factors get a panel
 
 
-def drawers(ds: xr.Dataset) -> list[partial[style.Drawn]]:
+def drawers(view: StudyView) -> list[partial[style.Drawn]]:
     """Return the functions that draw the figures of the comparison.
 
     There are none for a study with one contact model or without pairs of cases.
 
     Parameters
     ----------
-    ds : gathered study
+    view : the study as a table
     """
-    paired = pairs(ds)
+    paired = pairs(view)
     if paired is None or not paired.sizes["design"] or not measured(found := errors(paired)):
         return []
     draws = (error, error_by_factor, energy, peak_and_life)

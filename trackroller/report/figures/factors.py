@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trackroller.analysis.effects import explained
 from trackroller.analysis.groups import Groups, classes, groups
+from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
@@ -18,7 +18,7 @@ MAX_PANELS = 9
 BINS = 6
 Series = list[tuple[str, np.ndarray]]
 PANEL_LETTERS = 33  # letters of 7 pt under the axis of a panel
-MATTERS = 0.1  # of the variance: a category that explains more is never pooled
+MATTERS = 0.1  # of the largest index: a category with a larger one is never pooled
 FEWEST = 3  # a median is drawn from at least this number of rows
 
 
@@ -38,7 +38,7 @@ def by_factor(view: StudyView) -> style.Drawn:
     rows = view.valid & ~np.isnan(view.column(column))
     if rows.sum() < 2:
         return None
-    lead = _lead(view, column, rows)
+    lead = _lead(view, column)
     values, top = capped(view.column(column)[rows]) if "life" in words else (view.column(column)[rows], None)
     names = [name for name in view.factors if _drawable(view, name, rows, np.ones(rows.sum(), bool))][:MAX_PANELS]
     if not names:
@@ -76,12 +76,12 @@ def shown_output(view: StudyView) -> tuple[str, str, str] | None:
     return next((s for s in stresses if view.has(s[0])), None)
 
 
-def _lead(view: StudyView, column: str, rows: np.ndarray) -> str:
+def _lead(view: StudyView, column: str) -> str:
     """Return the factor to colour by: the deciding factor, or a category that matters, which must not be pooled."""
-    share = explained(view, column, rows, view.factors)
-    lead = max(share, key=lambda name: share[name], default=view.factors[0])
-    category = max((name for name in view.categories if name in share), key=lambda name: share[name], default=lead)
-    return category if view.ordered(lead) and share.get(category, 0.0) > MATTERS else lead
+    size = ranked_factors(view.analysis, column, view.factors)
+    lead = next(iter(size))
+    category = next((name for name in size if name in view.categories), lead)
+    return category if view.ordered(lead) and size[category] >= MATTERS * size[lead] else lead
 
 
 def _series(view: StudyView, name: str, rows: np.ndarray, colours: Series, lead: str) -> Series:

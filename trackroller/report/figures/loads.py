@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.analysis.effects import leading_factor
+from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend, running
@@ -93,7 +93,7 @@ def _hue(view: StudyView, column: str, fits: tuple[str, ...]) -> str:
     fit = add_fit(view, view.table)[0]["_fit"]
     same = [f for f in view.factors if view.numeric(f) and abs(fit.corr(view.table[f], method="spearman")) > SAME]
     others = tuple(f for f in view.factors if f not in fits and f not in same)
-    return leading_factor(view, column, view.rolling, others) or next(iter(others), "")
+    return next(iter(ranked_factors(view.analysis, column, others)), "")
 
 
 def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:

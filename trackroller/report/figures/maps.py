@@ -14,8 +14,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import LogNorm
 from matplotlib.patches import Patch, Rectangle
 
-from trackroller.analysis.effects import explained
 from trackroller.analysis.groups import BINS, classes
+from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
@@ -67,12 +67,12 @@ def _life_pair(view: StudyView) -> Pair | None:
     """Return the pair of numeric factors with several levels and the largest effect on life."""
     names = [f for f in view.factors if view.numeric(f) and len(view.levels(f)) > 1]
     column = view.life[0] if view.life else ""
-    share = explained(view, column, np.ones(len(view.table), dtype=bool), tuple(names))
+    size = ranked_factors(view.analysis, column, names)
 
     def worth(pair: Pair) -> tuple[float, ...]:
         rows, _ = view.hold(pair)
         several = float(sum(len(view.levels(f)) > 2 for f in pair))
-        return float(np.isfinite(rows[column]).any()), several, sum(share.get(f, 0.0) for f in pair)
+        return float(np.isfinite(rows[column]).any()), several, sum(size[f] for f in pair)
 
     pairs = list(itertools.combinations(names, 2))
     if not pairs:

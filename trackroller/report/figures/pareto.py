@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.effects import leading_factor
+from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
@@ -64,14 +64,13 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
 
 def _groups(front: xr.Dataset, view: StudyView | None, goal: str) -> list[tuple[str, np.ndarray]]:
     """Return the rows of the front by the factor that decides the goal; without one all stand together."""
-    column = goal if view is not None and view.has(goal) else view.life[0] if view is not None and view.life else ""
-    if view is None or not column or front.attrs.get("kind", "design") != "design":
+    if view is None or not view.factors or front.attrs.get("kind", "design") != "design":
         return []
     allowed, rows = np.zeros(len(view.table), dtype=bool), front["row"].values
     allowed[rows] = True
-    lead = leading_factor(view, column, allowed)
+    lead = next(iter(ranked_factors(view.analysis, goal, view.factors)))
     place = np.searchsorted(np.flatnonzero(allowed), rows)
-    return [(text, mask[place]) for text, mask in coloured(view, lead, allowed)] if lead else []
+    return [(text, mask[place]) for text, mask in coloured(view, lead, allowed)]
 
 
 def _trade(

@@ -13,6 +13,7 @@ import seaborn
 import xarray as xr
 from matplotlib.figure import Figure
 
+from trackroller.analysis.ranking import SIGNED, SIZED, headline, order
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, with_unit
 from trackroller.report.words import indices as words
@@ -20,13 +21,12 @@ from trackroller.study.outputs import DEFAULTS
 
 Look = dict[str, Any]
 MAX_BARS = 12
-SIZED = ("mu_star", "effect")  # indices with a unit; all others are shares of variance
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 
 
 def main_outputs(sens: xr.Dataset, count: int) -> list[str]:
     """Name the outputs most asked for that have an index."""
-    index = words.headline(sens)
+    index = headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
     usual = list(DEFAULTS)  # lives first
     return sorted(names, key=lambda n: usual.index(n) if n in usual else len(usual))[:count]
@@ -42,8 +42,8 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
 
     It answers: which factor decides, and how sure is that?
     """
-    index = words.headline(sens)
-    ranks = words.order(sens, output)[:MAX_BARS]
+    index = headline(sens)
+    ranks = order(sens, output)[:MAX_BARS]
     if not ranks:
         return None
     figure = style.new_figure(22 + 6.0 * len(ranks))
@@ -51,9 +51,9 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
     place = np.arange(len(ranks))[::-1].astype(float)
     drawn = ("ST", "S1") if index == "ST" else (index,)
     for i, name in enumerate(drawn):
-        own = {r.factor: r for r in words.order(sens, output, name)}
+        own = {r.factor: r for r in order(sens, output, name)}
         value, low, high = np.array([own[r.factor][2:] if r.factor in own else [np.nan] * 3 for r in ranks]).T
-        if name not in words.SIGNED:  # a share of variance is not drawn below 0
+        if name not in SIGNED:  # a share of variance is not drawn below 0
             value, low, high = (np.maximum(v, 0.0) for v in (value, low, high))
         at = place + (0.19 - 0.38 * i) * (len(drawn) > 1)
         look: Look = {"height": 0.38 if len(drawn) > 1 else 0.62, "hatch": "////" * i, "linewidth": 0.6}
@@ -85,9 +85,9 @@ def overview(sens: xr.Dataset) -> style.Drawn:
 
     It answers: which other result moves when a factor is changed for the sake of the life?
     """
-    index = words.headline(sens)
+    index = headline(sens)
     table = sens[index].transpose("factor", "output").values
-    table = np.abs(table) if index in words.SIGNED else np.where(np.isnan(table), np.nan, np.maximum(table, 0.0))
+    table = np.abs(table) if index in SIGNED else np.where(np.isnan(table), np.nan, np.maximum(table, 0.0))
     keep = np.isfinite(table).any(axis=0)
     if keep.sum() < 2:
         return None
@@ -124,8 +124,8 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
 
     It answers: are the samples enough, or does the ranking still change?
     """
-    index = words.headline(sens)
-    ranks = words.order(sens, output)[:5]
+    index = headline(sens)
+    ranks = order(sens, output)[:5]
     if f"{index}_course" not in sens or not ranks or sens.sizes.get("sample_size", 0) < 2:
         return None
     figure = style.new_figure(62)
@@ -170,7 +170,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
         axes.plot([0, top], [0, share * top], color="0.4", linestyle=dash, linewidth=0.8, label=label)
     whisker: Look = {"capsize": 1.5, "elinewidth": 0.7, "linestyle": "none"}
     whisker |= {"markeredgecolor": "0.15", "markeredgewidth": 0.5}
-    ranks = words.order(sens, output)
+    ranks = order(sens, output)
     for i, (rank, colour) in enumerate(zip(ranks, style.palette(len(ranks)), strict=True)):
         half = np.abs([[rank.value - rank.low], [rank.high - rank.value]])
         look = {"color": colour, "marker": style.MARKERS[i % 10], "label": capital(rank.name)}

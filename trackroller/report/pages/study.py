@@ -12,7 +12,8 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.analysis.pareto import study_pareto
-from trackroller.analysis.table import StudyView, load_analysis
+from trackroller.analysis.ranking import headline, robust_design
+from trackroller.analysis.table import StudyView
 from trackroller.files import write_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
@@ -20,7 +21,6 @@ from trackroller.report.numbers import capital, count, long_name, percent, round
 from trackroller.report.tables.cases import Table, best_table, cell, reason_table, regime_table, validity_table
 from trackroller.report.tables.indices import index_table, measure_table, pareto_table, part_tables, robust_tables
 from trackroller.report.tables.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
-from trackroller.report.words import indices as words
 from trackroller.report.words import pareto as choices
 from trackroller.report.words.comparison import report_section
 from trackroller.report.words.flags import friction_error
@@ -38,94 +38,87 @@ SECTIONS = {  # where a figure stands, by the beginning of its name
     "models": ("models-",),
 }
 _ELSEWHERE = "study materials comment title coordinates Conventions life_conventions sign_conventions design"
-_TOLD = {*_ELSEWHERE.split(), *OPTIONS}  # attributes that do not stand in the record
+_NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS}  # attributes that do not stand in the record
 
 
-def write_report(study_nc: Path, figures_dir: Path, out_html: Path, sensitivity_nc: Path | None = None) -> Path:
+def write_report(view: StudyView, figures_dir: Path, out_html: Path) -> Path:
     """Write the report of a gathered study as one self-contained HTML file, and its tables beside it.
 
     Parameters
     ----------
-    study_nc : pathlib.Path
-        Gathered study.
+    view : StudyView
+        The study as a table, with its analysis if there is one.
     figures_dir : pathlib.Path
         Folder with the figures and their `index.json`; it may be empty or missing.
     out_html : pathlib.Path
         File to write, completely or not at all. The tables are written to the folder `tables` beside it.
-    sensitivity_nc : pathlib.Path, optional
-        Analysis of the study.
 
     Returns
     -------
     pathlib.Path
         The path of the report.
     """
-    ds, sens = xr.load_dataset(study_nc), load_analysis(sensitivity_nc)
-    content = contents(ds, sens)
-    content["figures"] = figures(Path(figures_dir))
-    content["explorer"] = explorer(ds, None, sens)
-    write_text(Path(out_html), secured(render("report.html.j2", content, cell=cell)))
+    content = contents(view)
+    write_text(Path(out_html), page_text(view, content, figures_dir))
     export([t for key in PLACES for t in content[key]], Path(out_html).parent / "tables")
     return Path(out_html)
 
 
-def contents(ds: xr.Dataset, sens: xr.Dataset | None = None) -> dict[str, Any]:
-    """Return everything the template needs from the gathered study and its analysis.
+def page_text(view: StudyView, content: dict[str, Any], figures_dir: Path) -> str:
+    """Return the report as HTML from its `contents`, its figures and its explorer."""
+    shown = content | {"figures": figures(Path(figures_dir)), "explorer": explorer(view)}
+    return secured(render("report.html.j2", shown, cell=cell))
 
-    Parameters
-    ----------
-    ds : gathered study
-    sens : analysis of the study, if there is one
-    """
-    view = StudyView.of(ds)
-    attrs, settings = dict(ds.attrs), view.study
+
+def contents(view: StudyView) -> dict[str, Any]:
+    """Return everything the template needs from the study and its analysis, except figures and explorer."""
+    settings, attrs = view.study, dict(view.attrs)
     merged = {**{k: settings[k] for k in (*OPTIONS, "design") if k in settings}, **attrs}
-    models = report_section(ds)
+    models = report_section(view)
+    options = [Row(capital(long_name(k)), text) for k in OPTIONS if (text := _option_text(merged.get(k, "")))]
     return {
         "name": str(settings.get("name") or attrs.get("study_name") or "Parameter study"),
         "description": str(settings.get("description") or attrs.get("comment") or ""),
         "facts": _facts(view, merged),
-        "summary": in_short(view, sens, models.get("short", [])),
-        **sections(ds, view, sens, models),
+        "summary": in_short(view, models.get("short", [])),
+        **sections(view, models),
         "models_said": models.get("said", []),
         "factors": factor_table(view),
         "base": base_rows(view),
-        "options": [Row(capital(long_name(k)), told) for k in OPTIONS if (told := _told(merged.get(k, "")))]
-        + models_used(ds)
-        + correlation_row(view),
+        "options": options + models_used(view.data) + correlation_row(view),
         "materials": materials_table(attrs),
-        "solution": solution_facts(ds, view),
+        "solution": solution_facts(view),
         "used": defaultdict(str, merged),
-        "results": set(map(str, ds.data_vars)),
-        "record": record_rows(attrs, _TOLD),
+        "results": set(map(str, view.data.data_vars)),
+        "record": record_rows(attrs, _NO_RECORD),
         "study_text": str(attrs.get("study", "")),
     }
 
 
-def sections(ds: xr.Dataset, view: StudyView, sens: xr.Dataset | None, models: dict[str, Any]) -> dict[str, Any]:
+def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     """Return the tables of the sections "decide", "why", "where the study ends" and "contact models"."""
-    error = friction_error(view)
+    sens, error = view.analysis, friction_error(view)
     decide: list[Table | None] = [best_table(view)]
-    front = study_pareto(ds, sens)
+    front = study_pareto(view.data, sens)
     said = []
     if front is not None:
         said.append(choices.pareto(front, view).text)
         decide.append(pareto_table(front, view, error))
     decide += target_tables(sens) if sens is not None else []
     why: list[Table] = []
-    if sens is not None and words.robust_design(sens):
+    if sens is not None and robust_design(sens):
         decide += robust_tables(sens, error)
         said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
         why = [index_table(sens, error), *part_tables(sens)]
-        index, names = words.headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
+        index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
         known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
         why += [measure_table(sens, name, error) for name in known[:1]]  # a life, if the study has one, stands first
     return {
         "decide": [t for t in decide if t],
         "decide_said": said,
         "why": why,
-        "ends": [t for t in (regime_table(view), validity_table(view), reason_table(ds)) if t],
+        "ends": [t for t in (regime_table(view), validity_table(view), reason_table(view.data)) if t],
         "models": models.get("tables", []),
     }
 
@@ -139,13 +132,13 @@ def _facts(view: StudyView, merged: dict[str, Any]) -> str:
         date[:10],
         f"design {design}{f' with {count(samples)} samples' if samples else ''}",
         f"{count(len(view.table))} cases",
-        f"contact model {_told(merged['contact_model'])}" if merged.get("contact_model") else "",
-        f"accuracy {_told(merged['accuracy'])}" if merged.get("accuracy") else "",
+        f"contact model {_option_text(merged['contact_model'])}" if merged.get("contact_model") else "",
+        f"accuracy {_option_text(merged['accuracy'])}" if merged.get("accuracy") else "",
     ]
     return " · ".join(p for p in parts if p)
 
 
-def _told(value: Any) -> str:
+def _option_text(value: Any) -> str:
     """Write an option: a list, as of a factor or of terms, as its entries."""
     return ", ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
 
@@ -164,9 +157,9 @@ def models_used(ds: xr.Dataset) -> list[Row]:
     return [Row("Contact model used", f"{said} of {used.size} cases")]
 
 
-def solution_facts(ds: xr.Dataset, view: StudyView) -> list[Row]:
+def solution_facts(view: StudyView) -> list[Row]:
     """Say how well the cases are solved."""
-    rows = []
+    ds, rows = view.data, []
     if "converged" in view.table:
         done = int((view.table["converged"] == 1).sum())
         rows.append(Row("Converged cases", f"{count(done)} of {count(len(view.table))}"))

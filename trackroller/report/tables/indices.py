@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.effects import estimate
 from trackroller.analysis.labels import factor_name
+from trackroller.analysis.ranking import estimate, headline, order
 from trackroller.analysis.table import StudyView
 from trackroller.damage.sn_curve import DECADES
 from trackroller.report.numbers import capital, count, level_text, listing, percent, rounded, unit_text
 from trackroller.report.tables.cases import Table, factor_cell
-from trackroller.report.words import indices as words
 from trackroller.report.words import pareto as choices
 from trackroller.report.words.flags import FRICTION_OUTPUTS
 from trackroller.report.words.indices import HALF, INDEX_WORDS, index_text, of_output
@@ -28,10 +27,10 @@ OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 
 def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
     """List for every output the index that ranks the factors, and the rows from which it was computed."""
-    index, rows = words.headline(sens), []
+    index, rows = headline(sens), []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
-        ranks = [f"{r.name} {index_text(part.sel(factor=r.factor), index)}" for r in words.order(sens, output)[:4]]
+        ranks = [f"{r.name} {index_text(part.sel(factor=r.factor), index)}" for r in order(sens, output)[:4]]
         mark = " *" if error and output in FRICTION_OUTPUTS else ""
         rows.append([capital(of_output(sens, output)) + mark, "; ".join(ranks) or "–", str(part["note"].item())])
     heads = ["Output", f"Factors that matter most ({INDEX_WORDS[index]})", "Computed from"]
@@ -47,7 +46,7 @@ def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Tabl
     part = sens.sel(output=output)
     known = [key for key in INDEX_WORDS if key in part and np.isfinite(part[key]).any()]
     rows = []
-    for rank in words.order(sens, output):
+    for rank in order(sens, output):
         one, cells = part.sel(factor=rank.factor), []
         for key in known:
             noise = float(one.get(f"{key}_noise", np.nan))

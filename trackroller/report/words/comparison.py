@@ -10,6 +10,7 @@ import xarray as xr
 
 from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
 from trackroller.analysis.groups import DRIVE, Groups, drives, groups
+from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import capital, long_name, percent
 from trackroller.report.tables.cases import Table
 from trackroller.report.words.levels import group_texts, span
@@ -90,12 +91,12 @@ def details(paired: xr.Dataset) -> list[str]:
     return said
 
 
-def report_section(ds: xr.Dataset) -> dict[str, Any]:
+def report_section(view: StudyView) -> dict[str, Any]:
     """Return sentences and a table of errors for the report.
 
     The mapping is empty where there are no models to compare.
     """
-    paired = pairs(ds)
+    paired = pairs(view)
     if paired is None:
         return {}
     rows = []

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import HALF_WIDTH
-from trackroller.analysis.effects import estimate
+from trackroller.analysis.ranking import estimate, headline, order, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.numbers import capital, count, rounded
@@ -28,18 +28,18 @@ HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval
 FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
 
 
-def in_short(view: StudyView, sens: xr.Dataset | None, models: list[str]) -> list[Line]:
+def in_short(view: StudyView, models: list[str]) -> list[Line]:
     """Return the lines of *In short*: a head and its sentences.
 
     A line without content is left out.
 
     Parameters
     ----------
-    view : the study
-    sens : its analysis, if there is one
+    view : the study as a table, with its analysis if there is one
     models : sentences of the comparison of contact models, if the study has one
     """
-    robust = sens is not None and words.robust_design(sens)
+    sens = view.analysis
+    robust = sens is not None and robust_design(sens)
     met = [target(sens, -1)] if sens is not None and "target" in sens.dims else []  # the last one joins several
     compared = [Sentence("models", text) for text in models]
     lines = [
@@ -69,13 +69,13 @@ def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
         return []
     names = [str(n) for n in sens["output"].values]
     lives = sorted((n for n in names if "life" in n), key=lambda n: "roller" not in n)
-    if words.robust_design(sens):
+    if robust_design(sens):
         return [choices.robustness(sens, lives[0])] if lives else []
-    ranked = [n for n in [*lives, *names] if words.order(sens, n)]
+    ranked = [n for n in [*lives, *names] if order(sens, n)]
     if not ranked:
         return []
     said, more = words.decides(sens, ranked[0]), part_sentences(sens, ranked[0])
-    by_group = "group_ST" in sens and words.headline(sens) == "first"  # the design serves groups better than factors
+    by_group = "group_ST" in sens and headline(sens) == "first"  # the design serves groups better than factors
     return [*more, said] if by_group else [said, *more]
 
 

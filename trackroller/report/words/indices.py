@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import advice
-from trackroller.analysis.effects import estimate
+from trackroller.analysis.ranking import SIGNED, Rank, estimate, headline, order
 from trackroller.report.numbers import capital, count, listing, percent, plus_minus, rounded, unit_text
 from trackroller.report.words.sentence import Sentence
 
 HALF = "± is half the 95 % interval"
 SMALL = 0.02  # share of variance below which a factor is called negligible
-SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
-HEADLINES = {"saltelli": "ST", "morris": "mu_star", "grid": "main_share"}
 INDEX_WORDS = {  # in the order of the table of all measures
     "S1": "first-order index",
     "ST": "total index",
@@ -31,39 +28,6 @@ INDEX_WORDS = {  # in the order of the table of all measures
     "pawn": "PAWN",
     "prcc": "partial rank correlation",
 }
-
-
-class Rank(NamedTuple):
-    """The index of a factor with its interval, NaN without an interval; `order` sorts them."""
-
-    factor: str
-    name: str
-    value: float
-    low: float
-    high: float
-
-
-def robust_design(sens: xr.Dataset) -> bool:
-    """Say whether the analysis is that of an inner/outer design."""
-    return str(sens.attrs.get("method")) == "inner_outer"
-
-
-def headline(sens: xr.Dataset) -> str:
-    """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
-    found = HEADLINES.get(str(sens.attrs.get("method")), "effect" if "effect" in sens else "first")
-    if "first" in sens and (found not in sens or not np.isfinite(sens[found]).any()):
-        return "first"
-    return found
-
-
-def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
-    """Sort the factors of an output by falling size of an index, by default the headline; leave out NaN."""
-    index = index or headline(sens)
-    part = sens.sel(output=output)
-    names = part["factor_name"].values if "factor_name" in part.coords else part["factor"].values
-    found = zip(map(str, part["factor"].values), map(str, names), *estimate(part, index).tolist(), strict=True)
-    rows = [rank for rank in map(Rank._make, found) if np.isfinite(rank.value)]
-    return sorted(rows, key=lambda r: -abs(r.value) if index in SIGNED else -r.value)
 
 
 def index_text(part: xr.Dataset, name: str) -> str:

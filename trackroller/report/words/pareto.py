@@ -7,7 +7,7 @@ import math
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.effects import estimate
+from trackroller.analysis.ranking import estimate
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import capital, count, listing, long_name, quantity, rounded, setting, share, with_unit

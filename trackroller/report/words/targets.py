@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.effects import estimate
+from trackroller.analysis.ranking import estimate
 from trackroller.report.numbers import capital, count, level_text, long_name, number, quantity, setting
 from trackroller.report.tables.cases import Table
 from trackroller.report.words.pareto import chance, point_words
