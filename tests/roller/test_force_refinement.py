@@ -7,6 +7,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.contact.kalker import batch, correction, extrapolation
+from trackroller.contact.sliding_model import SlidingModel
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.case import to_table
 from trackroller.roller.equilibrium import solve_equilibrium
@@ -85,3 +86,17 @@ def test_weights_are_those_of_the_known_orders():
     np.testing.assert_allclose(extrapolation.weight(used, ratio, like), [1.0 / 3.0, 1.0])
     sticks = extrapolation.weight(np.array([0.7]), np.ones(1), np.array([0.5]))
     assert 1.0 / 3.0 < sticks < extrapolation.weight(np.array([0.7]), np.ones(1), np.zeros(1)) <= 1.0
+
+
+def test_an_error_of_one_contact_loads_the_other(monkeypatch):
+    """Only contact 1 errs: contact 2 gets the change of its F_N by eqs (7), (9), and contact 1 keeps its own error."""
+    own = 0.01
+    monkeypatch.setattr(SlidingModel, "force_error", lambda self, n: np.tile([own, 0.0], (n, 1)))
+    case = tr.Case(axial_force=60.0)
+    ds = tr.solve(case, "forces", contact_model="sliding")
+    normal, friction = ds.normal_force.values, case.friction_coefficient
+    used = np.hypot(ds.lateral_force, ds.driving_force).values / (friction * normal)
+    change = own * friction * normal[0] / np.sin(2.0 * np.radians(case.contact_angle))
+    assert abs(normal[1] / normal[0] - 1.0) > 0.3, "unequal contacts tell the error of one from that of the other"
+    expected = [own, np.sqrt(used[1]) * change / normal[1]]
+    np.testing.assert_allclose(ds.force_error_estimate, expected, rtol=1e-12)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import trackroller as tr
+from trackroller.contact.kalker.model import FINER_PARTS
 from trackroller.contact.kalker.subgrid import PARTS
-from trackroller.contact.models import FINER_PARTS
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.stages import ellipse_stresses
 from validation.benchmarks.samples import random_designs

@@ -196,11 +196,11 @@ def noise_of(u: np.ndarray, height: np.ndarray) -> float:
     weights = 1.0 / apart.prod(axis=1)
     weights /= np.sqrt((weights**2).sum(axis=0))
     left = np.abs(sum(weights[k] * height[k : k + count] for k in range(5)))
-    found = 1.4826 * float(np.median(left))
+    deviation = 1.4826 * float(np.median(left))
     for _ in range(3):
-        kept = left[left <= 3.0 * found]
-        found = float(np.sqrt(np.mean(kept**2))) / 0.9866 if kept.size else found
-    return SAFETY * found
+        kept = left[left <= 3.0 * deviation]
+        deviation = float(np.sqrt(np.mean(kept**2))) / 0.9866 if kept.size else deviation
+    return SAFETY * deviation
 
 
 def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float = 0.0) -> CrossSection:

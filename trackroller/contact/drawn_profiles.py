@@ -55,33 +55,35 @@ def cross_section(text: str, body: str, radius: float, alpha: float, guide_radiu
     ShapeError
         If a drawn curve does not have the inclination of the contact anywhere, or is too narrow or too wide.
     """
-    told: dict[str, Any] = _parsed(text) if text else {"arc": radius}
+    profile: dict[str, Any] = _parsed(text) if text else {"arc": radius}
     middle, equator = -guide_radius * math.sin(alpha), guide_radius * math.cos(alpha)
-    if "arc" in told:
-        shape = with_edges(arcs([told["arc"]], []), middle, equator)
-    elif "parabola" in told:
-        shape = with_edges(parabola(told["parabola"]), middle, equator)
-    elif "arcs" in told:
-        rows = told["arcs"]
+    if "arc" in profile:
+        shape = with_edges(arcs([profile["arc"]], []), middle, equator)
+    elif "parabola" in profile:
+        shape = with_edges(parabola(profile["parabola"]), middle, equator)
+    elif "arcs" in profile:
+        rows = profile["arcs"]
         shape = with_edges(arcs([r["radius"] for r in rows], [r["to"] for r in rows[:-1]]), middle, equator)
     else:
-        shape = _from_points(told, body, alpha, guide_radius, side)
-    edge: dict[str, float] = told.get("edge", {})
-    if "width" in told:
-        reach = (0.5 * told["width"] - guide_radius * math.sin(alpha)) / math.cos(alpha)
+        shape = _from_points(profile, body, alpha, guide_radius, side)
+    edge: dict[str, float] = profile.get("edge", {})
+    if "width" in profile:
+        reach = (0.5 * profile["width"] - guide_radius * math.sin(alpha)) / math.cos(alpha)
         if reach <= 0.0:
             apart = 2 * guide_radius * math.sin(alpha)
-            raise ShapeError(f"{body}.width", told["width"], f"more than {apart:.6g} mm, the distance of the contacts")
+            raise ShapeError(
+                f"{body}.width", profile["width"], f"more than {apart:.6g} mm, the distance of the contacts"
+            )
         edge = {"outer": reach}
     return with_edges(shape, -edge.get("inner", math.inf), edge.get("outer", math.inf), edge.get("chamfer", 0.0))
 
 
-def _from_points(told: dict[str, Any], body: str, alpha: float, guide_radius: float, side: int) -> CrossSection:
-    points = np.asarray(told["points"])
+def _from_points(profile: dict[str, Any], body: str, alpha: float, guide_radius: float, side: int) -> CrossSection:
+    points = np.asarray(profile["points"])
     x, z = points[:, 0], points[:, 1]
     out = -1.0 if body == "roller_profile" else 1.0
-    noise = told.get("smooth", 0.0)
-    if told["frame"] == "contact":
+    noise = profile.get("smooth", 0.0)
+    if profile["frame"] == "contact":
         wide = x[-1] - x[0]
         if not NARROWEST < wide / guide_radius < WIDEST:
             allowed = f"{NARROWEST * guide_radius:.4g} to {WIDEST * guide_radius:.4g} mm{_beside(guide_radius)}"
@@ -215,7 +217,7 @@ def gap(
     if '"parabola"' in guide + roller:
         guide = guide or json.dumps({"parabola": guide_radius})
         roller = roller or json.dumps({"parabola": roller_radius})
-    found = Gap(
+    between = Gap(
         cross_section(guide, "guide_profile", guide_radius, alpha, guide_radius, side),
         cross_section(roller, "roller_profile", roller_radius, alpha, guide_radius, side),
         alpha,
@@ -223,14 +225,14 @@ def gap(
         guide_curve_radius,
     )
     less = " Or smooth less: `smooth` is the noise in mm." if '"smooth"' in guide + roller else ""
-    _check_touch(found, "roller_profile" if roller else "guide_profile", guide_radius, less)
-    return found
+    _check_touch(between, "roller_profile" if roller else "guide_profile", guide_radius, less)
+    return between
 
 
-def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> None:
+def _check_touch(between: Gap, body: str, guide_radius: float, more: str = "") -> None:
     """Refuse bodies that overlap or touch far from the nominal contact; `more` extends the remedy."""
-    x = np.linspace(*found.limits, 801)
-    lateral = found.lateral(x)
+    x = np.linspace(*between.limits, 801)
+    lateral = between.lateral(x)
     first, depth = float(x[np.argmin(lateral)]), float(-lateral.min())
     if depth > INTERLOCK * guide_radius:
         given = f"shapes that overlap by {depth:.3g} mm, {first:.3g} mm outward"
@@ -248,8 +250,8 @@ def _check_touch(found: Gap, body: str, guide_radius: float, more: str = "") -> 
 
 def has_details(text: str) -> bool:
     """Return True if a profile in canonical JSON is more than one arc or parabola without edges."""
-    told = _parsed(text) if text else {}
-    return bool(told.keys() - {"arc", "parabola"})
+    profile = _parsed(text) if text else {}
+    return bool(profile.keys() - {"arc", "parabola"})
 
 
 def treats_sides_alike(text: str) -> bool:
@@ -260,7 +262,7 @@ def treats_sides_alike(text: str) -> bool:
     text : str
         Profile in canonical JSON; "" for the circle.
     """
-    told = _parsed(text) if text else {}
-    if told.get("frame") != "section":
+    profile = _parsed(text) if text else {}
+    if profile.get("frame") != "section":
         return True
-    return sum(p[0] <= 0 for p in told["points"]) < FEWEST
+    return sum(p[0] <= 0 for p in profile["points"]) < FEWEST

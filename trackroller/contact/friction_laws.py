@@ -196,10 +196,10 @@ def table(speed, friction) -> FrictionLaw:
 
 
 def _list(part: str, values: object, words: str) -> np.ndarray:
-    told = f"a list of numbers, {words}"
+    allowed = f"a list of numbers, {words}"
     if not isinstance(values, (list, tuple, np.ndarray)) or len(values) == 0:
-        _refuse(part, values, told)
-    return np.array([number_in(value, f"friction_law.{part}", told) for value in values])  # type: ignore[attr-defined]
+        _refuse(part, values, allowed)
+    return np.array([number_in(value, f"friction_law.{part}", allowed) for value in values])  # type: ignore[attr-defined]
 
 
 def at_rest(law: Any) -> float | None:

@@ -216,6 +216,6 @@ def integrate(first, last, patches, model, law, rule, out):
     a, b, sine, cosine, radius, shift, speed = patches
     for i in range(first, last):
         one = Patches(a[i], b[i], sine[i], cosine[i], radius[i], shift[i], speed[i])
-        found = _one_patch(one, model, law, rule)
-        out.lateral[i], out.driving[i] = found.lateral, found.driving
-        out.moment[i], out.power[i] = found.moment, found.power
+        sums = _one_patch(one, model, law, rule)
+        out.lateral[i], out.driving[i] = sums.lateral, sums.driving
+        out.moment[i], out.power[i] = sums.moment, sums.power

@@ -96,16 +96,16 @@ def _seeds(values: np.ndarray, load: GridLoad, depths: np.ndarray, count: int) -
     """Return the highest places of a scan (nz, ny, nx) that lie apart, down to the share WORTH of the highest."""
     half = np.array([*load.size, min(load.size)])
     order = np.argsort(values, axis=None)[::-1]
-    found: list[np.ndarray] = []
+    places: list[np.ndarray] = []
     best = values.reshape(-1)[order[0]]
     for flat in order:
-        if len(found) == count or values.reshape(-1)[flat] < WORTH * best:
+        if len(places) == count or values.reshape(-1)[flat] < WORTH * best:
             break
         k, j, i = np.unravel_index(flat, values.shape)
         place = np.array([load.x[i], load.y[j], depths[k]])
-        if all(np.max(np.abs(place - other) / half) > APART for other in found):
-            found.append(place)
-    return found
+        if all(np.max(np.abs(place - other) / half) > APART for other in places):
+            places.append(place)
+    return places
 
 
 def _edge_seeds(value, load: GridLoad) -> list[np.ndarray]:
@@ -165,7 +165,7 @@ def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, smallest: f
     # ridges of stress on the surface are narrow, so that the surface is scanned on the full grid
     surface, below = _planes(load, depths[:1], poisson_ratio), _planes(coarse, depths[1:], poisson_ratio)
     steps = np.array([coarse.x[1] - coarse.x[0], coarse.y[1] - coarse.y[0], 0.1 * min(load.size)])
-    found = []
+    summits = []
     for body, sign in enumerate(FRICTION_SIGNS):
 
         def value(points, grid=load, nu=poisson_ratio[body], sign=sign):
@@ -176,8 +176,8 @@ def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, smallest: f
         starts += _edge_seeds(value, load)
         heights = [float(value(seed[None])[0]) for seed in starts]
         climbs = [k for k in np.argsort(heights)[::-1] if k >= scanned or heights[k] >= WORTH * max(heights)]
-        found.append(_highest(value, [_climb(value, starts[k], 0.5 * steps, smallest) for k in climbs], coarse))
-    return Peak(*np.array(found).T)
+        summits.append(_highest(value, [_climb(value, starts[k], 0.5 * steps, smallest) for k in climbs], coarse))
+    return Peak(*np.array(summits).T)
 
 
 def _highest(value, summits: list[tuple[np.ndarray, float]], coarse: GridLoad) -> tuple[float, ...]:

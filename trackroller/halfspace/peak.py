@@ -53,10 +53,10 @@ class Peak(Rows):
         """Return n peaks that are NaN."""
         return cls(*(np.full((n, 2), np.nan) for _ in dataclasses.fields(cls)))
 
-    def put(self, rows, found: Peak) -> None:
+    def put(self, rows, peak: Peak) -> None:
         """Overwrite the rows by other peaks."""
         for field in dataclasses.fields(self):
-            getattr(self, field.name)[rows] = getattr(found, field.name)
+            getattr(self, field.name)[rows] = getattr(peak, field.name)
 
 
 def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: float) -> Peak:
@@ -119,8 +119,8 @@ def _with_ridges(patches: Patches, points: np.ndarray, values: np.ndarray, rule:
     line = ridge_points(patches.fields[worth])
     more = np.full((len(points), *line.shape[1:]), np.nan)
     more[worth] = line
-    found = patches.scan(more, rule)
-    return np.concatenate([points, np.nan_to_num(more)], axis=1), np.concatenate([values, found], axis=1)
+    at_ridges = patches.scan(more, rule)
+    return np.concatenate([points, np.nan_to_num(more)], axis=1), np.concatenate([values, at_ridges], axis=1)
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:
@@ -141,13 +141,13 @@ def _merged(fields: np.ndarray) -> np.ndarray:
     return sum(blocks) / np.maximum(inside, 1)
 
 
-def _change_by_elements(patches: Patches, found: Peak, rule: np.ndarray, fields: np.ndarray) -> np.ndarray:
+def _change_by_elements(patches: Patches, peak: Peak, rule: np.ndarray, fields: np.ndarray) -> np.ndarray:
     """Return the relative change of the peaks (n, 2) with the tractions `fields` of a coarser grid."""
     n = len(patches.rows)
     coarse = dataclasses.replace(patches, fields=np.ascontiguousarray(fields, dtype=FIELD))
     of, body = (index.ravel() for index in np.indices((n, 2)))
-    places = np.stack([found.x, found.y, found.z], axis=2).reshape(2 * n, 3)
-    return np.abs(coarse.stress(of, body, places, rule, rule).reshape(n, 2) / found.stress - 1.0)
+    places = np.stack([peak.x, peak.y, peak.z], axis=2).reshape(2 * n, 3)
+    return np.abs(coarse.stress(of, body, places, rule, rule).reshape(n, 2) / peak.stress - 1.0)
 
 
 def find_peaks(
@@ -193,11 +193,11 @@ def find_peaks(
         chosen = fields_of(fields, group)
         ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
         some = Patches(patches[group], chosen, ratios, bool(factor > 1), coarse is not None)
-        found = _search(some, rules, settings, settings.step / factor)
+        peak = _search(some, rules, settings, settings.step / factor)
         if fields is not None:
             other = _merged(chosen) if coarse is None else coarse[group]
-            found.error[:] += _change_by_elements(some, found, rules.summit, other)
-        out.put(group, found)
+            peak.error[:] += _change_by_elements(some, peak, rules.summit, other)
+        out.put(group, peak)
     out.error[:] += _hidden_error(patches, settings, out.stress, fields is None)
     for place, length in zip((out.x, out.y, out.z), lengths(patches).T, strict=True):
         place *= length[:, None]

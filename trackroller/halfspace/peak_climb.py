@@ -70,18 +70,18 @@ class Patches:
     def scan(self, u: np.ndarray, rule: np.ndarray) -> np.ndarray:
         """Return the von Mises stress (n, m, 2) in both bodies at normalised points u (n, m, 3); 0 at points of NaN."""
         of, place = np.nonzero(np.isfinite(u[..., 0]))
-        points, found = u[of, place], np.empty((2, of.size))
+        points, stress = u[of, place], np.empty((2, of.size))
         nu, signs = np.ascontiguousarray(self.poisson_ratio[of].T), np.repeat(FRICTION_SIGNS, of.size).reshape(2, -1)
 
         def work(first: int, last: int) -> None:
             some = slice(first, last)
             parts = self.parts(of[some], points[some], rule, rule)
             for body in (0, 1):
-                von_mises_of_parts(parts, nu[body, some], signs[body, some], found[body, some])
+                von_mises_of_parts(parts, nu[body, some], signs[body, some], stress[body, some])
 
         share_rows(work, of.size, 64, 1024)
         out = np.zeros((*u.shape[:2], 2))
-        out[of, place] = found.T
+        out[of, place] = stress.T
         return out
 
 

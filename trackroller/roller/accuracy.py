@@ -170,6 +170,9 @@ def accuracy_settings(
     relative to F_N for F_N, to mu F_N for F_T and F_A, to mu F_N sqrt(a b) for M_R, and to the value itself for
     friction work and peak stress. The relative error of the life is that of the peak times the exponent k of the S-N
     curve.
+
+    A number beside the presets serves those who know which error they can afford: it finds the cheapest settings for
+    this error and these outputs, which no preset does.
     """
     if isinstance(accuracy, Accuracy):
         return accuracy
@@ -268,11 +271,11 @@ def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]
     total: dict[str, Levels] = {}
     unknown: set[str] = set()
     for ladder, wanted in own.items():
-        found = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
-        if found is None:
+        rung = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
+        if rung is None:
             unknown.update(rungs[ladder][0].errors)
             continue
-        for name, levels in found.errors.items():
+        for name, levels in rung.errors.items():
             total[name] = _sum(total[name], levels) if name in total else levels
     return {name: levels for name, levels in total.items() if name not in unknown}
 

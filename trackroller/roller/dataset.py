@@ -156,8 +156,8 @@ FLAGS: dict[str, tuple[str, Sequence[str]]] = {
 def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
     """Return dimensions, values and attributes of a flag variable."""
     if name in FLAGS:
-        told, words = FLAGS[name]
-        attrs = {"long_name": told, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8)}
+        meaning, words = FLAGS[name]
+        attrs = {"long_name": meaning, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8)}
         attrs |= {"comment": COMMENTS[name]} if name in COMMENTS else {}
         return ("case",), values.astype(np.int8), attrs | {"flag_meanings": " ".join(words)}
     attrs = {

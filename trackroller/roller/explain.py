@@ -30,12 +30,12 @@ class Stage:
 
 
 def _model(options: Options) -> str:
-    told = f"contact model {options.contact_model}"
+    words = f"contact model {options.contact_model}"
     if not options.slip_terms:
-        return told
+        return words
     if options.contact_model == "sliding":
-        return told + ", whose slip is the profile's anyway"
-    return told + f"; the slip counts {' and '.join(options.slip_terms)}"
+        return words + ", whose slip is the profile's anyway"
+    return words + f"; the slip counts {' and '.join(options.slip_terms)}"
 
 
 def explain(table: CaseTable, options: Options) -> list[Stage]:
@@ -68,7 +68,7 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     sides = f"; {twins} mirror-symmetric (no axial force): one contact each" if twins else ""
     repeated = f"{n - m} cases repeat the mechanics of others" if m < n else "every case has mechanics of its own"
     every, cases, asked = (2 * n, 2 * n, "patches"), (n, n, "cases"), wanted & PEAK
-    told = [
+    stages = [
         Stage("geometry, Hertz or half-space pressure", True, m, n, "cases", repeated),
         Stage("equilibrium", True, *solved, _model(options) + sides),
         _stage("friction work", {"friction_work"}, wanted, solved, "asked for" + sides),
@@ -76,7 +76,7 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     if options.stop_if is not None:
         holds = f"{options.stop_if}: where it holds no peak is searched for"
         why = holds if asked else "no stress is asked for: nothing to stop"
-        told.append(Stage("stop condition", bool(asked), m if asked else 0, n, "cases", why))
+        stages.append(Stage("stop condition", bool(asked), m if asked else 0, n, "cases", why))
     if (asked and options.contact_model != "sliding") or "tractions" not in wanted:
         count, why = 0, "no output needs them"
         if options.contact_model == "sliding":
@@ -84,12 +84,12 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
         elif asked:
             count, why = solved[0] - bare, "the stress of stick and slip needs them"
             why += f"; {frictionless} cases without friction have none" if frictionless else ""
-        told.append(Stage("tractions on a grid", count > 0, count, 2 * n, "patches", why))
+        stages.append(Stage("tractions on a grid", count > 0, count, 2 * n, "patches", why))
     peak = "serves " + " and ".join(sorted(asked)) + sides
     peak += f"; {bare} patches without friction: one search for each ellipticity and material" if bare > 1 else ""
     peak += "; one body with the mean Poisson's ratio" if options.stress_bodies == "published" else ""
     return [
-        *told,
+        *stages,
         _stage("peak stress", PEAK, wanted, solved, peak),
         _stage("life", {"life"}, wanted, cases, "from peak stress, strength and speed of each case"),
         _stage("tractions output", {"tractions"}, wanted, every, "asked for"),

@@ -49,15 +49,15 @@ def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Datas
     residual, bits = (np.atleast_1d(ds[name].values) for name in ("residual", "validity"))
     asked = np.full(len(regime), CONTACT_MODELS.index(options.contact_model))
     used = np.atleast_1d(ds["contact_model_used"].values) if "contact_model_used" in ds else asked
-    told = np.full(len(regime), "", dtype=object)
+    reasons = np.full(len(regime), "", dtype=object)
     for i in np.flatnonzero(failed | loose).tolist():
         words = "no convergence" if failed[i] else "it rolls, but its solution misses the tolerance"
         if np.isfinite(residual[i]):  # one digit, so that cases of one kind are counted together
             words += f", residual {residual[i]:.0e}"
         case = table.take(np.array([i]))
-        told[i] = ". ".join([words, *_hints(case, options, CONTACT_MODELS[used[i]], bool(bits[i] & STEEP))])
+        reasons[i] = ". ".join([words, *_hints(case, options, CONTACT_MODELS[used[i]], bool(bits[i] & STEEP))])
     attrs = {"long_name": "why a case failed or misses its tolerance"}
-    return ds.assign(reason=(ds["regime"].dims, told if ds["regime"].dims else told[0], attrs))
+    return ds.assign(reason=(ds["regime"].dims, reasons if ds["regime"].dims else reasons[0], attrs))
 
 
 def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -> list[str]:
@@ -102,5 +102,5 @@ def _axis_ratio(case: CaseTable) -> float:
 @lru_cache(maxsize=256)
 def _goes_through_points(text: str) -> bool:
     """Return True if a profile is given by points without smoothing."""
-    told = json.loads(text) if text else {}
-    return "points" in told and not told.get("smooth")
+    profile = json.loads(text) if text else {}
+    return "points" in profile and not profile.get("smooth")

@@ -48,10 +48,10 @@ def mapping_text(name: str, value: Any) -> str:
             raise InputError(name, value, "a mapping, or one written as JSON") from None
     if not isinstance(value, Mapping):
         raise InputError(name, value, "a mapping, or not given")
-    told = (
+    mapping = (
         friction_laws.canonical(value, name) if name == "friction_law" else profiles.canonical(value, name, read_points)
     )
-    return json.dumps(told, sort_keys=True) if told else ""
+    return json.dumps(mapping, sort_keys=True) if mapping else ""
 
 
 def number(name: str, value: Any) -> float:

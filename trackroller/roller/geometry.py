@@ -125,19 +125,19 @@ def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
     full = np.broadcast_arrays(*(np.atleast_1d(np.asarray(columns[name], dtype=float)) for name in names))
     get = dict(zip(names, full, strict=True))
     with np.errstate(divide="ignore"):
-        found = contact_geometry(get)
-    for name, value, told, remedy in (
-        ("axis_distance", found.rolling_radius, *_AXIS),
-        ("roller_profile_radius", found.curvature_lateral, *_GROOVE),
-        ("guide_curve_radius", found.curvature_rolling, *_CURVE),
+        geometry = contact_geometry(get)
+    for name, value, allowed, remedy in (
+        ("axis_distance", geometry.rolling_radius, *_AXIS),
+        ("roller_profile_radius", geometry.curvature_lateral, *_GROOVE),
+        ("guide_curve_radius", geometry.curvature_rolling, *_CURVE),
     ):
         bad = np.flatnonzero(~(value > 0))
         if bad.size:
             i = bad[0]
-            groove, radius = get["guide_profile_radius"][i], found.rolling_radius[i]
-            limit = groove * np.cos(found.contact_angle[i])
+            groove, radius = get["guide_profile_radius"][i], geometry.rolling_radius[i]
+            limit = groove * np.cos(geometry.contact_angle[i])
             words = {"value": value[i], "groove": -groove, "radius": -radius, "limit": limit}
-            return InputError(name, float(get[name][i]), told.format(**words), remedy.format(**words))
+            return InputError(name, float(get[name][i]), allowed.format(**words), remedy.format(**words))
     return None
 
 

@@ -93,13 +93,13 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     return Limits((lowest, highest), (motor[0], motor[1]) if motor else (math.nan, math.nan), locking)
 
 
-def _conditions(found: xr.Dataset) -> dict[str, np.ndarray]:
+def _conditions(ds: xr.Dataset) -> dict[str, np.ndarray]:
     """Return for each searched field which cases lie on the near side of its limit."""
-    regime = found.regime.values
+    regime = ds.regime.values
     return {
         "axial_force": np.isin(regime, (ROLLING, FULL_SLIP)),
         "motor_force": regime == ROLLING,
-        "friction_coefficient": (found.validity.values & _LOCKED) == 0,
+        "friction_coefficient": (ds.validity.values & _LOCKED) == 0,
     }
 
 
@@ -112,7 +112,7 @@ def _edges(
     round solves the cases of all searches in one batch.
     """
     ranges = [(start, end) for _, start, end in searches]
-    found = [math.nan] * len(searches)
+    edges = [math.nan] * len(searches)
     going = list(range(len(searches)))
     for _ in range(ROUNDS):
         values = {i: np.linspace(*ranges[i], POINTS) for i in going}
@@ -121,10 +121,10 @@ def _edges(
             far = np.flatnonzero(~near[searches[i][0]].reshape(-1, POINTS)[row])
             if far.size and far[0]:
                 ranges[i] = (float(values[i][far[0] - 1]), float(values[i][far[0]]))
-                found[i] = ranges[i][0]
+                edges[i] = ranges[i][0]
             else:
                 going.remove(i)
-                found[i] = math.nan if far.size else math.copysign(math.inf, ranges[i][1] - ranges[i][0])
+                edges[i] = math.nan if far.size else math.copysign(math.inf, ranges[i][1] - ranges[i][0])
         if not going:
             break
-    return found
+    return edges

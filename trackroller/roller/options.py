@@ -72,8 +72,8 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
 
     def attributes(self) -> dict[str, Any]:
         """Return the attributes of a result that record the options."""
-        told = {o.name: o.attribute(getattr(self, o.name), self.contact_model) for o in OPTIONS.values()}
-        return {name: value for name, value in told.items() if value is not None}
+        values = {o.name: o.attribute(getattr(self, o.name), self.contact_model) for o in OPTIONS.values()}
+        return {name: value for name, value in values.items() if value is not None}
 
 
 def options_of_cases(cases: xr.Dataset, given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], np.ndarray]:

@@ -132,10 +132,10 @@ class Mirror:
             half = len(rows) // 2
             twin = self.symmetric[rows[half:]]
             asked = np.concatenate([np.ones(half, bool), ~twin])
-            found = law(ellipse.take(asked), slip.take(asked), friction[asked], rows[asked], fine)
+            resultants = law(ellipse.take(asked), slip.take(asked), friction[asked], rows[asked], fine)
             sides = []
             for values, sign in zip(
-                (found.lateral_force, found.driving_force, found.spin_moment), (-1, 1, -1), strict=True
+                (resultants.lateral_force, resultants.driving_force, resultants.spin_moment), (-1, 1, -1), strict=True
             ):
                 full = np.empty(len(rows))
                 full[asked] = values
@@ -154,31 +154,31 @@ class Mirror:
         n = self.symmetric.size
         return np.where((flat >= n) & self.symmetric[flat % n], flat % n, flat)
 
-    def _copies(self, good: np.ndarray, found: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _copies(self, good: np.ndarray, values: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the values (2 n, ...) with contact 1 copied to contact 2 of symmetric rollers, and mark the copies."""
-        full = np.full((good.size, *found.shape[1:]), np.nan, dtype=found.dtype if found.dtype != bool else float)
-        full[patches] = found
+        full = np.full((good.size, *values.shape[1:]), np.nan, dtype=values.dtype if values.dtype != bool else float)
+        full[patches] = values
         half = good.size // 2
         twin = np.concatenate([np.zeros(half, bool), self.symmetric & good[half:]])
         full[twin] = full[:half][self.symmetric & good[half:]]
         return full, twin
 
-    def spread(self, good: np.ndarray, found: np.ndarray, sign: float = 1.0) -> np.ndarray:
+    def spread(self, good: np.ndarray, values: np.ndarray, sign: float = 1.0) -> np.ndarray:
         """Copy the values of the solved patches `asked(good)` to all patches `good`.
 
         With `sign` = -1 mirror images get the negative value.
         """
-        full, twin = self._copies(good, found, self.asked(good))
+        full, twin = self._copies(good, values, self.asked(good))
         if sign < 0:
             full[twin] = -full[twin] + 0.0
         return full[good]
 
-    def spread_surface(self, good: np.ndarray, found: SurfaceTractions) -> SurfaceTractions:
+    def spread_surface(self, good: np.ndarray, tractions: SurfaceTractions) -> SurfaceTractions:
         """Copy the tractions of the solved patches `asked(good)` to all patches `good`; x rises in each patch."""
 
         out = {}
         for field in fields(SurfaceTractions):
-            full, twin = self._copies(good, getattr(found, field.name), self.asked(good))
+            full, twin = self._copies(good, getattr(tractions, field.name), self.asked(good))
             if field.name != "y":
                 full[twin] = full[twin][..., ::-1]
             if field.name in ("x", "shear_lateral", "slip_lateral"):

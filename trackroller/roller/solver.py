@@ -205,8 +205,8 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     rows = number = np.arange(len(table))
     if options.shortcuts and len(table) > 1:
         rows, number = requirements.distinct_mechanics(table)
-    found = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
-    block = found.take(number)
+    distinct = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
+    block = distinct.take(number)
     stages_case.finish(table, block, options)
     return block
 
@@ -292,6 +292,6 @@ def _tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     model = options.contact_model
     if cheaper and np.any(ds.contact_model_used.values == CONTACT_MODELS.index(cheaper)):
         model = cheaper
-    for name, told in error_attributes(options.expected_errors(model, constant)).items():
+    for name, errors in error_attributes(options.expected_errors(model, constant)).items():
         if name in ds:
-            ds[name].attrs.update(told)
+            ds[name].attrs.update(errors)

@@ -113,8 +113,8 @@ def _problem(
     if own.size:
         about = Creepage(creep.longitudinal[own] + spin[own] * parts.x, 0.0 * parts.x, spin[own])
         g, nu = (np.broadcast_to(v, n)[own] for v in (elastic.shear_modulus, elastic.poisson_ratio))
-        found = flexibilities(parts.a, parts.b, mu[own] * parts.load, about, g, nu)
-        flexible = np.stack([found.x[parts.of_strip], found.y[parts.of_strip]])
+        flexibility = flexibilities(parts.a, parts.b, mu[own] * parts.load, about, g, nu)
+        flexible = np.stack([flexibility.x[parts.of_strip], flexibility.y[parts.of_strip]])
     a, b = patch.semi_axis_lateral, np.array(patch.semi_axis_rolling)
     hx, hy = 2 * a / columns, 2 * b / rows
     loaded = Loaded(np.ascontiguousarray(np.nan_to_num(patch.pressure)), hx, hy, b, mu)

@@ -153,7 +153,7 @@ def march(total, strip, edge, h, area, middles, bounds, law):
 
 
 @compiled
-def write(totals, i, found):
+def write(totals, i, total):
     """Store the totals of patch i in arrays."""
-    totals.lateral[i], totals.driving[i], totals.moment[i] = found.lateral, found.driving, found.moment
-    totals.dissipation[i], totals.adhesion[i] = found.dissipation, found.adhesion
+    totals.lateral[i], totals.driving[i], totals.moment[i] = total.lateral, total.driving, total.moment
+    totals.dissipation[i], totals.adhesion[i] = total.dissipation, total.adhesion

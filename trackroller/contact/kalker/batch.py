@@ -190,16 +190,16 @@ def _solve(problem, room, traction, tolerance, limit):
 
 
 @compiled
-def _solve_patches(which, batch, functions, pressed, law, limits, found):
+def _solve_patches(which, batch, functions, pressed, law, limits, out):
     """Solve the patches `which` (m,), whose elements have the same shape; see `_solve_piece`."""
     knots, factors = law
     tolerance, limit, krylov = limits
     ny, nx = batch.height.shape[1:]
-    room, report = room_for(ny, nx, krylov), found.report
+    room, report = room_for(ny, nx, krylov), out.report
     rigid, start = np.empty((ny, nx), np.complex128), np.empty((ny, nx), np.complex128)
     for i in which:
         one = i if batch.height.shape[0] > 1 else 0
-        height, ratio, traction = batch.height[one], batch.ratio[i], found.traction[i]
+        height, ratio, traction = batch.height[one], batch.ratio[i], out.traction[i]
         _rigid_slip(batch, i, rigid)
         driver = rigid
         if batch.coupling[i] != 0.0:
@@ -211,23 +211,23 @@ def _solve_patches(which, batch, functions, pressed, law, limits, found):
         at, report.residual[i], report.steps[i], report.products[i] = _solve(problem, room, start, tolerance, limit)
         field = _Fields(reals(at[0]), reals(at[1]), reals(rigid), reals(driver), room.bound)
         sides = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i]
-        sums = _sums(field, height, batch.share[one], 1.0 / functions.own, *sides, found.stick[i])
+        sums = _sums(field, height, batch.share[one], 1.0 / functions.own, *sides, out.stick[i])
         _write_report(report, i, sums, 4.0 * sides[0] * sides[1] / (nx * ny), batch.bound[i], ratio)
         report.own_slip[i] = ratio * functions.own
-        _write_fields(found, i, field, height, ratio)
+        _write_fields(out, i, field, height, ratio)
 
 
 @compiled
-def _write_fields(found, i, field, height, ratio):
+def _write_fields(out, i, field, height, ratio):
     """Store tractions, slips and, under a friction law, factors of patch i."""
-    varies = found.factor.shape[1:] == height.shape
+    varies = out.factor.shape[1:] == height.shape
     for k in range(height.shape[0]):
         for j in range(height.shape[1]):
             for c in range(2):
-                found.traction[i, c, k, j] = field.traction[k, j, c]
-                found.slip[i, c, k, j] = ratio * field.slip[k, j, c]
+                out.traction[i, c, k, j] = field.traction[k, j, c]
+                out.slip[i, c, k, j] = ratio * field.slip[k, j, c]
             if varies and height[k, j] > 0.0:
-                found.factor[i, k, j] = field.bound[k, j] / height[k, j]
+                out.factor[i, k, j] = field.bound[k, j] / height[k, j]
 
 
 @compiled
@@ -266,7 +266,7 @@ def _pieces(batch: Batch) -> list[_Piece]:
     ]
 
 
-def _solve_piece(batch: Batch, law: FrictionLaw, control, found: Found, piece: _Piece) -> None:
+def _solve_piece(batch: Batch, law: FrictionLaw, control, out: Found, piece: _Piece) -> None:
     """Solve the patches of a piece."""
     _, ny, nx = batch.height.shape
     which, a, b, poisson_ratio = piece
@@ -276,10 +276,10 @@ def _solve_piece(batch: Batch, law: FrictionLaw, control, found: Found, piece: _
         hertz = batch.is_hertzian
         pressed = hertz_coupling_slip(a, b, ny, nx) if hertz else coupling_slip(batch.height[which[0]], hx, hy)
     limits = control.tolerance, control.steps, control.krylov
-    _solve_patches(which, batch, functions, pressed, (law.speed, law.factor), limits, found)
+    _solve_patches(which, batch, functions, pressed, (law.speed, law.factor), limits, out)
 
 
-def solve_batch(batch: Batch, law: FrictionLaw, control, found: Found) -> None:
+def solve_batch(batch: Batch, law: FrictionLaw, control, out: Found) -> None:
     """Solve all patches of a batch, one per thread at a time.
 
     Parameters
@@ -290,7 +290,7 @@ def solve_batch(batch: Batch, law: FrictionLaw, control, found: Found) -> None:
         Friction over its value at rest by slip speed.
     control : KalkerSettings
         Tolerance, Newton steps and Krylov space.
-    found : Found
+    out : Found
         Start of the iteration, overwritten by the result.
     """
 
@@ -298,12 +298,12 @@ def solve_batch(batch: Batch, law: FrictionLaw, control, found: Found) -> None:
     for i in np.flatnonzero(rest).tolist():
         rigid = np.empty(batch.height.shape[1:], complex)
         _rigid_slip(batch, i, rigid)
-        found.slip[i] = rigid.real, rigid.imag
-    found.traction[rest] = 0.0
+        out.slip[i] = rigid.real, rigid.imag
+    out.traction[rest] = 0.0
     pieces = _pieces(batch)
 
     def work(first: int, last: int) -> None:
         for piece in pieces[first:last]:
-            _solve_piece(batch, law, control, found, piece)
+            _solve_piece(batch, law, control, out, piece)
 
     share_rows(work, len(pieces), 1, 1)

@@ -136,35 +136,35 @@ class Correction:
             before = self.store.get(slot) if started else None
             start = None if before is None else before.traction
             creep = Creepage.of_slip(slip.take(pick), settings.profile_slip)
-            found = solve_patch(patch.take(pick), creep, friction[pick], self.elastic.take(own), settings, start)
-            plain, value = found.resultants.columns - found.limit[:, :3], found.resultants.columns
+            solution = solve_patch(patch.take(pick), creep, friction[pick], self.elastic.take(own), settings, start)
+            plain, value = solution.resultants.columns - solution.limit[:, :3], solution.resultants.columns
             if before is not None:
-                found = found.extrapolated_as(before)
+                solution = solution.extrapolated_as(before)
             else:
                 if forces:
-                    value, told = self._refined(patch.take(pick), slip.take(pick), friction[pick], own, found)
-                    self.error[own, side[pick]] = told / scale[pick, 0]
+                    value, force_error = self._refined(patch.take(pick), slip.take(pick), friction[pick], own, solution)
+                    self.error[own, side[pick]] = force_error / scale[pick, 0]
                 self.limit[own, side[pick]] = (value - plain) / scale[pick]
             exact[pick] = plain / scale[pick] + self.limit[own, side[pick]]
-            self.store.put(slot, found)
+            self.store.put(slot, solution)
         return exact
 
-    def _refined(self, patch: Any, slip: Slip, friction, rows: np.ndarray, found: PatchSolution):
+    def _refined(self, patch: Any, slip: Slip, friction, rows: np.ndarray, solution: PatchSolution):
         """Return the forces (m, 3) [N, N, N mm] of patches and their estimated error (m,) [N].
 
-        They are those of the solutions `found`, or of twice the elements where the error counts. In the balance an
+        They are those of the solutions `solution`, or of twice the elements where the error counts. In the balance an
         error of F_T in one contact changes F_N of the other, see `stages.mechanics.force_error`.
         """
-        value, told, side = found.resultants.columns, found.force_error.copy(), _side(slip)
+        value, force_error, side = solution.resultants.columns, solution.force_error.copy(), _side(slip)
         normal = np.empty((len(self.error), 2))
         normal[rows] = patch.normal_force[:, None]  # of mirror images only one contact is given
         normal[rows, side] = patch.normal_force
         other = 2.0 * np.abs(slip.sine * slip.cosine) * normal[rows, 1 - side]
         least = np.minimum(friction * patch.normal_force, other)
-        rough = np.flatnonzero(told > refined_above(self.settings.elements) * least)
+        rough = np.flatnonzero(force_error > refined_above(self.settings.elements) * least)
         if self.trusts_table or not rough.size:
-            return value, told
-        patch, slip, coarse = patch.take(rough), slip.take(rough), found.take(rough)
+            return value, force_error
+        patch, slip, coarse = patch.take(rough), slip.take(rough), solution.take(rough)
         mu, rows = friction[rough], rows[rough]
         finer = self.on_finer(patch, slip, mu, rows, coarse, forces=True)
         self.finer.put(_slots(rows, side[rough]), finer)
@@ -174,8 +174,8 @@ class Correction:
         creep, good = Creepage.of_slip(slip, self.settings.profile_slip), finer.converged
         _, limit = extrapolation.extrapolated(patch, creep, mu, self.elastic.take(rows), finer, plain, change)
         error = extrapolation.force_error(patch, mu, finer.stick_fraction, change, finer.traction.shape[-1])
-        value[rough[good]], told[rough[good]] = (plain + limit)[good], error[good]
-        return value, told
+        value[rough[good]], force_error[rough[good]] = (plain + limit)[good], error[good]
+        return value, force_error
 
     def on_finer(
         self, patch: Any, slip: Slip, friction, rows: np.ndarray, coarse: PatchSolution, forces: bool = False
@@ -206,13 +206,13 @@ class Correction:
 
     def works(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
         """Return the dissipation and the work of the pressures at the given slip, arrays (m,)."""
-        found = self.solution(patch, slip, friction, rows)
+        solution = self.solution(patch, slip, friction, rows)
         if self.settings.profile_slip:
-            return found.works
+            return solution.works
         r = self.law(patch, slip, friction, rows)
-        work = found.pressure_work - slip.longitudinal * r.driving_force - slip.spin * r.spin_moment
-        lost = 0.0 if self.trusts_table else found.energy_residual
-        return Works(work * (1.0 + lost), found.pressure_work)
+        work = solution.pressure_work - slip.longitudinal * r.driving_force - slip.spin * r.spin_moment
+        lost = 0.0 if self.trusts_table else solution.energy_residual
+        return Works(work * (1.0 + lost), solution.pressure_work)
 
     def forget(self, rows: np.ndarray) -> None:
         """Drop the solutions of the rollers `rows`, so that their patches are solved again when asked for."""

@@ -68,23 +68,23 @@ def extrapolated(
     creep: Creepage,
     friction,
     elastic: Elastic,
-    found: Any,
+    solution: Any,
     value: np.ndarray,
     change: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Extrapolate the resultants `value` (n, 3) of `found`; `change` (n, 3) came with the last halving of elements.
+    """Extrapolate the resultants `value` (n, 3) of `solution`; `change` (n, 3) came with the last halving of elements.
 
-    `found` is a solution or a grid of it.
+    `solution` is a solution or a grid of it.
 
     Returns
     -------
     The weight (n,) and what the resultants lack (n, 3) [N, N, N mm].
     """
     unlike = elastic.coupling / np.where(friction > 0.0, friction, np.inf)
-    share = weight(subgrid.fields_of(ellipse, found).used, _ratio(ellipse), unlike)
+    share = weight(subgrid.fields_of(ellipse, solution).used, _ratio(ellipse), unlike)
     limit = share[:, None] * change
-    if ellipse.is_hertzian and found.factor.shape[1:] == (1, 1):  # the formula was fitted to constant friction
-        limit[:, 0] += np.sign(value[:, 0]) * _unseen(ellipse, creep, friction, elastic, found.traction.shape[-1])
+    if ellipse.is_hertzian and solution.factor.shape[1:] == (1, 1):  # the formula was fitted to constant friction
+        limit[:, 0] += np.sign(value[:, 0]) * _unseen(ellipse, creep, friction, elastic, solution.traction.shape[-1])
     return share, limit
 
 

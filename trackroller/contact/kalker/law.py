@@ -55,12 +55,12 @@ class KalkerLaw:
         if fine or not patch.is_hertzian or self.settings.profile_slip or not self._constant:
             return self.solve(patch, slip, friction, rows, fine).resultants
         creep = Creepage.of_slip(slip, self.settings.profile_slip)
-        found = table.solve_patch(patch, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))
-        rest = np.flatnonzero(~found.known)
+        looked_up = table.solve_patch(patch, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))
+        rest = np.flatnonzero(~looked_up.known)
         if not rest.size:
-            return found.resultants
+            return looked_up.resultants
         other = self.solve(patch.take(rest), slip.take(rest), friction[rest], rows[rest], False).resultants
-        return found.resultants.replaced(rest, other)
+        return looked_up.resultants.replaced(rest, other)
 
     @property
     def _constant(self) -> bool:

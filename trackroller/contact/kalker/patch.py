@@ -55,9 +55,9 @@ def _level(
         share,
         ellipse.is_hertzian,
     )
-    found = batch.Found.start(start, settings.law_in_use)
-    batch.solve_batch(patches, settings.law_in_use, settings, found)
-    return found
+    solution = batch.Found.start(start, settings.law_in_use)
+    batch.solve_batch(patches, settings.law_in_use, settings, solution)
+    return solution
 
 
 def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, traction, started: bool):
@@ -66,10 +66,10 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
     first = np.zeros((n, 2, half, half))
     if started:
         first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
-    found = _level(ellipse, creep, friction, elastic, travel, settings, first)
+    solution = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
-        traction[:] = on_half_elements(ellipse, found)
-    return found
+        traction[:] = on_half_elements(ellipse, solution)
+    return solution
 
 
 def on_half_elements(ellipse: Ellipse | GridPatch, coarse: batch.Found | PatchSolution) -> np.ndarray:
@@ -83,16 +83,16 @@ def shares(ellipse, solution: PatchSolution, parts: int = subgrid.PARTS) -> tupl
     return subgrid.both_shares(subgrid.fields_of(ellipse, solution), parts)
 
 
-def _integrals(ellipse, friction, found: batch.Found, settings: KalkerSettings) -> tuple[np.ndarray, np.ndarray]:
+def _integrals(ellipse, friction, solution: batch.Found, settings: KalkerSettings) -> tuple[np.ndarray, np.ndarray]:
     """Return the resultants (n, 3) and the share of the adhesion area (n,) of one grid: see `subgrid.integrals`."""
     if not (settings.between and friction.size):
-        return found.report.forces, found.report.stick_fraction
+        return solution.report.forces, solution.report.stick_fraction
     finer = ellipse if ellipse.is_hertzian else ellipse.refined(subgrid.PARTS, subgrid.PARTS)
-    between = cells(finer, subgrid.PARTS * found.traction.shape[-1])
+    between = cells(finer, subgrid.PARTS * solution.traction.shape[-1])
     bound = (friction * ellipse.max_pressure)[:, None]
     sides = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    forces, adhesion = subgrid.integrals(subgrid.fields_of(ellipse, found), between, *sides)
-    return bound * forces, np.where(found.report.products > 0, adhesion, 0.0)  # patches without friction have none
+    forces, adhesion = subgrid.integrals(subgrid.fields_of(ellipse, solution), between, *sides)
+    return bound * forces, np.where(solution.report.products > 0, adhesion, 0.0)  # patches without friction have none
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -101,17 +101,17 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     coarse = None
     if settings.extrapolate:
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
-    found = _level(ellipse, creep, friction, elastic, travel, settings, traction)
-    fine = found.report
-    value, stick = _integrals(ellipse, friction, found, settings)
+    solution = _level(ellipse, creep, friction, elastic, travel, settings, traction)
+    fine = solution.report
+    value, stick = _integrals(ellipse, friction, solution, settings)
     limit, change = np.zeros((n, 4)), np.full((n, 3), np.nan)
-    told, pressed = np.full(n, np.nan), fine.pressure_work
+    force_error, pressed = np.full(n, np.nan), fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
         other, stick_before = _integrals(ellipse, friction, coarse, settings)
         change, report = value - other, coarse.report
-        weight, limit[:, :3] = extrapolation.extrapolated(ellipse, creep, friction, elastic, found, value, change)
-        told = extrapolation.force_error(ellipse, friction, stick, change, elements)
+        weight, limit[:, :3] = extrapolation.extrapolated(ellipse, creep, friction, elastic, solution, value, change)
+        force_error = extrapolation.force_error(ellipse, friction, stick, change, elements)
         limit[:, 3] = extrapolation.adhesion(stick, stick_before, weight, elements) - stick
         pressed = pressed + weight * (pressed - report.pressure_work)
         work = work + weight * (work - report.work - report.pressure_work)
@@ -122,17 +122,17 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
         Resultants(value[:, 0], value[:, 1], value[:, 2]),
-        found.traction,
-        found.slip,
-        found.stick,
-        found.factor,
+        solution.traction,
+        solution.slip,
+        solution.stick,
+        solution.factor,
         stick + limit[:, 3],
         work,
         pressed,
         energy,
         limit,
         np.abs(change),
-        told,
+        force_error,
         fine.own_slip,
         fine.residual,
         fine.steps,

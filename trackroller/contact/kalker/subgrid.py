@@ -105,10 +105,10 @@ class Fields(NamedTuple):
         return np.clip(finer, low, high)
 
 
-def fields_of(patch: Any, found: Any) -> Fields:
+def fields_of(patch: Any, solution: Any) -> Fields:
     """Return the fields of a solution, or of one grid of it, on n patches."""
-    height, _ = cells(patch, found.traction.shape[-1])
-    return Fields(height, found.traction, found.slip, found.own_slip, found.factor)
+    height, _ = cells(patch, solution.traction.shape[-1])
+    return Fields(height, solution.traction, solution.slip, solution.own_slip, solution.factor)
 
 
 def shares(fields: Fields, parts: int = PARTS) -> np.ndarray:

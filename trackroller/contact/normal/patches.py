@@ -112,7 +112,7 @@ class Patches:
             The m patches.
         """
         n = len(load)
-        found: dict[int, np.ndarray] = {}
+        pressures: dict[int, np.ndarray] = {}
         scalars = {name: np.full(n, np.nan) for name in SCALARS}
         for i in np.flatnonzero(np.isfinite(load) & (load > 0)).tolist():
             side, modulus = (1 if sine[i] > 0 else 2), self.modulus[rows[i]]
@@ -130,10 +130,10 @@ class Patches:
             values = (wide, box.half, node.largest * modulus, outward * middle, node.approach, node.area)
             for name, value in zip(SCALARS, (*values, node.reaches, node.residual), strict=True):
                 scalars[name][i] = value
-            found[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / box.cell(shares.size))
-        shape = next((p.shape for p in found.values()), (self.elements, self.elements))
+            pressures[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / box.cell(shares.size))
+        shape = next((p.shape for p in pressures.values()), (self.elements, self.elements))
         pressure = np.full((n, *shape), np.nan)
-        for i, mean in found.items():
+        for i, mean in pressures.items():
             pressure[i] = mean
         scalars["normal_force"] = np.where(np.isnan(scalars["semi_axis_lateral"]), np.nan, load)
         scalars["reaches_edge"] = scalars["reaches_edge"] == 1.0

@@ -120,7 +120,7 @@ def tractions(
     patch: GridPatch, slip: Slip, friction, spin_model="skewed", law=None, travel_speed=1.0
 ) -> SurfaceTractions:
     """Return pressure and mean shear of each element, and the slip at its centre; parameters as in `solve_sliding`."""
-    found = solve_sliding(patch, slip, friction, spin_model, law, travel_speed)
+    solution = solve_sliding(patch, slip, friction, spin_model, law, travel_speed)
     moved = slip_field(patch, slip, patch.x[:, None, :], patch.y[:, :, None], spin_model)
-    shear = found.shear_lateral, found.shear_rolling
+    shear = solution.shear_lateral, solution.shear_rolling
     return SurfaceTractions.of_sliding(patch.x, patch.y, patch.pressure, shear, moved)

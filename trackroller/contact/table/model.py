@@ -54,13 +54,13 @@ class TableModel(ContactModel):
 
     def law(self, patch: Any, slip: Slip, friction, rows, fine: bool) -> Resultants:
         """Return the resultants on the roller, arrays (m,)."""
-        found = self._table(patch, slip, friction, rows)
-        rest = np.flatnonzero(~found.known)
+        looked_up = self._table(patch, slip, friction, rows)
+        rest = np.flatnonzero(~looked_up.known)
         if not rest.size:
-            return found.resultants
+            return looked_up.resultants
         self._beyond[rows[rest]] = True
         other = self.exact.law(patch.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
-        return found.resultants.replaced(rest, other)
+        return looked_up.resultants.replaced(rest, other)
 
     def surface(self, patch: Any, slip: Slip, friction, rows) -> SurfaceTractions:
         """Return the tractions of the exact solver on a grid over each patch."""
@@ -72,8 +72,8 @@ class TableModel(ContactModel):
 
     def stick(self, patch: Any, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""
-        found = self._table(patch, slip, friction, rows)
-        share, rest = np.where(friction > 0.0, found.stick_fraction, 0.0), np.flatnonzero(~found.known)
+        looked_up = self._table(patch, slip, friction, rows)
+        share, rest = np.where(friction > 0.0, looked_up.stick_fraction, 0.0), np.flatnonzero(~looked_up.known)
         if rest.size:
             share[rest] = self.exact.stick(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
         return share
@@ -83,9 +83,9 @@ class TableModel(ContactModel):
 
         The table does not hold the work of the pressures, so the exact solver gives both on unlike materials.
         """
-        found = self._table(patch, slip, friction, rows)
-        work, pressed = found.friction_energy_per_distance, np.zeros(len(rows))
-        rest = np.flatnonzero(~found.known | (self.given.elastic.coupling[rows] != 0.0))
+        looked_up = self._table(patch, slip, friction, rows)
+        work, pressed = looked_up.friction_energy_per_distance, np.zeros(len(rows))
+        rest = np.flatnonzero(~looked_up.known | (self.given.elastic.coupling[rows] != 0.0))
         if rest.size:
             other = self.exact.power(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
             work[rest], pressed[rest] = other.dissipated, other.by_pressure

@@ -29,14 +29,14 @@ def follow_friction(roller: Roller, bounds: Bounds) -> tuple[Solution, np.ndarra
 
     Returns
     -------
-    found : Solution
+    solution : Solution
         Solution at the given friction; the residual is inf where the branch ended before.
     lifted : numpy.ndarray of bool, shape (m,)
         True for rollers that lift off.
     """
     loads, law, rows = roller.loads, roller.law, roller.rows
     m = rows.size
-    found = Solution(np.full(m, np.inf), np.zeros(m), np.full((2, m), np.nan), np.full((3, 2, m), np.nan))
+    solution = Solution(np.full(m, np.inf), np.zeros(m), np.full((2, m), np.nan), np.full((3, 2, m), np.nan))
     lifted, lost, answered, shed, grip = *np.zeros((4, m), bool), np.zeros(m)
     scale = np.ones_like(loads.friction)
     tangent = np.tan(loads.contact_angle[rows])
@@ -49,24 +49,24 @@ def follow_friction(roller: Roller, bounds: Bounds) -> tuple[Solution, np.ndarra
         eased = replace(loads, friction=loads.friction * scale, motor_force=loads.motor_force * scale)
         part = Roller(eased, law, rows[go])
         if k == 0:
-            found.w[:], found.normal[:] = bracketed(part, bounds.copy(), fine=True, sweeps=60, tolerance=1e-12)
+            solution.w[:], solution.normal[:] = bracketed(part, bounds.copy(), fine=True, sweeps=60, tolerance=1e-12)
         # to the last digit: small differences grow along a branch that nearly locks
-        new = newton_polish(part, found.w[go], found.normal[:, go], bounds.take(go))
-        found.residual[go], found.forces[:, :, go] = new.residual, new.forces
+        new = newton_polish(part, solution.w[go], solution.normal[:, go], bounds.take(go))
+        solution.residual[go], solution.forces[:, :, go] = new.residual, new.forces
         fine = new.residual <= FOLLOWED
         lost[go], answered[go] = lost[go] | ~fine, answered[go] | np.isfinite(new.residual)
-        shrunk = np.any(found.normal[:, go] < 0.15 * part.load, axis=0)
+        shrunk = np.any(solution.normal[:, go] < 0.15 * part.load, axis=0)
         lifted[go] = np.where(fine, np.any(new.normal <= LIFTED * part.load, axis=0), shrunk)
         on = go[fine]
-        found.w[on], found.normal[:, on] = new.w[fine], new.normal[:, fine]
+        solution.w[on], solution.normal[:, on] = new.w[fine], new.normal[:, fine]
         with np.errstate(invalid="ignore"):
-            grip[on] = np.max(np.abs(found.forces[0][:, on] / found.normal[:, on]), axis=0) / tangent[on]
+            grip[on] = np.max(np.abs(solution.forces[0][:, on] / solution.normal[:, on]), axis=0) / tangent[on]
         # a branch that ends where friction nearly carries the lateral load has lost a contact
-        weak = (grip > 0.5) | np.any(found.normal < 0.2 * roller.load, axis=0)
+        weak = (grip > 0.5) | np.any(solution.normal < 0.2 * roller.load, axis=0)
         shed = lost & weak & (roller.axial_force != 0)
-    found.residual[lost] = np.inf
-    lifted |= np.where(lost, shed, ~roller.wedged(found.normal, found.forces))
-    return found, lifted & answered  # rollers for which the contact law gave no forces at all did not show lift-off
+    solution.residual[lost] = np.inf
+    lifted |= np.where(lost, shed, ~roller.wedged(solution.normal, solution.forces))
+    return solution, lifted & answered  # rollers for which the contact law gave no forces at all did not show lift-off
 
 
 def self_locking(roller: Roller, bounds: Bounds) -> np.ndarray:

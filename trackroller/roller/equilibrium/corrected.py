@@ -36,39 +36,39 @@ def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Eq
 
     Returns
     -------
-    found : Equilibrium
+    balance : Equilibrium
         The equilibrium.
     rows : numpy.ndarray of int, shape (m,)
         Rollers whose last correction was larger than `SETTLED`, which is their residual then; rollers that a
         correction has stopped rolling; and rollers for which the cheap law has no balance.
     """
-    found = solve_equilibrium(loads, law)
-    rows = _rolling(found, loads, np.arange(loads.friction.size))
-    rolled = (found.regime == ROLLING) | (found.regime == FAILED)
+    balance = solve_equilibrium(loads, law)
+    rows = _rolling(balance, loads, np.arange(loads.friction.size))
+    rolled = (balance.regime == ROLLING) | (balance.regime == FAILED)
     for _ in range(ROUNDS):
         if not rows.size:
             break
-        change = correct(rows, found)
+        change = correct(rows, balance)
         moved = rows[~(change == 0.0)]
         if moved.size:
-            found = balance_again(loads, law, moved, found)
+            balance = balance_again(loads, law, moved, balance)
         open_ = ~(change <= SETTLED)
-        found.residual[rows[open_]], found.converged[rows[open_]] = change[open_], False
-        rows = _rolling(found, loads, rows[open_])
+        balance.residual[rows[open_]], balance.converged[rows[open_]] = change[open_], False
+        rows = _rolling(balance, loads, rows[open_])
     # the corrections hold near the slip where they were made, so that they do not show a change of regime
-    lost = np.flatnonzero(rolled & (found.regime != ROLLING) & (loads.friction > 0.0))
-    return found, np.union1d(rows, lost)
+    lost = np.flatnonzero(rolled & (balance.regime != ROLLING) & (loads.friction > 0.0))
+    return balance, np.union1d(rows, lost)
 
 
-def _rolling(found: Equilibrium, loads: Loads, rows: np.ndarray) -> np.ndarray:
-    return rows[(found.regime[rows] == ROLLING) & (loads.friction[rows] > 0.0)]
+def _rolling(balance: Equilibrium, loads: Loads, rows: np.ndarray) -> np.ndarray:
+    return rows[(balance.regime[rows] == ROLLING) & (loads.friction[rows] > 0.0)]
 
 
-def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, found: Equilibrium) -> Equilibrium:
-    """Return `found` with the rollers `rows` balanced again; the search starts from their last balance."""
+def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, balance: Equilibrium) -> Equilibrium:
+    """Return `balance` with the rollers `rows` balanced again; the search starts from their last balance."""
     roller = Roller(loads, law, rows)
     bounds = Bounds(roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP))
-    near = newton_polish(roller, roller.w_of(found.shift[rows]), found.normal_force[rows].T.copy(), bounds)
+    near = newton_polish(roller, roller.w_of(balance.shift[rows]), balance.normal_force[rows].T.copy(), bounds)
     with np.errstate(invalid="ignore"):
         good = (near.residual <= loads.converged) & ~roller.lifts(near.normal)
         good &= roller.wedged(near.normal, near.forces)
@@ -81,9 +81,9 @@ def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, found: Equili
         near.normal.T,
         Resultants(*near.forces.transpose(0, 2, 1)),
     )
-    found = merged(found, rows[good], again, np.flatnonzero(good))
+    balance = merged(balance, rows[good], again, np.flatnonzero(good))
     lost = rows[~good]
-    return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size)) if lost.size else found
+    return merged(balance, lost, solve_some(loads, law, lost), np.arange(lost.size)) if lost.size else balance
 
 
 def solve_some(loads: Loads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
@@ -96,8 +96,8 @@ def solve_some(loads: Loads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
     return solve_equilibrium(replace(loads, shape=loads.shape.take(rows), **arrays), numbered)
 
 
-def merged(found: Equilibrium, rows: np.ndarray, other: Equilibrium, places: np.ndarray) -> Equilibrium:
-    """Return `found` with the rollers `rows` replaced by the rollers `places` of `other`."""
+def merged(balance: Equilibrium, rows: np.ndarray, other: Equilibrium, places: np.ndarray) -> Equilibrium:
+    """Return `balance` with the rollers `rows` replaced by the rollers `places` of `other`."""
 
     def put(old: np.ndarray, new: np.ndarray) -> np.ndarray:
         out = old.copy()
@@ -105,6 +105,6 @@ def merged(found: Equilibrium, rows: np.ndarray, other: Equilibrium, places: np.
         return out
 
     names = [f.name for f in fields(Equilibrium) if f.name != "forces"]
-    values = {name: put(getattr(found, name), getattr(other, name)) for name in names}
-    parts = (put(getattr(found.forces, f.name), getattr(other.forces, f.name)) for f in fields(Resultants))
+    values = {name: put(getattr(balance, name), getattr(other, name)) for name in names}
+    parts = (put(getattr(balance.forces, f.name), getattr(other.forces, f.name)) for f in fields(Resultants))
     return Equilibrium(**values, forces=Resultants(*parts))

@@ -62,9 +62,9 @@ def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bo
         t = excess(w[open_], open_)
         higher = t > best[open_]
         best[open_[higher]], place[open_[higher]] = t[higher], k
-        found = open_[(t >= 0) & (k > 0)]
-        _narrow(low, high, way, found, points[k - 1, found], w[found], at_rest=k == 1)
-        open_ = np.setdiff1d(open_, found)
+        balanced = open_[(t >= 0) & (k > 0)]
+        _narrow(low, high, way, balanced, points[k - 1, balanced], w[balanced], at_rest=k == 1)
+        open_ = np.setdiff1d(open_, balanced)
         if open_.size == 0:
             return Bounds(low, high), beyond, beyond.copy()
     summit = np.stack([points[np.clip(place[open_] + step, 1, POINTS + 1), open_] for step in (-1, 0, 1)])
@@ -84,7 +84,7 @@ def balance_again(roller: Roller, whole: Bounds) -> tuple[Solution, Bounds, np.n
 
     Returns
     -------
-    found : Solution
+    solution : Solution
         The balances.
     bounds : Bounds
         Bounds from zero slip to beyond the balance.
@@ -96,8 +96,8 @@ def balance_again(roller: Roller, whole: Bounds) -> tuple[Solution, Bounds, np.n
     # the search used the normal forces of the step before, so the balance may lie slightly outside its bounds
     room = 0.5 * (high - low)
     wider = Bounds(np.maximum(low - room, whole.low), np.minimum(high + room, whole.high))
-    found = newton_polish(roller, w, normal, wider)
-    return found, Bounds(np.minimum(wider.low, 0.0), np.maximum(wider.high, 0.0)), beyond
+    solution = newton_polish(roller, w, normal, wider)
+    return solution, Bounds(np.minimum(wider.low, 0.0), np.maximum(wider.high, 0.0)), beyond
 
 
 def _narrow(low, high, way, rows, before, after, at_rest: bool) -> None:

@@ -45,15 +45,15 @@ class Solution:
         """Return the solutions `rows`."""
         return Solution(self.residual[rows], self.w[rows], self.normal[:, rows], self.forces[:, :, rows])
 
-    def put(self, rows: np.ndarray, found: Solution) -> None:
+    def put(self, rows: np.ndarray, other: Solution) -> None:
         """Overwrite the solutions `rows`."""
-        self.residual[rows], self.w[rows] = found.residual, found.w
-        self.normal[:, rows], self.forces[:, :, rows] = found.normal, found.forces
+        self.residual[rows], self.w[rows] = other.residual, other.w
+        self.normal[:, rows], self.forces[:, :, rows] = other.normal, other.forces
 
-    def put_better(self, rows: np.ndarray, found: Solution, converged: float) -> None:
+    def put_better(self, rows: np.ndarray, other: Solution, converged: float) -> None:
         """Overwrite solutions by those with a smaller residual or with a residual up to `converged`."""
-        take = ~((found.residual > self.residual[rows]) & (found.residual > converged))
-        self.put(rows[take], found.take(take))
+        take = ~((other.residual > self.residual[rows]) & (other.residual > converged))
+        self.put(rows[take], other.take(take))
 
 
 def bracketed(
@@ -247,7 +247,7 @@ def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(x), x, np.nan)
 
 
-def digits_of_forces(roller: Roller, found: Solution) -> np.ndarray:
+def digits_of_forces(roller: Roller, solution: Solution) -> np.ndarray:
     """Return the uncertainty of the transmitted force over the largest friction force, (m,).
 
     It is computed for rollers smaller than `SMALL` of their patch and is 0 for the others. On such small rollers the
@@ -255,9 +255,9 @@ def digits_of_forces(roller: Roller, found: Solution) -> np.ndarray:
     does not bound the error of the force. The error is dF_A/dtorque times the imbalance or its rounding error; the
     derivative is taken over two steps of the slip, a short one and the shortest one.
     """
-    w, normal, f = found.w, found.normal, found.forces
+    w, normal, f = solution.w, solution.normal, solution.forces
     size = np.hypot(roller.shape.lateral, roller.shape.rolling) * np.cbrt(np.max(normal, axis=0))
-    small = np.flatnonzero((roller.radius < SMALL * size) & np.isfinite(found.residual))
+    small = np.flatnonzero((roller.radius < SMALL * size) & np.isfinite(solution.residual))
     unsure = np.zeros(w.size)
     if small.size == 0:
         return unsure

@@ -139,27 +139,27 @@ def _solve_rolling(loads: Loads, law: ContactLaw, rows: np.ndarray, answer: _Ans
     if go.size == 0:
         return rows
     roller, bounds = Roller(eased, law, rows[go]), bounds.take(go)
-    found, slides = _balance(roller, bounds, whole.take(go), unsure[go])
+    solution, slides = _balance(roller, bounds, whole.take(go), unsure[go])
     beyond[go] = slides
-    lift = _settle_branch(roller, found, bounds, slides)
-    _record(answer, roller, found, bounds, lift=lift, slides=slides, rubs=loads.friction[rows[go]] > 0)
+    lift = _settle_branch(roller, solution, bounds, slides)
+    _record(answer, roller, solution, bounds, lift=lift, slides=slides, rubs=loads.friction[rows[go]] > 0)
     return rows[beyond]
 
 
-def _record(answer: _Answer, roller: Roller, found: Solution, bounds: Bounds, *, lift, slides, rubs) -> None:
+def _record(answer: _Answer, roller: Roller, solution: Solution, bounds: Bounds, *, lift, slides, rubs) -> None:
     """Write regime, forces and residual of rolling candidates; `rubs` marks rollers with friction, (m,)."""
     rows = roller.rows
-    solved = found.residual <= (SOLVED_FALLING if roller.loads.falling else SOLVED)
+    solved = solution.residual <= (SOLVED_FALLING if roller.loads.falling else SOLVED)
     # a roller without a solution has lifted off if it does so without friction
     lift |= ~solved & ~slides & np.any(roller.without_friction() <= 0, axis=0)
     answer.regime[rows] = np.where(lift, LIFT_OFF, np.where(solved, ROLLING, FAILED))
-    answer.jamming[rows] = roller.grips(found.normal, found.forces) & rubs & ~slides
+    answer.jamming[rows] = roller.grips(solution.normal, solution.forces) & rubs & ~slides
     up = np.flatnonzero(lift & rubs)
     if up.size:
         answer.jamming[rows[up]] = self_locking(Roller(roller.loads, roller.law, rows[up]), bounds.take(up))
-    answer.residual[rows] = np.fmax(found.residual, digits_of_forces(roller, found))
-    answer.shift[rows], answer.normal[:, rows] = roller.shift(found.w), found.normal
-    answer.forces[:, :, rows] = np.where(rubs, found.forces, 0.0)
+    answer.residual[rows] = np.fmax(solution.residual, digits_of_forces(roller, solution))
+    answer.shift[rows], answer.normal[:, rows] = roller.shift(solution.w), solution.normal
+    answer.forces[:, :, rows] = np.where(rubs, solution.forces, 0.0)
 
 
 def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, np.ndarray]:
@@ -193,40 +193,40 @@ def _balance(roller: Roller, bounds: Bounds, whole: Bounds, unsure: np.ndarray) 
     """
     loads, law, rows = roller.loads, roller.law, roller.rows
     w, n = bracketed(roller, bounds.copy(), fine=False, sweeps=25, tolerance=1e-3)
-    found = newton_polish(roller, w, n, bounds, settled(roller))
+    solution = newton_polish(roller, w, n, bounds, settled(roller))
     slides = np.zeros(rows.size, bool)
-    bad = np.flatnonzero(~(found.residual <= loads.converged) | unsure)
+    bad = np.flatnonzero(~(solution.residual <= loads.converged) | unsure)
     if bad.size and loads.falling:
         again, ends, none = balance_again(Roller(loads, law, rows[bad]), whole.take(bad))
         bounds.low[bad], bounds.high[bad] = ends
-        found.residual[bad[unsure[bad] | none]] = np.inf
-        found.put_better(bad, again, loads.converged)
+        solution.residual[bad[unsure[bad] | none]] = np.inf
+        solution.put_better(bad, again, loads.converged)
         slides[bad[none]] = True
     elif bad.size:  # slow, but it finds every root
         part, ends = Roller(loads, law, rows[bad]), bounds.take(bad)
         w, n = bracketed(part, ends.copy(), fine=True, sweeps=80, tolerance=1e-15)
-        found.put(bad, newton_polish(part, w, n, ends, settled(part)))
-    return found, slides
+        solution.put(bad, newton_polish(part, w, n, ends, settled(part)))
+    return solution, slides
 
 
-def _settle_branch(roller: Roller, found: Solution, bounds: Bounds, slides: np.ndarray) -> np.ndarray:
+def _settle_branch(roller: Roller, solution: Solution, bounds: Bounds, slides: np.ndarray) -> np.ndarray:
     """Replace failed solutions near self-locking by the branch that loading reaches; return True for lift-off, (m,)."""
     loads = roller.loads
-    lift = roller.lifts(found.normal) & ~slides
-    wedged = roller.wedged(found.normal, found.forces)
-    bad = np.flatnonzero(~((found.residual <= loads.converged) & wedged) & ~lift & ~slides)
+    lift = roller.lifts(solution.normal) & ~slides
+    wedged = roller.wedged(solution.normal, solution.forces)
+    bad = np.flatnonzero(~((solution.residual <= loads.converged) & wedged) & ~lift & ~slides)
     if loads.falling:
         # Far from self-locking there is one branch only. A residual inside the jump of a falling friction law counts
         # as solved.
         near = roller.friction >= 0.5 * np.tan(loads.contact_angle[roller.rows])
-        bad = bad[near[bad] & ~((found.residual[bad] <= SOLVED_FALLING) & wedged[bad])]
+        bad = bad[near[bad] & ~((solution.residual[bad] <= SOLVED_FALLING) & wedged[bad])]
     if bad.size:
         again, lift[bad] = follow_friction(Roller(loads, roller.law, roller.rows[bad]), bounds.take(bad))
         take = np.ones(bad.size, bool)
         if loads.falling:
-            best = found.residual[bad]
+            best = solution.residual[bad]
             take = ~(again.residual > np.where(best > loads.converged, best, np.inf))
-        found.put(bad[take], again.take(take))
+        solution.put(bad[take], again.take(take))
     return lift
 
 

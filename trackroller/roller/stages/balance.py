@@ -27,11 +27,11 @@ def balance(scene: Scene) -> eq.Equilibrium:
     def law(patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
         return correction.law(patch, scene.kinematics(slip, rows), friction, rows, fine)
 
-    def correct(rows: np.ndarray, found: eq.Equilibrium) -> np.ndarray:
+    def correct(rows: np.ndarray, balanced: eq.Equilibrium) -> np.ndarray:
         wanted = np.zeros(scene.n, bool)
         wanted[rows] = True
         asked = np.flatnonzero(scene.mirror.asked(np.tile(wanted, 2)))
-        patch, slip = scene.contacts(found)
+        patch, slip = scene.contacts(balanced)
         number = asked % scene.n
         change = correction.solve(patch.take(asked), slip.take(asked), scene.loads.friction[number], number)
         largest = np.zeros(scene.n)
@@ -39,10 +39,10 @@ def balance(scene: Scene) -> eq.Equilibrium:
         return largest[rows]
 
     loads = replace(scene.loads, difference_step=correction.difference_step, converged=correction.residual)
-    found, unsettled = solve_corrected(loads, scene.mirror.law(law), correct)
+    balanced, unsettled = solve_corrected(loads, scene.mirror.law(law), correct)
     if unsettled.size:
         correction.forget(unsettled)
         own = solve_some(scene.loads, scene.mirror.law(scene.law), unsettled)
-        solved = np.flatnonzero((own.regime != eq.FAILED) | (found.regime[unsettled] != eq.ROLLING))
-        found = merged(found, unsettled[solved], own, solved)
-    return found
+        solved = np.flatnonzero((own.regime != eq.FAILED) | (balanced.regime[unsettled] != eq.ROLLING))
+        balanced = merged(balanced, unsettled[solved], own, solved)
+    return balanced

@@ -75,10 +75,10 @@ class EllipseStresses(PatchStresses):
         slides = results.slides_along[own] != 0
         patch, slip, friction, rows = results.of(own)
         slip = replace(slip, shift=np.where(slides, 0.0, slip.shift))
-        found = ask(patch, slip, np.where(slides, 0.0, friction), rows)
-        for part in () if found is None else found[:2]:
+        shares = ask(patch, slip, np.where(slides, 0.0, friction), rows)
+        for part in () if shares is None else shares[:2]:
             _mirrored(part, own != flat)
-        return found
+        return shares
 
     def fields(self, flat: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
         """Return the traction over its bound on grids over the existing patches `flat` (m,), and on coarser grids.
@@ -88,12 +88,12 @@ class EllipseStresses(PatchStresses):
         results = self.results
         if not self._gridded:
             return None, None
-        found = self._shares(flat, results.scene.model.shares)
-        if found is None:
+        shares = self._shares(flat, results.scene.model.shares)
+        if shares is None:
             if results.share is None:
                 results.share = surface_tractions(results).shares(results.friction[results.good])
             return results.share[np.cumsum(results.good)[flat] - 1], None
-        return found
+        return shares
 
     def bounds(self, wanted: np.ndarray) -> np.ndarray:
         """Return the largest of a few points of each patch, (m, 2) [MPa]."""
@@ -135,10 +135,10 @@ class EllipseStresses(PatchStresses):
             settings = replace(settings, **FINER_SEARCH)
         for piece in _pieces(rough.size, FINER_PIECE):
             rows = rough[piece]
-            found = self._shares(flat[rows], results.scene.model.finer_shares)
-            if found is None:
+            shares = self._shares(flat[rows], results.scene.model.finer_shares)
+            if shares is None:
                 break
-            fields, converged = [_mirrored(part, second[rows]) for part in found[:2]], found[2]
+            fields, converged = [_mirrored(part, second[rows]) for part in shares[:2]], shares[2]
             finer = find_peaks(patches[rows], ratios[rows], settings, *fields)
             # the change of the stress at one place can vanish by chance
             finer.error[:] = np.maximum(finer.error, limit)

@@ -95,20 +95,20 @@ def force_error(results: Results, options: Options) -> None:
     change is largest in a contact near lift-off.
     """
     scene, v = results.scene, results.values
-    found = scene.model.force_error(scene.n)
+    error = scene.model.force_error(scene.n)
     twins = scene.mirror.symmetric
-    found[twins] = np.fmax(found[twins, :1], found[twins, 1:])
+    error[twins] = np.fmax(error[twins, :1], error[twins, 1:])
     measured = options.expected_errors(scene.model.name, not scene.loads.falling).get("friction_force")
     if measured is not None:
-        found = np.where(np.isnan(found), max(measured.bound, measured.p99), found)
+        error = np.where(np.isnan(error), max(measured.bound, measured.p99), error)
     capacity = scene.loads.friction[:, None] * v["normal_force"]
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
-        load = (found * capacity)[:, ::-1] / (2.0 * scene.loads.sine * scene.loads.cosine)[:, None]
-        found = found + np.sqrt(used) * load / v["normal_force"]
+        load = (error * capacity)[:, ::-1] / (2.0 * scene.loads.sine * scene.loads.cosine)[:, None]
+        error = error + np.sqrt(used) * load / v["normal_force"]
     known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
-    found = np.where(known[:, None], 0.0, found)
-    v["force_error_estimate"] = np.where(np.isfinite(v["lateral_force"]), found, np.nan)
+    error = np.where(known[:, None], 0.0, error)
+    v["force_error_estimate"] = np.where(np.isfinite(v["lateral_force"]), error, np.nan)
 
 
 def contact(results: Results, options: Options) -> None:

@@ -55,14 +55,14 @@ def peak_stress(results: Results, options: Options) -> None:
     mirror = results.scene.mirror
     asked = mirror.asked(good)
     peak = stresses_of(results, options).peaks(asked)
-    found = {
+    quantities = {
         "peak_stress": (peak.stress, 1.0),
         "peak_x": (peak.x, -1.0),
         "peak_y": (peak.y, 1.0),
         "peak_z": (peak.z, 1.0),
         "error_estimate": (peak.error + results.scene.model.peak_error * results.friction[asked][:, None], 1.0),
     }
-    for name, (value, sign) in found.items():
+    for name, (value, sign) in quantities.items():
         full = np.full((2 * results.scene.n, 2), np.nan)
         full[good] = mirror.spread(good, value, sign)
         full = results.by_contact(full)
