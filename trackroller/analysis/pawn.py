@@ -59,7 +59,7 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
     value below which an inert factor stays in 95 % of cases (60 permutations).
     """
     order = np.argsort(y, kind="stable")
-    value = float(_distances(y[order], group[order], np.ones((1, len(y))))[0])
+    value = float(_distances(y[order], group[order][None], np.ones((1, len(y))))[0])
     if not noise:
         return value, np.nan
     if len(group) <= NOISE_ROWS:
@@ -71,8 +71,9 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
 
 def _noise(ranked: np.ndarray, group: np.ndarray, seed: int) -> float:
     """Return the value of PAWN that 95 % of 60 permutations of the groups stay below; `ranked`: sorted outputs."""
-    rng, once = np.random.default_rng(seed), np.ones((1, len(group)))
-    return float(np.percentile([_distances(ranked, rng.permutation(group), once)[0] for _ in range(60)], 95))
+    rng = np.random.default_rng(seed)
+    drawn = np.stack([rng.permutation(group) for _ in range(60)])
+    return float(np.percentile(_distances(ranked, drawn, np.ones((1, len(group)))), 95))
 
 
 @lru_cache(maxsize=64)
@@ -100,36 +101,40 @@ def pawn_interval(
     some = some[np.argsort(y[some], kind="stable")]
     picks = np.random.default_rng(seed).integers(0, len(some), (resamples, len(some)))
     weight = np.stack([np.bincount(pick, minlength=len(some)) for pick in picks])
-    half = Z * float(np.std(_distances(y[some], group[some], weight), ddof=1)) * (len(some) / len(y)) ** 0.5
+    half = Z * float(np.std(_distances(y[some], group[some][None], weight), ddof=1)) * (len(some) / len(y)) ** 0.5
     return max(0.0, value - half), min(1.0, value + half)
 
 
 def _distances(y: np.ndarray, group: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Return the median Kolmogorov-Smirnov distance of the groups from all rows, for each set of weights.
+    """Return the median Kolmogorov-Smirnov distance of the groups from all rows, for each set of groups and weights.
 
-    `y`, the sorted outputs, and `group` have the shape (n,), `weight` (sets, n) and the result (sets,).
+    `y`, the sorted outputs, has the shape (n,). `group`, always the same groups in another order, and `weight` have
+    the shape (sets, n) or (1, n), and the result has the shape (sets,).
 
     A group's distribution jumps only at its own rows. Its largest distance from that of all rows therefore lies
     directly before or after the jump at one of its rows, equal outputs taken together.
     """
-    by_group = np.argsort(group, kind="stable")
-    value, kind = y[by_group], group[by_group]
-    new = np.append(True, np.diff(kind) != 0)
-    jump = np.flatnonzero(new | np.append(True, np.diff(value) != 0))
-    after, first = np.append(jump[1:], len(y)), np.flatnonzero(new)
-    of = np.cumsum(new)[jump] - 1  # the group of each jump, counted from the first one
+    small = np.uint16 if group.max() < 2**16 else int  # sorted in linear time
+    by_group = np.argsort(group.astype(small), axis=1, kind="stable")
+    value, kind = y[by_group], np.sort(group[0])
+    other = np.append(True, np.diff(kind) != 0)
+    new = np.concatenate([np.full((len(value), 1), True), other[1:] | (np.diff(value, axis=1) != 0)], axis=1)
+    last = np.append(new[:, 1:], np.full((len(value), 1), True), axis=1)
+    first = np.flatnonzero(other)
+    of = np.cumsum(other) - 1
     zero = np.zeros((len(weight), 1))
-    every = np.concatenate([zero, np.cumsum(weight, axis=1)], axis=1)
-    own = np.concatenate([zero, np.cumsum(weight[:, by_group], axis=1)], axis=1)
+    every = np.concatenate([zero, np.cumsum(weight, axis=1)], axis=1) / len(y)
+    own = np.cumsum(np.take_along_axis(weight, by_group, axis=1), axis=1)
+    own = np.concatenate([np.zeros((len(own), 1)), own], axis=1)
     size = np.diff(own[:, np.append(first, len(y))], axis=1)
 
-    def apart(place: np.ndarray, side: Literal["left", "right"]) -> np.ndarray:
-        share = (own[:, place] - own[:, first[of]]) / np.maximum(size, 1)[:, of]
-        return np.abs(share - every[:, np.searchsorted(y, value[jump], side)] / len(y))
+    def apart(shift: int, side: Literal["left", "right"], where: np.ndarray) -> np.ndarray:
+        share = (own[:, shift : len(y) + shift] - own[:, first[of]]) / np.maximum(size, 1)[:, of]
+        whole = np.take_along_axis(every, np.searchsorted(y, y, side)[by_group], axis=1)
+        return np.where(where, np.abs(share - whole), 0.0)
 
-    largest = np.maximum.reduceat(
-        np.maximum(apart(jump, "left"), apart(after, "right")), np.searchsorted(jump, first), 1
-    )
+    jumps = np.maximum(apart(0, "left", new), apart(1, "right", last))
+    largest = np.maximum.reduceat(jumps, first, axis=1)
     return np.asarray(np.nanmedian(np.where(size > 0, largest, np.nan), axis=1))
 
 

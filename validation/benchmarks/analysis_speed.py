@@ -65,6 +65,9 @@ def made_up(rows: int) -> xr.Dataset:
     )
     results = import_module("synthetic_results").results(columns)
     ds = ds.assign({name: (("case", *dims), values) for name, (dims, values) in results.items()})
+    ds["max_pressure"] = ds["peak_stress"].max("body") / (0.6 + 0.1 * ds["friction_coefficient"])
+    ds["drilling_torque"] = (ds["normal_force"] * ds["semi_axis_rolling"]).sum("contact") * ds["friction_coefficient"]
+    ds["slip"] = 1e-3 * ds["motor_force"] / ds["normal_force"].sum("contact") / ds["semi_axis_lateral"].max("contact")
     return ds.assign_coords(contact=[1, 2], body=["roller", "guide"]).assign_attrs(study=study.merged())
 
 
