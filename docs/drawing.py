@@ -1,6 +1,7 @@
-"""Draw roller and guide with frames, forces and signs: `python docs/drawing.py` writes `docs/figures/scene.svg`.
+"""Draw the figures that introduce terms: `python docs/drawing.py` writes `scene.svg`, `patch.svg`, `sn_curve.svg`.
 
-The geometry is that of the paper's example (the default case), to scale.
+They stand in `docs/figures`. The scene is that of the paper's example (the default case), to scale. The S-N curve is
+that of its material. The patch is a sketch.
 """
 
 from __future__ import annotations
@@ -13,10 +14,13 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from trackroller import Case
+from trackroller import Case, load_database
+from trackroller.damage.sn_curve import SNCurve
+from trackroller.parameters import LIFE_RULES
 
-TARGET = Path(__file__).parent / "figures" / "scene.svg"
+FOLDER = Path(__file__).parent / "figures"
 INK, GREY, ROLLER, GUIDE, FORCE, FRAME = "#1b1f24", "#6e7781", "#dbe7f4", "#eadfce", "#b3261e", "#0b5cad"
 GROOVE_HALF_WIDTH = 6.3  # half width of the roller's rim in the drawing [mm]; it is not a parameter
 
@@ -120,9 +124,8 @@ def side_view(axes: Axes, case: Case) -> None:
     axes.set_ylim(-3.2, 41.5)
 
 
-def draw(target: Path = TARGET) -> Path:
-    """Write the drawing as SVG with text as text, and return its path."""
-    plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "scene", "font.size": 10, "font.family": "sans-serif"})
+def scene() -> Figure:
+    """Return the drawing of roller and guide."""
     figure, (front, side) = plt.subplots(1, 2, figsize=(9.4, 5.4), width_ratios=(26, 30))
     front_view(front, Case())
     side_view(side, Case())
@@ -137,10 +140,81 @@ def draw(target: Path = TARGET) -> Path:
         color=INK,
     )
     figure.tight_layout(rect=(0, 0.03, 1, 1))
-    figure.savefig(target, metadata={"Date": None}, facecolor="white")
+    return figure
+
+
+def patch() -> Figure:
+    """Return the sketch of a patch in contact 1: semi-axes, frame, edges, spin pole, rigid slip, adhesion area."""
+    a, b, pole, turn = 3.0, 2.0, np.array([1.5, -0.5]), np.linspace(0, 2 * np.pi, 200)
+    figure, axes = plt.subplots(figsize=(6.6, 4.4))
+    axes.fill(a * np.cos(turn), b * np.sin(turn), color=GUIDE, ec=INK, lw=1.1, zorder=0)
+    x = np.linspace(-0.4, 2.55, 80)
+    lead = b * np.sqrt(1 - (x / a) ** 2)
+    end = lead - 2.1 * np.sqrt(np.clip(1 - ((x - 1.075) / 1.475) ** 2, 0, None))  # where the traction reaches its limit
+    axes.fill_between(x, end, lead, color=ROLLER, ec=INK, lw=0.9, hatch="////")
+    for place in ((-2.2, 0.2), (-1.2, -1.2), (-1.0, 0.9), (0.2, -1.5), (-0.1, -0.3), (2.3, -0.9)):
+        away = np.array(place) - pole
+        arrow(axes, place, tuple(0.28 * np.array([away[1], -away[0]])), FORCE, "")  # phi < 0
+    axes.plot(*pole, "o", color=INK, ms=5, zorder=5)
+    for name, at, text in (
+        ("spin pole", tuple(pole), (3.3, -1.7)),
+        ("adhesion (stick) area", (1.6, 0.9), (2.6, 2.2)),
+        ("slip area, rigid slip", (-2.1, 0.0), (-5.4, -1.7)),
+    ):
+        axes.annotate(name, xy=at, xytext=text, color=INK, arrowprops={"arrowstyle": "-", "lw": 0.8})
+    arrow(axes, (0, 0), (0, 2.9), FRAME, "$y$, rolling direction", shift=(0, 0.25))
+    arrow(axes, (0, 0), (4.0, 0), FRAME, "$x$, lateral", shift=(0.75, 0.0))
+    measure(axes, (0, -2.5), (a, -2.5), "$a$", shift=(0, -0.3))
+    measure(axes, (-3.5, 0), (-3.5, b), "$b$", shift=(-0.3, 0))
+    for place, y in (("leading edge: material enters", b + 0.25), ("trailing edge", -b - 0.3)):
+        axes.text(-1.9, y, place, ha="center", va="center", color=GREY)
+    axes.set_xlim(-5.6, 5.6)
+    axes.set_ylim(-3.1, 3.5)
+    axes.set_aspect("equal")
+    axes.axis("off")
+    figure.tight_layout()
+    return figure
+
+
+def sn_curve() -> Figure:
+    """Return the S-N curve of the default material with the rules for stresses below its fatigue limit."""
+    material = load_database().material(Case().roller_material)
+    knee, first = material.cycles_at_fatigue_limit, material.cycles_at_tensile_strength
+    strength = material.tensile_strength
+    limit = material.fatigue_strength_ratio * strength
+    figure, axes = plt.subplots(figsize=(6.6, 3.9))
+    stress = np.geomspace(0.55 * limit, strength, 200)
+    for rule, style in zip(LIFE_RULES, ("-", "--", ":"), strict=True):
+        cycles = SNCurve.of(material, rule).life_cycles(stress)
+        known = np.isfinite(cycles) & (stress >= (limit if rule == "unlimited" else 0))
+        axes.plot(cycles[known], stress[known], style, color=INK, label=rule)
+    axes.plot([knee, 1e11], [limit, limit], ":", color=INK)
+    for at, level, names in ((first, strength, ("$N_{Rm}$", "$R_m$")), (knee, limit, ("$N_k$", r"$\sigma_D$"))):
+        axes.plot([at, at, 3e2], [150, level, level], color=GREY, lw=0.7)
+        axes.text(at * 1.15, 158, names[0], color=GREY)
+        axes.text(4e2, level * 1.02, names[1], color=GREY)
+    axes.set(xscale="log", yscale="log", xlim=(3e2, 1e11), ylim=(150, 1.25 * strength))
+    axes.set_yticks([200, 300, 400, 600], ["200", "300", "400", "600"])
+    axes.minorticks_off()
+    axes.set_xlabel("Overrollings N to failure [–]")
+    axes.set_ylabel("Peak von Mises stress σ [MPa]")
+    axes.legend(title="life_rule", frameon=False)
+    figure.tight_layout()
+    return figure
+
+
+FIGURES = {"scene": scene, "patch": patch, "sn_curve": sn_curve}
+
+
+def draw(name: str, folder: Path = FOLDER) -> Path:
+    """Write one of `FIGURES` as SVG with text as text, and return its path."""
+    plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": name, "font.size": 10, "font.family": "sans-serif"})
+    figure = FIGURES[name]()
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None}, facecolor="white")
     plt.close(figure)
-    return target
+    return folder / f"{name}.svg"
 
 
 if __name__ == "__main__":
-    draw()
+    for each in FIGURES:
+        draw(each)

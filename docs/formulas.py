@@ -21,7 +21,7 @@ from markdown.extensions import Extension
 from markdown.inlinepatterns import InlineProcessor
 from pymdownx.superfences import SuperFencesException
 
-LINE = re.compile(r"(?P<latex>[^%]+?)\s*(?:%\s*(?P<number>\([^)]*\))?\s*(?P<words>[^|]*?)\s*(?:\|\s*(?P<file>\S+)\s*)?)?$")
+NUMBERS = re.compile(r"(?:\(\d+\)[-, ]*)+")
 BETWEEN_WORDS = r"\$(?=\S)([^$\n]+?)(?<=\S)\$"
 
 
@@ -42,10 +42,12 @@ def formula(line: str) -> Formula:
     SuperFencesException
         If the line holds no formula; MkDocs stops then.
     """
-    parts = LINE.match(line.strip())
-    if not parts:
+    latex, _, note = (part.strip() for part in line.partition("%"))
+    if not latex:
         raise SuperFencesException(f"no formula: {line!r}; write LaTeX % (number) words | file")
-    return Formula(*(parts[name] or "" for name in Formula._fields))
+    numbers = NUMBERS.match(note)
+    words, _, file = note[numbers.end() if numbers else 0 :].partition("|")
+    return Formula(latex, numbers[0].strip() if numbers else "", words.strip(), file.strip())
 
 
 def mathml(latex: str, display: str) -> str:
@@ -67,7 +69,7 @@ def block(source: str, *_: Any, **__: Any) -> str:
 
 
 class _Inline(InlineProcessor):
-    def handleMatch(self, m: re.Match[str], data: str) -> tuple[str | Element, int, int]:  # noqa: N802
+    def handleMatch(self, m: re.Match[str], data: str) -> tuple[str | Element, int, int]:
         """Return the MathML in place of `$...$`."""
         return self.md.htmlStash.store(mathml(m[1], "inline")), m.start(0), m.end(0)
 
@@ -75,7 +77,7 @@ class _Inline(InlineProcessor):
 class Formulas(Extension):
     """The extension of Markdown that typesets formulas between words; code in backticks stays as it is."""
 
-    def extendMarkdown(self, md: Markdown) -> None:  # noqa: N802
+    def extendMarkdown(self, md: Markdown) -> None:
         """Register the pattern behind that of code (190)."""
         md.inlinePatterns.register(_Inline(BETWEEN_WORDS, md), "formula", 180)
 

@@ -14,6 +14,7 @@ import shutil
 import sys
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 
@@ -165,11 +166,40 @@ def test_the_site_has_every_page_once():
     assert sorted(named) == sorted(page.relative_to(ROOT / "docs").as_posix() for page in DOCS)
 
 
-def test_the_drawing_is_that_of_the_program(tmp_path):
-    """docs/figures/scene.svg is what docs/drawing.py draws."""
+@pytest.mark.parametrize("name", ["scene", "patch", "sn_curve"])
+def test_the_drawings_are_those_of_the_program(tmp_path, name):
+    """The figures that introduce terms are what docs/drawing.py draws, and the theory shows them."""
     drawing = program_of_the_docs("drawing")
-    kept = drawing.TARGET.read_text(encoding="utf-8")
-    assert drawing.draw(tmp_path / "scene.svg").read_text(encoding="utf-8") == kept, "run: python docs/drawing.py"
+    kept = (drawing.FOLDER / f"{name}.svg").read_text(encoding="utf-8")
+    assert drawing.draw(name, tmp_path).read_text(encoding="utf-8") == kept, "run: python docs/drawing.py"
+    assert f"(figures/{name}.svg)" in (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+
+
+def test_formulas_are_typeset_and_name_the_file_that_computes_them():
+    """Each line of a block of formulas gives MathML, and each file that it names is there."""
+    formulas = pytest.importorskip("latex2mathml") and program_of_the_docs("formulas")
+    theory = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```math\n(.*?)```", theory, re.S)
+    lines = [line for block in blocks for line in block.splitlines() if line.strip()]
+    others = re.sub(r"```math\n.*?```", "", theory, flags=re.S)
+    assert len(lines) > 30 and not re.search(r"^    \w.*=", others, re.M), "a formula stands in a block of code"
+    numbers = set()
+    for one in map(formulas.formula, lines):
+        assert one.file and (ROOT / "trackroller" / one.file).is_file(), one
+        for display in ("block", "inline"):
+            shown = ElementTree.fromstring(formulas.mathml(one.latex, display))
+            assert shown.get("display") == display and "merror" not in formulas.mathml(one.latex, display)
+        numbers |= set(re.findall(r"\d+", one.number))
+    assert {"6", "10", "11", "12", "13", "14", "20", "21", "22", "24", "30"} <= numbers
+
+
+def test_a_line_without_a_formula_stops_the_build():
+    pytest.importorskip("latex2mathml")
+    formulas = program_of_the_docs("formulas")
+    assert formulas.formula("a = b  % (3) words | roller/case.py") == ("a = b", "(3)", "words", "roller/case.py")
+    assert formulas.formula("a = b") == ("a = b", "", "", "")
+    with pytest.raises(Exception, match="no formula"):
+        formulas.formula("% (3) words")
 
 
 def test_the_map_of_formulas_names_files_and_functions_that_exist():
