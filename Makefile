@@ -68,8 +68,8 @@ docs: $(CI_STAMP)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 # the pages in a browser; needs Chromium, and axe-core from `npm ci` in web/
-test-browser: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -m browser tests/report
+test-browser: $(CI_STAMP)
+	$(BIN)/python -m pytest -q -ra -m browser tests/report tests/docs
 
 # the script of the explorer from web/src, which needs Node and npm; the check compares it byte for byte
 explorer:

@@ -1,11 +1,14 @@
-"""Typeset the formulas of the documentation as MathML while MkDocs builds the site; no script is needed to read them.
+"""Typeset the formulas of the documentation as MathML while MkDocs builds the site, and keep its search at home.
 
 A fenced block `math` holds one formula a line, in LaTeX. Behind `%` stand its number in the publication in parentheses,
 what it is, and behind `|` the file of `trackroller/` that computes it; each of the three may be left out:
 
     h_N = A_T \\sin\\alpha  % (13) lever arm | roller/geometry.py
 
-Between words, `$...$` holds a formula. MkDocs calls `on_config` (the key `hooks` of mkdocs.yml).
+Between words, `$...$` holds a formula. No script is needed to read formulas.
+
+The search runs from file:// too. The theme takes a stand-in for Worker from another server there; `assets/worker.js`
+replaces it. MkDocs calls the functions `on_...` (the key `hooks` of mkdocs.yml).
 """
 
 from __future__ import annotations
@@ -19,6 +22,7 @@ from latex2mathml.converter import convert
 from markdown import Markdown
 from markdown.extensions import Extension
 from markdown.inlinepatterns import InlineProcessor
+from mkdocs.utils import get_relative_url
 from pymdownx.superfences import SuperFencesException
 
 NUMBERS = re.compile(r"(?:\(\d+\)[-, ]*)+")
@@ -71,7 +75,8 @@ def block(source: str, *_: Any, **__: Any) -> str:
 class _Inline(InlineProcessor):
     def handleMatch(self, m: re.Match[str], data: str) -> tuple[str | Element, int, int]:
         """Return the MathML in place of `$...$`."""
-        return self.md.htmlStash.store(mathml(m[1], "inline")), m.start(0), m.end(0)
+        shown = f'<span class="inline-formula">{mathml(m[1], "inline")}</span>'
+        return self.md.htmlStash.store(shown), m.start(0), m.end(0)
 
 
 class Formulas(Extension):
@@ -88,3 +93,17 @@ def on_config(config: Any) -> Any:
     fences["custom_fences"] = [{"name": "math", "class": "math", "format": block}]
     config.markdown_extensions.append(Formulas())
     return config
+
+
+def on_post_page(output: str, page: Any, **_: Any) -> str:
+    """Take the stand-in for Worker from the site instead of another server."""
+    return _own_worker(output, page.url)
+
+
+def on_post_template(output: str, template_name: str, **_: Any) -> str:
+    """Do the same in 404.html, which is no page."""
+    return _own_worker(output, template_name)
+
+
+def _own_worker(output: str, url: str) -> str:
+    return output.replace("https://unpkg.com/iframe-worker/shim", get_relative_url("assets/worker.js", url))
