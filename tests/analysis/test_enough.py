@@ -7,7 +7,7 @@ import pytest
 from scipy import stats
 
 from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.report.words.in_short import samples
+from trackroller.report.words.samples import samples
 from trackroller.study.file.load import parse_study
 
 PI = np.pi

@@ -9,7 +9,7 @@ from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.report.numbers import quantity
 from trackroller.report.pages.study import contents
-from trackroller.report.words import pareto as choices
+from trackroller.report.words.pareto import pareto_sentence
 from trackroller.study.file.load import parse_study
 
 LHS = {
@@ -71,7 +71,7 @@ def test_sentence_tells_the_size_and_the_ends():
     front = pareto(
         trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b), {"roller_life_hours": "max", "friction_power": "min"}
     )
-    text = choices.pareto(front).text
+    text = pareto_sentence(front).text
     assert text.startswith(
         f"{int(front['optimal'].sum())} of 400 allowed designs are Pareto-optimal: from 200 h life of the roller"
     )
@@ -84,7 +84,7 @@ def test_sentence_tells_the_size_and_the_ends():
 def test_a_single_best_design_is_called_so():
     """The Pareto set is one design if this design is best in every goal."""
     front = pareto(trade(lambda a, b: 100 - a, lambda a, b: a), {"roller_life_hours": "max", "friction_power": "min"})
-    assert choices.pareto(front).text.startswith(
+    assert pareto_sentence(front).text.startswith(
         "One of 400 allowed designs is best in everything: life of the roller 99"
     )
 
@@ -119,7 +119,7 @@ def test_figures_of_the_set_are_drawn_in_words():
     with style.look():
         _, first = pareto_front(front)
     assert "a designer cannot choose: " in first.caption
-    assert first.sentence == choices.pareto(front).text
+    assert first.sentence == pareto_sentence(front).text
 
 
 def test_design_points_are_compared_by_their_statistics():
@@ -156,7 +156,7 @@ def test_design_points_are_compared_by_their_statistics():
         np.testing.assert_allclose(front[name], values)
     optimal = brute(np.stack(table, axis=1) * np.array([-1.0, 1.0, -1.0, 1.0]))
     np.testing.assert_array_equal(front["optimal"], optimal)
-    text = choices.pareto(front, StudyView.of(ds)).text
+    text = pareto_sentence(front, StudyView.of(ds)).text
     assert text.startswith(f"{optimal.sum()} of 8 allowed design points are Pareto-optimal: from ")
     told = {t.name: t for t in contents(StudyView.of(ds, sens))["decide"]}
     assert told["pareto"].heads[:3] == ["Design point", "B10 of life of the roller [h] ↑", told["pareto"].heads[2]]

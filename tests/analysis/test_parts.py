@@ -11,8 +11,9 @@ from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.sobol import sobol
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
-from trackroller.report.tables import indices as decisions
-from trackroller.report.words import in_short as summary
+from trackroller.report.tables.indices import part_tables
+from trackroller.report.words.in_short import in_short
+from trackroller.report.words.indices import level_indices
 from trackroller.study.design.saltelli import as_set, pairs_sharing, serves
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
@@ -189,9 +190,9 @@ def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
     sens.to_netcdf(tmp_path / "sensitivity.nc")
     assert sens["group"].values.tolist() == ["load", "friction_coefficient", "roller_material"]
     assert ("ST" in sens) == (exchange == "factors") and np.isfinite(sens["take_times"]).all()
-    table = decisions.part_tables(sens)[0]
+    table = part_tables(sens)[0]
     assert [row[1] for row in table.rows] == ["Load", "Friction coefficient", "Roller material"]
-    text = " ".join(s.text for head, said in summary.in_short(StudyView.of(ds, sens), []) for s in said)
+    text = " ".join(s.text for head, said in in_short(StudyView.of(ds, sens), []) for s in said)
     assert "By groups, roller material accounts for" in text and "load" in text
     assert (text.index("By groups") < text.index("explains")) if exchange == "groups" else "(total index)" in text
 
@@ -202,10 +203,10 @@ def test_levels_reach_analysis_table_and_summary():
         ds = solved(FILE | {"design": design, "samples": 256, "analysis": analysis})
         sens = analyse_dataset(ds)
         assert sens["conditional_S1"].sel(level="POM", factor="friction_coefficient").item() > 0.7
-        said = decisions.levels(sens, "roller_life_hours")
+        said = level_indices(sens, "roller_life_hours")
         assert said.values["lead"]["POM"] == "friction_coefficient"
         assert said.values["lead"]["PA6"] in ("axial_force", "radial_force")
-        assert [row[1] for row in decisions.part_tables(sens)[0].rows] == ["PA6", "POM"]
+        assert [row[1] for row in part_tables(sens)[0].rows] == ["PA6", "POM"]
 
 
 def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):

@@ -9,7 +9,7 @@ from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
-from trackroller.report.words import pareto as choices
+from trackroller.report.words.design_points import best_point
 from trackroller.study.file.load import parse_study
 
 INNER_OUTER = {
@@ -63,7 +63,7 @@ def test_percentiles_b10_and_probabilities_match_the_closed_forms(tmp_path):
 def test_sentence_names_the_best_design_point():
     """The point with ten times the life is named with its B10 and its slip."""
     ds = solved(lognormal)
-    text = choices.robustness(robustness(ds, design_of(ds), {}), "roller_life_hours").text
+    text = best_point(robustness(ds, design_of(ds), {}), "roller_life_hours").text
     assert text.startswith(
         "Best B10 of the life of the roller: at mean travel speed 60 m/min nine of ten rolling cases reach"
     )

@@ -13,7 +13,7 @@ from trackroller.analysis.sensitivity import analyse, analyse_dataset
 from trackroller.analysis.sobol import sobol
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
-from trackroller.report.words import indices as words
+from trackroller.report.words.indices import caveat
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
 from trackroller.study.outputs import outputs
@@ -309,7 +309,7 @@ def test_mostly_unusable_saltelli_design_is_marked_and_given_data_still_stand():
     part = result.sel(output="friction_power")
     assert int(part["reliable"]) == 0 and "not the whole range" in str(part["note"].item())
     assert float(part["first"].sel(factor="axial_force")) == pytest.approx(0.99, abs=0.03)
-    assert "could be used" in words.caveat(result, "friction_power")
+    assert "could be used" in caveat(result, "friction_power")
 
 
 def test_grid_with_holes_drops_levels_and_says_how_many_cells():

@@ -17,11 +17,12 @@ from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.cases import validity_table
-from trackroller.report.tables.indices import robust_tables
-from trackroller.report.words.cases import best_design, occurrence, ranked, valid_designs
+from trackroller.report.tables.design_points import robust_tables
+from trackroller.report.words.accuracy import SLIDING_ERROR, friction_error, full_sliding
+from trackroller.report.words.cases import best_design, ranked, valid_designs
 from trackroller.report.words.factors import effect_of
-from trackroller.report.words.flags import SLIDING_ERROR, friction_error, full_sliding
-from trackroller.report.words.pareto import pareto
+from trackroller.report.words.pareto import pareto_sentence
+from trackroller.report.words.regimes import occurrence
 from trackroller.report.workbook import export
 from trackroller.study.file.load import parse_study
 
@@ -159,7 +160,7 @@ def test_a_set_with_designs_outside_the_model_says_how_many():
         attrs={"objectives": "a max, b min", "excluded": "nothing"},
     )
     ds = study({"axial_force": [0.0, 1.0]}, regime=[0, 1])
-    assert "1 of the set lie outside the model" in pareto(front, StudyView.of(ds)).text
+    assert "1 of the set lie outside the model" in pareto_sentence(front, StudyView.of(ds)).text
 
 
 def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():

@@ -9,7 +9,8 @@ import xarray as xr
 import trackroller as tr
 from trackroller.materials import builtin_database
 from trackroller.report.figures.spectrum import damage_by_block
-from trackroller.report.pages.spectrum import block_table, life_rows, sentences, warnings
+from trackroller.report.pages.spectrum import block_table, life_rows, warnings
+from trackroller.report.words.spectrum import sentences
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 

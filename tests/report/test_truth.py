@@ -12,9 +12,11 @@ import yaml
 from random_studies import FLAGS, random_study
 
 from trackroller.analysis.table import StudyView
-from trackroller.report.words import cases as findings
-from trackroller.report.words import flags
+from trackroller.report.words.accuracy import accuracy, friction_error
+from trackroller.report.words.cases import best_design, extremes, valid_designs
 from trackroller.report.words.factors import effect_of
+from trackroller.report.words.regimes import lift_off, occurrence
+from trackroller.report.words.stresses import strength, surface
 
 STUDIES = 150
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")
@@ -279,7 +281,7 @@ def check_others(raw, view):
     said = []
     if view.life:
         life = raw.get("roller_life_hours")
-        shown = findings.extremes(view, *view.life, list(view.factors)[:2], view.valid)
+        shown = extremes(view, *view.life, list(view.factors)[:2], view.valid)
         finite = life[raw.valid & np.isfinite(life)]
         if shown.kind == "extremes":
             only = first(rf"One .*: {NUMBER} h", shown.text) * 2 if finite.size == 1 else ()
@@ -290,29 +292,29 @@ def check_others(raw, view):
             assert not finite.size
         said.append(shown)
     for i, body in enumerate(("roller", "guide")):
-        surface = findings.surface(view, body, view.valid)
+        place = surface(view, body, view.valid)
         peak, depth = raw.get("peak_stress")[:, :, i], raw.get("peak_z")[:, :, i]
         at = depth[np.arange(raw.n), peak.argmax(axis=1)] <= 1e-3
-        if surface is None:
+        if place is None:
             assert not raw.valid.any()
             continue
-        assert surface.values["count"] == (at & raw.valid).sum() and surface.values["of"] == raw.valid.sum()
-        assert ("in all" in surface.text) == (surface.values["count"] in (0, surface.values["of"]))
-        said.append(surface)
+        assert place.values["count"] == (at & raw.valid).sum() and place.values["of"] == raw.valid.sum()
+        assert ("in all" in place.text) == (place.values["count"] in (0, place.values["of"]))
+        said.append(place)
         stress, limit = peak.max(axis=1), np.full(raw.n, 120.0)
-        strong = findings.strength(body, view.column(f"peak_stress_{body}"), limit, 2 * limit, view.rolling)
+        strong = strength(body, view.column(f"peak_stress_{body}"), limit, 2 * limit, view.rolling)
         if strong is not None:
             assert strong.values["below"] == (raw.rolling & (stress < 120)).sum()
             assert strong.values["above"] == (raw.rolling & (stress > 240)).sum()
             said.append(strong)
-    residual, error = raw.get("energy_residual"), flags.friction_error(view)
+    residual, error = raw.get("energy_residual"), friction_error(view)
     known = None if residual is None else residual[raw.rolling & np.isfinite(residual)]
     assert (error is not None) == (known is not None and known.size > 0 and np.median(known) > 0.05)
     if error:
         middle, most = first(rf"by {NUMBER} % in the median and {NUMBER} % at most", error.text)
         assert close(middle, 100 * np.median(known)) and close(most, 100 * known.max())
         said.append(error)
-    for sentence in flags.accuracy(view):
+    for sentence in accuracy(view):
         if sentence.kind == "singular":
             assert sentence.values["count"] == (raw.flags["split_pole"] & raw.rolling).sum()
         else:
@@ -321,7 +323,7 @@ def check_others(raw, view):
             assert sentence.values["median"] == pytest.approx(np.median(own))
             assert sentence.values["largest"] == own.max()
         said.append(sentence)
-    lifted = findings.lift_off(view)
+    lifted = lift_off(view)
     if lifted is not None:
         axial = raw.columns.get("axial_force")
         assert lifted.values["count"] == (raw.regime == 2).sum() > 0
@@ -336,17 +338,17 @@ def sentences_of(seed):
     ds = random_study(seed)
     raw, view = Raw(ds), StudyView.of(ds)
     assert set(view.factors) == set(raw.factors)
-    said = [findings.valid_designs(view)]
+    said = [valid_designs(view)]
     check_valid(raw, said[0])
     for code, words in ((1, "Full slip"), (2, "Lift-off"), (3, "Failure")):
-        found = findings.occurrence(view, view.regime == code, words)
+        found = occurrence(view, view.regime == code, words)
         check_occurrence(raw, found, raw.regime == code, np.ones(raw.n, bool))
         said.append(found)
     for flag in view.flags:
-        found = findings.occurrence(view, view.flagged(flag), flag, view.rolling)
+        found = occurrence(view, view.flagged(flag), flag, view.rolling)
         check_occurrence(raw, found, raw.flags[flag], raw.rolling)
         said.append(found)
-    best = findings.best_design(view)
+    best = best_design(view)
     if best is not None:
         check_best(raw, best)
         said.append(best)

@@ -13,11 +13,12 @@ from trackroller.analysis.pareto import pareto_mask
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import level_text
-from trackroller.report.tables import indices as decisions
-from trackroller.report.words import indices as words
-from trackroller.report.words import pareto as choices
+from trackroller.report.words import indices
+from trackroller.report.words.design_points import best_point
 from trackroller.report.words.factors import effect_of
-from trackroller.report.words.in_short import samples
+from trackroller.report.words.indices import part_sentences
+from trackroller.report.words.pareto import pareto_sentence
+from trackroller.report.words.samples import samples
 from trackroller.study.file.load import parse_study
 
 NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")
@@ -111,7 +112,7 @@ def check_indices(sens, output, index):
     low, high = (
         part[f"{index}{e}"].values if f"{index}{e}" in part else np.full_like(value, np.nan) for e in ("_low", "_high")
     )
-    said, kinds = words.decides(sens, output), set()
+    said, kinds = indices.decides(sens, output), set()
     kinds.add(said.kind)
     if said.kind == "no_index":
         assert np.isnan(value).all()
@@ -136,14 +137,14 @@ def check_indices(sens, output, index):
             assert (high[i] if np.isfinite(high[i]) else value[i]) < 0.02
     kinds.add(check_interaction(sens, output))
     if np.isfinite(float(part["take_times"])) and np.isfinite(high - low).any():
-        wide = words.convergence(sens, output)
+        wide = indices.convergence(sens, output)
         assert wide.values["half"] == pytest.approx(np.nanmax(high - low) / 2)
         assert f"of {names[int(np.nanargmax(high - low))]}" in wide.text
     return kinds
 
 
 def check_interaction(sens, output):
-    said = words.interactions(sens, output)
+    said = indices.interactions(sens, output)
     if said.kind == "no_index":
         return said.kind
     table, low = sens["S2"].sel(output=output).values, sens["S2_low"].sel(output=output).values
@@ -158,7 +159,7 @@ def check_interaction(sens, output):
 
 
 def check_leads(sens, index):
-    said = words.overview(sens)
+    said = indices.overview(sens)
     for output in map(str, sens["output"].values):
         value = sens[index].sel(output=output).values
         if np.isfinite(value).any():
@@ -175,7 +176,7 @@ def test_every_sentence_on_groups_and_levels_is_true(method):
     for _ in range(60):
         sens = with_parts(rng, analysis(rng, method))
         for output in map(str, sens["output"].values):
-            said = {s.kind: s for s in decisions.part_sentences(sens, output)}
+            said = {s.kind: s for s in part_sentences(sens, output)}
             found += len(said)
             check_groups(sens.sel(output=output), said.get("groups"))
             check_levels(sens.sel(output=output), said.get("levels"))
@@ -241,7 +242,7 @@ def test_which_factors_act_alike_everywhere_is_told_by_sigma():
     rng = np.random.default_rng(9)
     for _ in range(100):
         sens = analysis(rng, "morris")
-        said = words.morris(sens, "friction_power")
+        said = indices.morris(sens, "friction_power")
         part = sens.sel(output="friction_power")
         mu, sigma, names = part["mu_star"].values, part["sigma"].values, part["factor_name"].values
         strong = mu >= 0.1 * np.nanmax(mu)
@@ -266,7 +267,7 @@ def test_every_sentence_on_a_pareto_set_is_true():
             coords={"row": np.arange(n)},
             attrs=attrs,
         )
-        text = choices.pareto(front).text
+        text = pareto_sentence(front).text
         tuples = [float(v.replace(",", "")) for v in re.findall(r"([\d,]+(?:\.\d+)?) (?:h|W)\b", text)]
         if best.sum() == 1:
             assert text.startswith("One of")
@@ -304,7 +305,7 @@ def test_every_sentence_on_design_points_is_true():
             },
             attrs={"outer_factors": "velocity"},
         )
-        said = choices.robustness(table, "roller_life_hours")
+        said = best_point(table, "roller_life_hours")
         best = said.values["point"]
         assert safe[best] == safe.max() and b10[best] == b10[safe == safe.max()].max()
         assert f"at mean travel speed {10 + best} m/min" in said.text
@@ -343,6 +344,6 @@ def test_sentences_name_the_factors_that_are_correlated_in_the_rows():
         assert named == tied and ("correlated" in said.text) == bool(tied)
     sens = analyse_dataset(ds)
     assert sens["correlated"].values.tolist() == [1, 1, 0]
-    assert "Radial force" in words.decides(sens, "roller_life_hours").text
-    assert "axial force and radial force are correlated, and" in words.decides(sens, "roller_life_hours").text
+    assert "Radial force" in indices.decides(sens, "roller_life_hours").text
+    assert "axial force and radial force are correlated, and" in indices.decides(sens, "roller_life_hours").text
     assert "rank correlation -0.70" in sens.attrs["treatment"] and "interaction_share" not in sens

@@ -10,7 +10,8 @@ import pytest
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.table import StudyView
 from trackroller.report.pages.study import contents
-from trackroller.report.words.targets import target, target_tables
+from trackroller.report.tables.targets import target_tables
+from trackroller.report.words.targets import target
 from trackroller.study.file.load import parse_study
 
 SHARE = r"([\d.]+) %"

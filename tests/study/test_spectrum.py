@@ -15,7 +15,7 @@ from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.report.numbers import rounded
-from trackroller.report.pages.spectrum import sentences
+from trackroller.report.words.spectrum import sentences
 from trackroller.study.spectrum.file import Spectrum, load_spectrum, overrollings_per_shift
 from trackroller.study.spectrum.solve import solve_spectrum
 

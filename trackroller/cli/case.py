@@ -111,8 +111,8 @@ def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) ->
     `out` receives netCDF, and `page` the page. `json` prints JSON; without `json` and `out`, tables are printed.
     """
     target, sheet = (None if place is None else writable(place) for place in (out, page))
-    from trackroller.report.pages.sheet import write_spectrum  # heavy: jinja2
     from trackroller.report.pages.sheet_text import as_json, print_spectrum
+    from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
     from trackroller.study.spectrum.file import load_spectrum
     from trackroller.study.spectrum.solve import solve_spectrum
 

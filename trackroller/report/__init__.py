@@ -42,7 +42,8 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     >>> tr.report(ds, "sheet.html").name
     'sheet.html'
     """
-    from trackroller.report.pages.sheet import write_sheet, write_spectrum  # heavy: jinja2
+    from trackroller.report.pages.sheet import write_sheet  # heavy: jinja2
+    from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
 
     if "damage_sum" in ds:
         return write_spectrum(ds, path)

@@ -221,3 +221,12 @@ def _parts(name: str) -> list[str]:
 def _pair(label: str) -> str:
     parts = label.split(" / ")
     return f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)
+
+
+def chance(value: float, low: float = math.nan, high: float = math.nan, words: str = "") -> str:
+    """Write a probability: '97 %' or '97 % (95 % to 98 %)', with more figures near 0 (never) and 100 % (always)."""
+    whole = 10**9
+    if math.isnan(value):
+        return "–"
+    text, *ends = (share(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v))
+    return f"{text} ({words}{' to '.join(ends)})" if ends else text

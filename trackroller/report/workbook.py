@@ -13,7 +13,7 @@ import numpy as np
 
 from trackroller.files import write_whole
 from trackroller.report import html
-from trackroller.report.tables.cases import Table, cell
+from trackroller.report.tables.table import Table, cell
 
 
 def export(tables: Sequence[Table], folder: Path) -> list[Path]:

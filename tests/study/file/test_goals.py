@@ -25,7 +25,7 @@ from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.inputs import as_material
-from trackroller.report.words import indices as words
+from trackroller.report.words import indices
 from trackroller.study.file.load import parse_study
 from trackroller.study.store.sources import source_files
 
@@ -211,7 +211,7 @@ def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
     assert float(sens["first"].sel(output="full_slip", factor="axial_force")) > 0.9
     assert "constant" in sens["note"].sel(output="friction_power").item()
     assert np.isnan(sens["delta"].sel(output="friction_power")).all()
-    assert "No index can be given" in words.tornado(sens, "friction_power").text
+    assert "No index can be given" in indices.tornado(sens, "friction_power").text
 
 
 def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set():

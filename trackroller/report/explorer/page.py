@@ -25,7 +25,7 @@ from trackroller.report.explorer.rows import STATES, Column, collect, solve_inpu
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count
-from trackroller.report.words.pareto import heading
+from trackroller.report.words.pareto import goal_heading
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import flat, read_study
 from trackroller.study.store.folder import StudyFolder
@@ -119,7 +119,7 @@ def design_points(ds: xr.Dataset, sens: xr.Dataset | None) -> dict[str, Any] | N
         return {"goals": goals, "labels": {}}
     factors = [name for name in front.attrs["factors"].split(", ") if name]
     names = dict.fromkeys([*factors, *goals])
-    labels = {name: heading(front, name) for name in names}
+    labels = {name: goal_heading(front, name) for name in names}
     values = {name: [plain_level(value) for value in front[name].values.tolist()] for name in names}
     return {"goals": goals, "factors": factors, "labels": labels, "values": values}
 

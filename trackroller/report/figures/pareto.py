@@ -12,10 +12,11 @@ from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, listing, long_name, plain, with_unit
-from trackroller.report.words import pareto as choices
+from trackroller.report.tables.targets import MAX_POINTS
 from trackroller.report.words.cases import CONDITIONS
+from trackroller.report.words.design_points import best_point, point_words
 from trackroller.report.words.levels import coloured
-from trackroller.report.words.targets import MAX_POINTS
+from trackroller.report.words.pareto import goal_heading, goals_of, pareto_sentence
 from trackroller.study.design.entries import OPTION_FACTORS
 
 _WAYS = {"max": "up", "min": "down"}
@@ -41,7 +42,7 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
     front : dataset of `trackroller.analysis.pareto.pareto`
     view : the study, for the validity and the deciding factor of the designs
     """
-    goals = choices.goals_of(front)
+    goals = goals_of(front)
     if not (front["optimal"].values == 1).any():
         return None
     others = goals[1:4]
@@ -59,7 +60,7 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
         f"Pareto set for {wanted}; {front.sizes['row']:,} allowed {kind}s of {front.attrs['rows']:,}{limits}. Left "
         f"out: {front.attrs['excluded']}.{_given(front)}"
     )
-    return figure, style.FigureInfo("pareto-front", caption, choices.pareto(front, view).text)
+    return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, view).text)
 
 
 def _groups(front: xr.Dataset, view: StudyView | None, goal: str) -> list[tuple[str, np.ndarray]]:
@@ -103,8 +104,8 @@ def _trade(
         if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
             set_scale("log")
             style.log_ticks(axes.xaxis if name == x else axes.yaxis, values.min(), values.max())
-    axes.set_xlabel(choices.heading(front, x) + (" →" if up_x == "max" else " ←"))
-    axes.set_ylabel(choices.heading(front, y) + (" →" if up_y == "max" else " ←"))
+    axes.set_xlabel(goal_heading(front, x) + (" →" if up_x == "max" else " ←"))
+    axes.set_ylabel(goal_heading(front, y) + (" →" if up_y == "max" else " ←"))
 
 
 def robust_points(table: xr.Dataset, output: str) -> style.Drawn:
@@ -130,7 +131,7 @@ def robust_points(table: xr.Dataset, output: str) -> style.Drawn:
     place = np.arange(len(rank))[::-1]
     own = float(table.attrs.get("log_life_scatter", 0.0)) > 0
     _spread(left, part, rank, place, own)
-    left.set_yticks(place, [capital(choices.point_words(table, int(p))) for p in rank])
+    left.set_yticks(place, [capital(point_words(table, int(p))) for p in rank])
     name = str(part["output_name"].item())
     left.set_xlabel(with_unit(capital(name), str(part["output_units"].item())))
     _shares(right, table, rank, place)
@@ -145,7 +146,7 @@ def robust_points(table: xr.Dataset, output: str) -> style.Drawn:
         "Whiskers: 95 % intervals. Lives of the rolling cases; the share of the others on the right."
         + (" B10 holds the material's own scatter of life as well." if own else "")
     )
-    return figure, style.FigureInfo(f"robustness-{output}", caption, choices.robustness(table, output).text)
+    return figure, style.FigureInfo(f"robustness-{output}", caption, best_point(table, output).text)
 
 
 def _spread(axes: Any, part: xr.Dataset, rank: np.ndarray, place: np.ndarray, own: bool) -> None:

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from trackroller.analysis.ranking import SIGNED, SIZED, headline, order
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, with_unit
-from trackroller.report.words import indices as words
+from trackroller.report.words import indices
 from trackroller.study.outputs import DEFAULTS
 
 Look = dict[str, Any]
@@ -34,7 +34,7 @@ def main_outputs(sens: xr.Dataset, count: int) -> list[str]:
 
 def title(sens: xr.Dataset, output: str) -> str:
     """Name an output with a large first letter."""
-    return capital(words.of_output(sens, output))
+    return capital(indices.of_output(sens, output))
 
 
 def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
@@ -57,7 +57,7 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
             value, low, high = (np.maximum(v, 0.0) for v in (value, low, high))
         at = place + (0.19 - 0.38 * i) * (len(drawn) > 1)
         look: Look = {"height": 0.38 if len(drawn) > 1 else 0.62, "hatch": "////" * i, "linewidth": 0.6}
-        axes.barh(at, value, color=style.palette(2)[i], edgecolor="0.15", label=words.INDEX_WORDS[name], **look)
+        axes.barh(at, value, color=style.palette(2)[i], edgecolor="0.15", label=indices.INDEX_WORDS[name], **look)
         whisker: Look = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
         axes.errorbar(value, at, xerr=np.abs([value - low, high - value]), **whisker)
     if len(drawn) > 1:
@@ -69,15 +69,15 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
     axes.set_xlabel(_axis(sens, output, index))
     style.head(figure, f"{title(sens, output)}: what decides it")
     caption = (
-        f"{capital(words.INDEX_WORDS[index])} of each factor on {words.of_output(sens, output)}; whiskers: 95 % "
+        f"{capital(indices.INDEX_WORDS[index])} of each factor on {indices.of_output(sens, output)}; whiskers: 95 % "
         f"intervals. {sens.attrs.get('treatment', '')}."
     )
-    return figure, style.FigureInfo(f"tornado-{output}", caption, words.tornado(sens, output).text)
+    return figure, style.FigureInfo(f"tornado-{output}", caption, indices.tornado(sens, output).text)
 
 
 def _axis(sens: xr.Dataset, output: str, index: str) -> str:
-    text = words.INDEX_WORDS[index]
-    return with_unit(text, words.effect_unit(sens, output)) if index in SIZED else f"{text}: share of variance [–]"
+    text = indices.INDEX_WORDS[index]
+    return with_unit(text, indices.effect_unit(sens, output)) if index in SIZED else f"{text}: share of variance [–]"
 
 
 def overview(sens: xr.Dataset) -> style.Drawn:
@@ -97,10 +97,10 @@ def overview(sens: xr.Dataset) -> style.Drawn:
     rank = np.argsort(-np.nan_to_num(table).mean(axis=1))
     names = [capital(str(n)) for n in sens["factor_name"].values[rank]]
     outputs = [capital(str(n)) for n in sens["output_name"].values[keep]]
-    label = f"{words.INDEX_WORDS[index]}: {'relative to the largest' if sized else 'share of variance'} [–]"
+    label = f"{indices.INDEX_WORDS[index]}: {'relative to the largest' if sized else 'share of variance'} [–]"
     figure = _heat(table[rank].T, outputs, names, label, "Influence on every output")
-    caption = f"{capital(words.INDEX_WORDS[index])} of every factor (columns) on every output (rows)."
-    return figure, style.FigureInfo("influence-overview", caption, words.overview(sens).text)
+    caption = f"{capital(indices.INDEX_WORDS[index])} of every factor (columns) on every output (rows)."
+    return figure, style.FigureInfo("influence-overview", caption, indices.overview(sens).text)
 
 
 def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, head: str) -> Figure:
@@ -147,8 +147,8 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
     axes.set_ylim(min(0.0, -0.1 * top), 1.35 * top)
     figure.legend(loc="outside lower center", ncols=3)
     style.head(figure, f"{title(sens, output)}: course of the indices")
-    caption = f"{capital(words.INDEX_WORDS[index])} from the first samples up to all of them; bands: 95 % intervals."
-    return figure, style.FigureInfo(f"convergence-{output}", caption, words.convergence(sens, output).text)
+    caption = f"{capital(indices.INDEX_WORDS[index])} from the first samples up to all of them; bands: 95 % intervals."
+    return figure, style.FigureInfo(f"convergence-{output}", caption, indices.convergence(sens, output).text)
 
 
 def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
@@ -175,7 +175,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
         half = np.abs([[rank.value - rank.low], [rank.high - rank.value]])
         look = {"color": colour, "marker": style.MARKERS[i % 10], "label": capital(rank.name)}
         axes.errorbar(rank.value, float(part["sigma"].sel(factor=rank.factor)), xerr=half, **whisker | look)
-    unit = words.effect_unit(sens, output)
+    unit = indices.effect_unit(sens, output)
     axes.set_xlabel(f"mean absolute effect μ* [{unit}]")
     axes.set_ylabel(f"spread of the effects σ [{unit}]")
     axes.set_xlim(0, top)
@@ -186,7 +186,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
         "Elementary effects over each factor's whole range: to the right a factor matters; above the lines "
         "its effect depends on where one is. Whiskers: 95 % intervals."
     )
-    return figure, style.FigureInfo(f"morris-{output}", caption, words.morris(sens, output).text)
+    return figure, style.FigureInfo(f"morris-{output}", caption, indices.morris(sens, output).text)
 
 
 def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
@@ -198,7 +198,7 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
     if not name or not np.isfinite(part[name].values).any():
         return None
-    said = words.interactions(sens, output)
+    said = indices.interactions(sens, output)
     shares = name != "interaction"
     if said.kind != "interaction" or (shares and said.values["value"] < WORTH):  # left out without a finding
         return None
@@ -211,7 +211,7 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     np.fill_diagonal(table, np.abs(part[own].values) if own == "effect" else np.maximum(part[own].values, 0.0))
     table = np.where(np.triu(np.ones_like(table, dtype=bool)), np.abs(table), np.nan)
     names = [capital(str(n)) for n in part["factor_name"].values]
-    label = f"size [{words.effect_unit(sens, output)}]" if name == "interaction" else "share of variance [–]"
+    label = f"size [{indices.effect_unit(sens, output)}]" if name == "interaction" else "share of variance [–]"
     figure = _heat(table, names, names, label, f"{title(sens, output)}: interactions")
     caption = "Off the diagonal: what two factors do together beyond the sum of both; on it: each factor alone."
     caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""

@@ -6,9 +6,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.report.figures import style
-from trackroller.report.numbers import listing
-from trackroller.report.pages.spectrum import track
-from trackroller.report.words.pareto import chance
+from trackroller.report.numbers import chance, listing
+from trackroller.report.words.spectrum import track
 from trackroller.study.spectrum.solve import BODIES
 
 MOST = 16  # blocks drawn one by one; the others stand together

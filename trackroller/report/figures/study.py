@@ -27,7 +27,7 @@ from trackroller.report.figures.sensitivity import (
     tornado,
 )
 from trackroller.report.figures.sn_diagram import sn_diagram
-from trackroller.report.words.flags import FRICTION_OUTPUTS, friction_error
+from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
 
 Draw = Callable[[], style.Drawn]
 OF_CASES = (by_factor, life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import shlex
 import tempfile
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.analysis.table import BODIES
 from trackroller.files import write_text
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
-from trackroller.report.numbers import capital, life, number, rounded
-from trackroller.report.pages.sheet_facts import body_materials, collect, versions_text
-from trackroller.report.pages.spectrum import block_table, life_rows, sentences, warnings
-from trackroller.report.tables.inputs import input_row, is_told
+from trackroller.report.numbers import life, number, rounded
+from trackroller.report.pages.sheet_facts import collect
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -79,42 +74,3 @@ def _pictures(draw: Callable[[Path], list[Any]]) -> dict[str, dict[str, str]]:
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         return {i.name: vars(i) | {"source": html.data_uri(folder / f"{i.name}.svg")} for i in draw(folder)}
-
-
-def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml") -> Path:
-    """Write the page of a load spectrum as one HTML file that stands alone.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        Result of `solve_spectrum`.
-    path : Path or str
-        The file to write.
-    file : str
-        Name of the spectrum file, for the command that repeats the page.
-
-    Returns
-    -------
-    Path
-        The file.
-    """
-    from trackroller.report.figures import spectrum, style  # heavy: matplotlib
-
-    inputs = json.loads(ds.attrs["roller"])
-    drawn = _pictures(partial(style.draw_all, [partial(spectrum.damage_by_block, ds)]))
-    content = {
-        "name": capital(str(ds.attrs["title"])),
-        "description": str(ds.attrs.get("description", "")),
-        "said": [sentence.text for sentence in sentences(ds)],
-        "lives": [(body, life_rows(ds, body)) for body in BODIES],
-        "conventions": capital(str(ds.attrs["life_conventions"])),
-        "figure": next(iter(drawn.values()), None),
-        "inputs": [input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
-        "materials": body_materials(json.loads(ds.attrs["materials"])),
-        "blocks": block_table(ds),
-        "flags": warnings(ds),
-        "command": f"trackroller spectrum {shlex.quote(file)} --report {shlex.quote(Path(path).name)}",
-        "versions": versions_text(),
-    }
-    write_text(Path(path), html.render("spectrum.html.j2", content))
-    return Path(path)

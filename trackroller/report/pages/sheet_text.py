@@ -10,9 +10,10 @@ import numpy as np
 from trackroller.analysis.table import BODIES
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.pages.sheet_facts import Facts, collect
-from trackroller.report.pages.spectrum import block_table, life_rows, sentences, warnings
+from trackroller.report.pages.spectrum import block_table, life_rows, warnings
 from trackroller.report.terminal import print_table
 from trackroller.report.words.flags import flags_of
+from trackroller.report.words.spectrum import sentences
 from trackroller.roller.record import inputs_of, is_default, materials_of
 from trackroller.study.store.provenance import versions
 

@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
+import json
+import shlex
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trackroller.analysis.table import BODIES
+from trackroller.files import write_text
+from trackroller.report import html
+from trackroller.report.numbers import capital
+from trackroller.report.pages.sheet import _pictures
+from trackroller.report.pages.sheet_facts import body_materials, versions_text
+from trackroller.report.tables.inputs import input_row, is_told
+from trackroller.report.words.spectrum import sentences
+
+if TYPE_CHECKING:
+    import xarray as xr
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.report.numbers import capital, life, listing, long_name, unit_text, with_unit
-from trackroller.report.tables.cases import Table, cell
+from trackroller.parameters import PARAMETERS, REGIME_LABELS
+from trackroller.report.numbers import chance, listing, long_name, unit_text, with_unit
 from trackroller.report.tables.inputs import Row
+from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.flags import flags_of
-from trackroller.report.words.pareto import chance
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.spectrum import UNITS, _life, track
 from trackroller.study.spectrum.file import LOAD_FIELDS
-from trackroller.study.spectrum.solve import BODIES
 
 if TYPE_CHECKING:
     import xarray as xr
-
-UNITS = (("shifts", "shifts"), ("km", "km"), ("hours", "h"))
 
 
 def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
@@ -71,53 +84,40 @@ def warnings(ds: xr.Dataset) -> list[str]:
     return [f"{text} Blocks: {listing(blocks)}." for text, blocks in found.items()]
 
 
-def track(ds: xr.Dataset, body: str) -> int:
-    """Return the contact whose track fails first; of unknown lives the other one."""
-    shifts = ds["life_shifts"].sel(body=body).values
-    return int(ds["contact"].values[int(np.argmin(np.where(np.isnan(shifts), np.inf, shifts)))])
+def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml") -> Path:
+    """Write the page of a load spectrum as one HTML file that stands alone.
 
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `solve_spectrum`.
+    path : Path or str
+        The file to write.
+    file : str
+        Name of the spectrum file, for the command that repeats the page.
 
-def sentences(ds: xr.Dataset) -> list[Sentence]:
-    """Return one sentence for each body: its life, the track that fails first, and the block with the most damage."""
-    return [_sentence(ds, body) for body in BODIES]
+    Returns
+    -------
+    Path
+        The file.
+    """
+    from trackroller.report.figures import spectrum, style  # heavy: matplotlib
 
-
-def _sentence(ds: xr.Dataset, body: str) -> Sentence:
-    shifts = ds["life_shifts"].sel(body=body)
-    if bool(shifts.isnull().any()):
-        text = f"The life of the {body} is not known: {_undefined_blocks(ds, body)}{_at_most(ds, body)}."
-        return Sentence("spectrum_unknown", text, {"body": body})
-    if bool(np.isinf(shifts).all()):
-        return Sentence("spectrum_unlimited", f"The {body} takes no damage in this spectrum.", {"body": body})
-    contact = track(ds, body)
-    part = ds["damage"].sel(body=body, contact=contact).values / float(ds["damage_sum"].sel(body=body, contact=contact))
-    worst = int(np.argmax(part))
-    lives = {name: float(ds[f"{body}_life_{name}"]) for name, _ in UNITS}
-    told = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
-    text = (
-        f"The {body} lasts {_life(lives['shifts'])} shifts ({told}); contact {contact} fails first, and "
-        f"{chance(float(part[worst]))} of its damage comes from '{ds['block'].values[worst]}'."
-    )
-    values = {"body": body, "contact": contact, "block": str(ds["block"].values[worst]), "share": float(part[worst])}
-    return Sentence("spectrum", text, values | lives)
-
-
-def _at_most(ds: xr.Dataset, body: str) -> str:
-    """Return an upper bound of the life from the known blocks; an empty text if these blocks do no damage."""
-    known = float(ds["damage"].sel(body=body).sum("block").max())  # skips the unknown ones
-    return f"; at most {_life(ds.attrs['critical_damage'] / known)} shifts by the other blocks" if known > 0 else ""
-
-
-def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
-    unknown = ds["damage"].sel(body=body).isnull().any("contact").values
-    names = ds["block"].values
-    if np.isnan(ds["overrollings"].sel(body=body).values[unknown]).all():
-        return "give guide_overrollings_per_hour, or guide_overrollings of each block"
-    listed = ", ".join(
-        f"'{name}' ({REGIMES[int(r)]})" for name, r in zip(names[unknown], ds["regime"].values[unknown], strict=True)
-    )
-    return f"no stress in {listed}"
-
-
-def _life(value: float) -> str:
-    return "unknown" if np.isnan(value) else life(value)
+    inputs = json.loads(ds.attrs["roller"])
+    drawn = _pictures(partial(style.draw_all, [partial(spectrum.damage_by_block, ds)]))
+    content = {
+        "name": capital(str(ds.attrs["title"])),
+        "description": str(ds.attrs.get("description", "")),
+        "said": [sentence.text for sentence in sentences(ds)],
+        "lives": [(body, life_rows(ds, body)) for body in BODIES],
+        "conventions": capital(str(ds.attrs["life_conventions"])),
+        "figure": next(iter(drawn.values()), None),
+        "inputs": [input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
+        "materials": body_materials(json.loads(ds.attrs["materials"])),
+        "blocks": block_table(ds),
+        "flags": warnings(ds),
+        "command": f"trackroller spectrum {shlex.quote(file)} --report {shlex.quote(Path(path).name)}",
+        "versions": versions_text(),
+    }
+    write_text(Path(path), html.render("spectrum.html.j2", content))
+    return Path(path)

@@ -18,14 +18,18 @@ from trackroller.files import write_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, long_name, percent, rounded
-from trackroller.report.tables.cases import Table, best_table, cell, reason_table, regime_table, validity_table
-from trackroller.report.tables.indices import index_table, measure_table, pareto_table, part_tables, robust_tables
+from trackroller.report.tables.cases import best_table, reason_table, regime_table, validity_table
+from trackroller.report.tables.design_points import robust_tables
+from trackroller.report.tables.indices import index_table, measure_table, part_tables
 from trackroller.report.tables.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
-from trackroller.report.words import pareto as choices
+from trackroller.report.tables.pareto import pareto_table
+from trackroller.report.tables.table import Table, cell
+from trackroller.report.tables.targets import target_tables
+from trackroller.report.words.accuracy import friction_error
 from trackroller.report.words.comparison import report_section
-from trackroller.report.words.flags import friction_error
+from trackroller.report.words.design_points import best_point
 from trackroller.report.words.in_short import in_short
-from trackroller.report.words.targets import target_tables
+from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.workbook import export
 from trackroller.study.design.sampling import ARRAYS
 
@@ -102,13 +106,13 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     front = study_pareto(view.data, sens)
     said = []
     if front is not None:
-        said.append(choices.pareto(front, view).text)
+        said.append(pareto_sentence(front, view).text)
         decide.append(pareto_table(front, view, error))
     decide += target_tables(sens) if sens is not None else []
     why: list[Table] = []
     if sens is not None and robust_design(sens):
         decide += robust_tables(sens, error)
-        said += [choices.robustness(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
+        said += [best_point(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
     elif sens is not None:
         why = [index_table(sens, error), *part_tables(sens)]
         index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)

@@ -2,61 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.analysis.table import BODIES, StudyView
-from trackroller.parameters import PARAMETERS, REGIME_LABELS
-from trackroller.report.numbers import capital, count, level_text, life, long_name, plain, rounded, share, unit_text
-from trackroller.report.words.cases import occurrence, ranked
+from trackroller.parameters import REGIME_LABELS
+from trackroller.report.numbers import capital, plain, share
+from trackroller.report.tables.table import Table, factor_cell, heading
+from trackroller.report.words.cases import ranked
 from trackroller.report.words.flags import OF_BODY, words_of
+from trackroller.report.words.regimes import occurrence
 from trackroller.roller.dataset import VALIDITY_BITS
 
 BEST = 5  # designs in the table of the best
-_SPOKEN = ("motor_force", "guide_curve_radius")
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table: `name` of its files, title, heads with units, rows of numbers and texts, and what a reader must know.
-
-    `marks` are the cells (row, column) that stand out; the first column holds the heads of the rows.
-    """
-
-    name: str
-    title: str
-    heads: Sequence[str]
-    rows: Sequence[Sequence[Any]]
-    note: str = ""
-    marks: frozenset[tuple[int, int]] = frozenset()
-
-
-def cell(value: Any) -> str:
-    """Write a cell: texts as they are, whole numbers with commas, others in four figures."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, (int, np.integer)):
-        return count(int(value))
-    return life(value) if np.isposinf(value) else rounded(float(value), 4)
-
-
-def heading(name: str) -> str:
-    """Write the head of a factor's column or row, with its unit."""
-    parameter = PARAMETERS.get(name)
-    if name in _SPOKEN or parameter is None or parameter.unit == "-":
-        return capital(long_name(name))
-    return f"{capital(long_name(name))} [{unit_text(parameter.unit)}]"
-
-
-def factor_cell(name: str, value: Any) -> Any:
-    """Return a level for a table: a number if the head of the column holds the unit, otherwise words."""
-    if isinstance(value, str) or name in _SPOKEN or not np.isfinite(value):
-        return level_text(name, value)
-    return float(value)
 
 
 def best_table(view: StudyView) -> Table | None:

@@ -12,7 +12,7 @@ from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, unit_text
-from trackroller.report.tables.cases import Table
+from trackroller.report.tables.table import Table
 from trackroller.roller.record import is_default
 
 MATERIAL_ROWS = (  # attribute, words, unit

@@ -12,7 +12,7 @@ from trackroller.analysis.contact_models import GOOD, designs, errors, measured,
 from trackroller.analysis.groups import DRIVE, Groups, drives, groups
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import capital, long_name, percent
-from trackroller.report.tables.cases import Table
+from trackroller.report.tables.table import Table
 from trackroller.report.words.levels import group_texts, span
 
 FRICTION = "friction_coefficient"

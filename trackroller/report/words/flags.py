@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from trackroller.analysis.table import BODIES, StudyView
-from trackroller.parameters import CONTACT_MODELS, REGIMES
-from trackroller.report.numbers import capital, count, percent, plain, rounded
-from trackroller.report.words.sentence import Sentence
+from trackroller.parameters import REGIMES
+from trackroller.report.numbers import capital, percent, plain
+from trackroller.report.words.accuracy import KNOWN_ERROR, SLIDING_ERROR
 from trackroller.roller.dataset import VALIDITY_BITS, validity_bit
 
 if TYPE_CHECKING:
@@ -54,10 +51,7 @@ WORDS: dict[str, tuple[str, str]] = {
     ),
 }
 OF_BODY = ("yield", "static", "deep_life", "half_space")  # flags that may hold for one body alone
-SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 _ROLLING = REGIMES.index("rolling")
-KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
-FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
 
 
 def of_body(flag: str, body: str) -> str:
@@ -102,54 +96,3 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
         found.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
     return found
-
-
-def friction_error(view: StudyView) -> Sentence | None:
-    """Say how far friction energy is from the work put in, where the median difference exceeds 5 %."""
-    residual = view.column("energy_residual")
-    rows = view.rolling & np.isfinite(residual)
-    if not rows.any() or np.median(residual[rows]) <= KNOWN_ERROR:
-        return None
-    middle, most = float(np.median(residual[rows])), float(residual[rows].max())
-    text = (
-        f"Known model error: friction energy and power differ from the work put in by {rounded(100 * middle)} % in the "
-        f"median and {rounded(100 * most)} % at most of {count(int(rows.sum()))} rolling designs. Solve with "
-        "`contact_model: kalker` before a decision rests on them."
-    )
-    return Sentence("friction_error", text, {"median": middle, "largest": most, "of": int(rows.sum())}, rows)
-
-
-def full_sliding(view: StudyView) -> Sentence | None:
-    """State the known error of full sliding if designs were solved by it.
-
-    Return None if the study holds the friction work: another sentence then states the error measured in this study.
-    """
-    rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
-    if not rows.any() or np.isfinite(view.column("energy_residual")).any():
-        return None
-    cases = int(rows.sum())
-    text = (
-        f"Known model error: full sliding solved {count(cases)} rolling designs. {SLIDING_ERROR} Solve with "
-        "`contact_model: kalker` before a decision rests on them."
-    )
-    return Sentence("full_sliding", text, {"count": cases}, rows)
-
-
-def accuracy(view: StudyView) -> list[Sentence]:
-    """Say how well the peaks are resolved, and where the stress of the contact model is singular."""
-    said = []
-    for body in BODIES:
-        error = view.column(f"error_estimate_{body}")
-        rows = view.valid & np.isfinite(error)
-        if rows.any():
-            middle, most = float(np.median(error[rows])), float(error[rows].max())
-            text = f"The peak stress of the {body} is resolved to {percent(middle)} in the median of the valid designs"
-            values = {"body": body, "median": middle, "largest": most}
-            said.append(Sentence("resolved", f"{text} and to {percent(most)} at worst.", values, rows))
-            break
-    if "split_pole" in view.flags and (hit := view.flagged("split_pole") & view.rolling).any():
-        cases = int(hit.sum())
-        text = f"In {count(cases)} rolling designs the stress of full sliding is singular: solve them with"
-        values = {"count": cases}
-        said.append(Sentence("singular", f"{text} `contact_model: kalker`.", values, view.rolling))
-    return said

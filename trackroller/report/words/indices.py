@@ -8,8 +8,9 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import advice
+from trackroller.analysis.labels import factor_name
 from trackroller.analysis.ranking import SIGNED, Rank, estimate, headline, order
-from trackroller.report.numbers import capital, count, listing, percent, plus_minus, rounded, unit_text
+from trackroller.report.numbers import capital, count, level_text, listing, percent, plus_minus, rounded, unit_text
 from trackroller.report.words.sentence import Sentence
 
 HALF = "± is half the 95 % interval"
@@ -189,3 +190,52 @@ def overview(sens: xr.Dataset) -> Sentence:
         return Sentence("no_index", "No index can be given for any output.")
     text = capital("; ".join(f"{name} decides {listing(what)}" for name, what in lead.items()))
     return Sentence("leads", f"{text} ({INDEX_WORDS[headline(sens)]}).", {"first": first})
+
+
+def part_sentences(sens: xr.Dataset, output: str) -> list[Sentence]:
+    """Return the sentences on the groups and on the levels for one output, as far as the analysis has them."""
+    found = (group_indices(sens, output), level_indices(sens, output))
+    return [said for said in found if said is not None]
+
+
+def group_indices(sens: xr.Dataset, output: str) -> Sentence | None:
+    """State the total index of each group of factors, the largest first."""
+    if "group_ST" not in sens:
+        return None
+    part = sens.sel(output=output)
+    value, low, high = estimate(part, "group_ST")
+    if not np.isfinite(value).all():
+        return None
+    order = np.argsort(-value, kind="stable")
+    names = part["group_name"].values
+    told = [f"{names[i]} {percent(value[i], low[i], high[i])}" for i in order]
+    what = f"of the variance of {of_output(sens, output)} ({INDEX_WORDS['ST']})"
+    text = f"By groups, {names[order[0]]} accounts for {percent(value[order[0]], low[order[0]], high[order[0]])} {what}"
+    text += f", {listing(told[1:])}." if told[1:] else "."
+    ranks = [(str(part["group"].values[i]), float(value[i]), float(low[i]), float(high[i])) for i in order]
+    return Sentence("groups", text, {"output": output, "ranks": ranks})
+
+
+def level_indices(sens: xr.Dataset, output: str) -> Sentence | None:
+    """Name the factor with the largest first-order index within each level of a category."""
+    if "conditional_S1" not in sens:
+        return None
+    part, told, lead = sens.sel(output=output), [], {}
+    for level in part["level"].values:
+        value, low, high = estimate(part.sel(level=level), "conditional_S1")
+        if not np.isfinite(value).any():
+            continue
+        best = int(np.nanargmax(value))
+        lead[str(level)] = str(part["factor"].values[best])
+        words = level_text(str(sens["level"].attrs["factor"]), level)
+        told.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {words}")
+    if not told:
+        return None
+    what = f"{INDEX_WORDS['S1']} of the variance of {of_output(sens, output)}"
+    text = f"By {category(sens)}, the largest {what} is: {'; '.join(told)}."
+    return Sentence("levels", text, {"output": output, "lead": lead})
+
+
+def category(sens: xr.Dataset) -> str:
+    """Name the factor whose levels the conditional indices stand for."""
+    return factor_name(str(sens["level"].attrs["factor"]))

@@ -6,13 +6,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.ranking import estimate
-from trackroller.report.numbers import capital, count, level_text, long_name, number, quantity, setting
-from trackroller.report.tables.cases import Table
-from trackroller.report.words.pareto import chance, point_words
+from trackroller.report.numbers import capital, chance, count, level_text, long_name, number, quantity, setting
+from trackroller.report.words.design_points import point_words
 from trackroller.report.words.sentence import Sentence
 
 SAME = 1e-6  # probabilities that differ by less are called the same
-MAX_POINTS = 24  # rows of the table of design points
 INTERVAL = "95 % interval "
 WHOLE = {"grid": "designs of the grid", "table": "rows of the table"}  # designs without an interval
 
@@ -96,33 +94,3 @@ def _level_words(part: xr.Dataset, level: int) -> str:
     if text or low == high:
         return setting(name, text or low)
     return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
-
-
-def target_tables(table: xr.Dataset) -> list[Table]:
-    """List the probability of each target at each design point (or in all cases), and at each level of a factor."""
-    if "target_probability" not in table:
-        return []
-    targets = range(table.sizes["target"])
-    heads = [f"{capital(target_words(table, t))} (95 % interval)" for t in targets]
-    said = [target(table, t).text for t in targets]
-    said.append("A case that does not roll, misses a constraint or has no value misses every target.")
-    if float(table.attrs.get("log_life_scatter", 0.0)) > 0:
-        said.append("Lives hold the material's own scatter.")
-    places = range(table.sizes.get("target_level", 0))
-    levels = [[capital(_level_words(table, i)), *_cells(table, "level", i)] for i in places]
-    title = "Targets: probability by level of a factor"
-    if table["target_probability"].ndim == 1:
-        every = ["All cases", *_cells(table, "target")]
-        return [Table("targets", title, ["Level", *heads], [every, *levels], " ".join(said))]
-    order = np.argsort(-table["target_probability"].values[-1], kind="stable")
-    rows = [[capital(point_words(table, int(p))), *_cells(table, "target", int(p))] for p in order[:MAX_POINTS]]
-    said.append(f"Every design point has the same {count(int(table.attrs['inner_samples']))} samples.")
-    if len(order) > len(rows):
-        said.append(f"{len(order) - len(rows)} more design points are in sensitivity.nc.")
-    found = [Table("targets", "Targets: probability by design point", ["Design point", *heads], rows, " ".join(said))]
-    note = "Mean over the design points at each level."
-    return [*found, Table("targets_levels", title, ["Level", *heads], levels, note)] if levels else found
-
-
-def _cells(table: xr.Dataset, kind: str, place: int | None = None) -> list[str]:
-    return [_cell(table.isel(target=t), kind, place) for t in range(table.sizes["target"])]

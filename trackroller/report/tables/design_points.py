@@ -1,0 +1,75 @@
+"""Tables of the design points of an inner/outer design: B10, regimes and percentiles."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from trackroller.analysis.ranking import estimate
+from trackroller.damage.sn_curve import DECADES
+from trackroller.report.numbers import capital, chance, listing, rounded, unit_text
+from trackroller.report.tables.table import Table
+from trackroller.report.tables.targets import MAX_POINTS
+from trackroller.report.words.accuracy import FRICTION_OUTPUTS
+from trackroller.report.words.design_points import point_words
+from trackroller.report.words.sentence import Sentence
+from trackroller.study.outputs import read_study, settings
+
+OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
+
+
+def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
+    """List every analysed output of an inner/outer design by design point: lives first, the best point on top."""
+    names = [str(n) for n in table["output"].values]
+    asked = settings(read_study(table)).get("outputs")
+    lives = [n for n in names if "life" in n and np.isfinite(table["percentile_value"].sel(output=n)).any()]
+    others = [n for n in names if "life" not in n] if asked or not lives else []
+    found = [part for n in lives for part in _life_tables(table, n)]
+    return found + [_point_table(table, n, error) for n in others]
+
+
+def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
+    """Return the tables of B10, regimes and percentiles of the design points.
+
+    Percentiles have a table of their own where B10 holds the scatter of the material, because they do not hold it.
+    """
+    part, scatter = table.sel(output=output), float(table.attrs.get("log_life_scatter", 0.0))
+    safe = np.nan_to_num(part["b10_safe"].values)
+    points = np.lexsort((-np.nan_to_num(part["b10"].values), -safe))[:MAX_POINTS]
+    seen = [r for r in OTHERS if float(table["probability"].sel(regime=r).max()) > 0]
+    heads = ["Design point", "B10", "B10, 95 % interval", "B10, other cases as life 0"]
+    heads += [f"{capital(OTHERS[r])} (95 % interval)" for r in seen]
+    rows = []
+    for p in map(int, points):
+        b10, low, high = map(float, estimate(part, "b10")[:, p])
+        span = f"{rounded(low)} to {rounded(high)}" if np.isfinite(high) else "–"
+        chances = [chance(*estimate(table.sel(regime=r), "probability")[:, p]) for r in seen]
+        rows.append([capital(point_words(table, p)), b10, span, float(part["b10_safe"][p]), *chances])
+    unit = unit_text(str(part["output_units"].item()))
+    name = capital(str(part["output_name"].item()))
+    own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DECADES * scatter))}."
+    note = own if scatter > 0 else "B10 holds the scatter of the study's factors alone, not that of the material."
+    if never := [r for r in OTHERS if r not in seen]:
+        high = 100 * float(table["probability_high"].sel(regime=never).max())
+        shown = listing([OTHERS[r] for r in never], "or")
+        note += f" No case shows {shown}: its probability is below {high:.2g} % at each design point (95 % confidence)."
+    if (left := table.sizes["point"] - MAX_POINTS) > 0:
+        note += f" {left} more design points are in sensitivity.nc."
+    first = Table(f"b10_{output}", f"{name}: B10 [{unit}], best design points first", heads, rows, note)
+    return [first, _point_table(table, output, None, points)]
+
+
+def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points: np.ndarray | None = None) -> Table:
+    """Return the mean and percentiles of an output at each design point, by the scatter of the study's factors only."""
+    part = table.sel(output=output)
+    points = np.arange(min(table.sizes["point"], MAX_POINTS)) if points is None else points
+    shares = (5.0, 50.0, 95.0)
+    rows = []
+    for p in map(int, points):
+        spread = [float(part["percentile_value"].sel(percentile=q)[p]) for q in shares]
+        rows.append([capital(point_words(table, p)), float(part["mean"][p]), *spread])
+    heads = ["Design point", "Mean", *(f"{q:.0f} %" for q in shares)]
+    name, unit = capital(str(part["output_name"].item())), unit_text(str(part["output_units"].item()))
+    note = "Rolling cases; scatter of the study's factors alone, without that of the material."
+    note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
+    return Table(f"percentiles_{output}", f"{name} [{unit}]: mean and percentiles", heads, rows, note)

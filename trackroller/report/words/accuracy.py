@@ -1,0 +1,70 @@
+"""Sentences on known errors of the contact models and on the resolution of peak stresses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.analysis.table import BODIES, StudyView
+from trackroller.parameters import CONTACT_MODELS
+from trackroller.report.numbers import count, percent, rounded
+from trackroller.report.words.sentence import Sentence
+
+if TYPE_CHECKING:
+    pass
+
+SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
+KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
+FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
+
+
+def friction_error(view: StudyView) -> Sentence | None:
+    """Say how far friction energy is from the work put in, where the median difference exceeds 5 %."""
+    residual = view.column("energy_residual")
+    rows = view.rolling & np.isfinite(residual)
+    if not rows.any() or np.median(residual[rows]) <= KNOWN_ERROR:
+        return None
+    middle, most = float(np.median(residual[rows])), float(residual[rows].max())
+    text = (
+        f"Known model error: friction energy and power differ from the work put in by {rounded(100 * middle)} % in the "
+        f"median and {rounded(100 * most)} % at most of {count(int(rows.sum()))} rolling designs. Solve with "
+        "`contact_model: kalker` before a decision rests on them."
+    )
+    return Sentence("friction_error", text, {"median": middle, "largest": most, "of": int(rows.sum())}, rows)
+
+
+def full_sliding(view: StudyView) -> Sentence | None:
+    """State the known error of full sliding if designs were solved by it.
+
+    Return None if the study holds the friction work: another sentence then states the error measured in this study.
+    """
+    rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
+    if not rows.any() or np.isfinite(view.column("energy_residual")).any():
+        return None
+    cases = int(rows.sum())
+    text = (
+        f"Known model error: full sliding solved {count(cases)} rolling designs. {SLIDING_ERROR} Solve with "
+        "`contact_model: kalker` before a decision rests on them."
+    )
+    return Sentence("full_sliding", text, {"count": cases}, rows)
+
+
+def accuracy(view: StudyView) -> list[Sentence]:
+    """Say how well the peaks are resolved, and where the stress of the contact model is singular."""
+    said = []
+    for body in BODIES:
+        error = view.column(f"error_estimate_{body}")
+        rows = view.valid & np.isfinite(error)
+        if rows.any():
+            middle, most = float(np.median(error[rows])), float(error[rows].max())
+            text = f"The peak stress of the {body} is resolved to {percent(middle)} in the median of the valid designs"
+            values = {"body": body, "median": middle, "largest": most}
+            said.append(Sentence("resolved", f"{text} and to {percent(most)} at worst.", values, rows))
+            break
+    if "split_pole" in view.flags and (hit := view.flagged("split_pole") & view.rolling).any():
+        cases = int(hit.sum())
+        text = f"In {count(cases)} rolling designs the stress of full sliding is singular: solve them with"
+        values = {"count": cases}
+        said.append(Sentence("singular", f"{text} `contact_model: kalker`.", values, view.rolling))
+    return said

@@ -1,0 +1,69 @@
+"""Sentences on a load spectrum: the life of each body, the track that fails first and the worst block."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.parameters import REGIMES
+from trackroller.report.numbers import chance, life, listing
+from trackroller.report.words.sentence import Sentence
+from trackroller.study.spectrum.solve import BODIES
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+UNITS = (("shifts", "shifts"), ("km", "km"), ("hours", "h"))
+
+
+def track(ds: xr.Dataset, body: str) -> int:
+    """Return the contact whose track fails first; of unknown lives the other one."""
+    shifts = ds["life_shifts"].sel(body=body).values
+    return int(ds["contact"].values[int(np.argmin(np.where(np.isnan(shifts), np.inf, shifts)))])
+
+
+def sentences(ds: xr.Dataset) -> list[Sentence]:
+    """Return one sentence for each body: its life, the track that fails first, and the block with the most damage."""
+    return [_sentence(ds, body) for body in BODIES]
+
+
+def _sentence(ds: xr.Dataset, body: str) -> Sentence:
+    shifts = ds["life_shifts"].sel(body=body)
+    if bool(shifts.isnull().any()):
+        text = f"The life of the {body} is not known: {_undefined_blocks(ds, body)}{_at_most(ds, body)}."
+        return Sentence("spectrum_unknown", text, {"body": body})
+    if bool(np.isinf(shifts).all()):
+        return Sentence("spectrum_unlimited", f"The {body} takes no damage in this spectrum.", {"body": body})
+    contact = track(ds, body)
+    part = ds["damage"].sel(body=body, contact=contact).values / float(ds["damage_sum"].sel(body=body, contact=contact))
+    worst = int(np.argmax(part))
+    lives = {name: float(ds[f"{body}_life_{name}"]) for name, _ in UNITS}
+    told = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
+    text = (
+        f"The {body} lasts {_life(lives['shifts'])} shifts ({told}); contact {contact} fails first, and "
+        f"{chance(float(part[worst]))} of its damage comes from '{ds['block'].values[worst]}'."
+    )
+    values = {"body": body, "contact": contact, "block": str(ds["block"].values[worst]), "share": float(part[worst])}
+    return Sentence("spectrum", text, values | lives)
+
+
+def _at_most(ds: xr.Dataset, body: str) -> str:
+    """Return an upper bound of the life from the known blocks; an empty text if these blocks do no damage."""
+    known = float(ds["damage"].sel(body=body).sum("block").max())  # skips the unknown ones
+    return f"; at most {_life(ds.attrs['critical_damage'] / known)} shifts by the other blocks" if known > 0 else ""
+
+
+def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
+    unknown = ds["damage"].sel(body=body).isnull().any("contact").values
+    names = ds["block"].values
+    if np.isnan(ds["overrollings"].sel(body=body).values[unknown]).all():
+        return "give guide_overrollings_per_hour, or guide_overrollings of each block"
+    listed = ", ".join(
+        f"'{name}' ({REGIMES[int(r)]})" for name, r in zip(names[unknown], ds["regime"].values[unknown], strict=True)
+    )
+    return f"no stress in {listed}"
+
+
+def _life(value: float) -> str:
+    return "unknown" if np.isnan(value) else life(value)
