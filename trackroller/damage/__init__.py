@@ -5,4 +5,5 @@ from __future__ import annotations
 from trackroller.damage import fatigue
 from trackroller.damage.limit import Limit
 
-LIMITS: dict[str, Limit] = {limit.name: limit for limit in (fatigue.LIMIT,)}
+_FILES = (fatigue,)
+LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}

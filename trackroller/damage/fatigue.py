@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.limit import SN_SCATTER, Limit, Results, Solved, Verdict, variables
+from trackroller.damage.limit import SN_SCATTER, Limit, Results, Solved, Verdict, variables, worst
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import SNCurve
 
@@ -59,8 +59,8 @@ def verdict(solved: Solved, results: Results) -> Verdict:
     curve, stress = curve_of(solved).changed(failure_probability=p), solved.values["peak_stress"]
     known = curve.scatters | (p == 0.5)
     hours = curve.life_cycles(stress) / solved.overrollings_per_hour[:, None, :]
-    utilisation = np.max(np.where(known, stress / curve.knee[0], np.nan), axis=1)
-    return Verdict(utilisation, np.min(np.where(known, hours, np.nan), axis=1))
+    utilisation = worst(np.where(known, stress / curve.knee[0], np.nan))
+    return Verdict(utilisation, -worst(-np.where(known, hours, np.nan)))
 
 
 LIMIT = Limit(

@@ -74,14 +74,18 @@ class Solved:
 
 @dataclass(frozen=True)
 class Verdict:
-    """How far a limit is used, and the hours until it is reached, (n, body) each; NaN where a limit has no such number.
+    """How far a limit is used, and the hours until it is reached, (n, body) each; None where a limit has none.
 
-    `utilisation` is the load over the load at which the limit is reached [1]. A limit that has no time has no
-    `life_hours`, and the other way round.
+    `utilisation` is the load over the load at which the limit is reached [1]. NaN stands for a value that is not known.
     """
 
-    utilisation: np.ndarray
-    life_hours: np.ndarray
+    utilisation: np.ndarray | None
+    life_hours: np.ndarray | None
+
+
+def worst(values: np.ndarray) -> np.ndarray:
+    """Return the largest value of both contacts, (n, contact, body) to (n, body); NaN if a contact has none."""
+    return np.max(values, axis=1)
 
 
 @dataclass(frozen=True)
