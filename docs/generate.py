@@ -6,14 +6,14 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation must not stand for the package
 
 from trackroller import parameters as p
-from trackroller.damage import LIMITS
-from trackroller.damage.limit import declarations
+from trackroller.damage import declared
 from trackroller.parameters.declared import FILE as DECLARED
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.dataset import COMMENTS, VALIDITY_BITS, VARIABLES
@@ -153,7 +153,7 @@ def pages() -> dict[Path, str]:
     table = render_written("readme.md").partition("\n")[2]  # without the remark on its first line
     written[readme] = f"{before}{START}{table}{END}{rest.partition(END)[2]}"
     return {
-        DECLARED: declarations(LIMITS.values()),
+        DECLARED: declared(),
         FOLDER / "parameters.md": render(),
         **written,
     }
@@ -170,6 +170,8 @@ def main(check: bool) -> int:
             print(f"{page} is not up to date", file=sys.stderr)
         else:
             page.write_text(pages()[page], encoding="utf-8")
+    if not check and DECLARED in stale:  # the other pages show what it declares, which is read at the start
+        os.execv(sys.executable, [sys.executable, *sys.argv])
     return 1 if check and stale else 0
 
 

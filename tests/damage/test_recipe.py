@@ -34,10 +34,10 @@ def test_a_limit_of_one_file_reaches_the_data_set(tmp_path):
     (room / "lining.py").write_text(re.search(r"```python\n(.*?)```", recipe, re.DOTALL)[1], encoding="utf-8")
     entry = room / "__init__.py"
     listed = entry.read_text(encoding="utf-8")
-    listed = listed.replace("import fatigue", "import lining, fatigue").replace("_FILES = (", "_FILES = (lining, ")
+    listed = listed.replace("import fatigue,", "import lining, fatigue,").replace("_FILES = (", "_FILES = (lining, ")
     entry.write_text(listed, encoding="utf-8")
-    declare = "from trackroller.damage import LIMITS; from trackroller.damage.limit import declarations; "
-    declare += "from trackroller.parameters.declared import FILE; FILE.write_text(declarations(LIMITS.values()))"
+    declare = "from trackroller.damage import declared; "
+    declare += "from trackroller.parameters.declared import FILE; FILE.write_text(declared())"
     for program in (declare, PROGRAM):
         done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr

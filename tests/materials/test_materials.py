@@ -18,6 +18,7 @@ from trackroller.materials import (
     load_database,
 )
 from trackroller.materials.file import BUILTIN_FILE, ENVIRONMENT, build_database
+from trackroller.materials.properties import OF_LIMITS, REQUIRED
 from trackroller.materials.tables import friction_rows, material_details, material_rows
 from trackroller.roller.case import Case, to_table
 
@@ -105,11 +106,15 @@ def test_every_builtin_value_has_unit_source_and_mark():
     data = yaml.safe_load(BUILTIN_FILE.read_text(encoding="utf-8"))
     values = [v for m in data["materials"].values() for v in m.values() if isinstance(v, dict)]
     values += [v for entry in data["friction"] for key, v in entry.items() if key != "pair"]
-    assert len(values) == 5 * 6 + 6 * 3
+    assert len([name for m in data["materials"].values() for name in m if name in REQUIRED]) == 5 * 6
+    assert len(data["friction"]) == 6
     for value in values:
         assert {"value", "unit", "source", "placeholder"} <= set(value)
         assert value["placeholder"] in (True, False)
-        assert value["placeholder"] == (value["source"] == "no source named")
+        assert value["placeholder"] == ("no source named" in value["source"])
+    for material in data["materials"].values():
+        for low, high in (material[name]["range"] for name in OF_LIMITS if name in material):
+            assert low < high
 
 
 def test_friction_by_material_material_object_and_family(db):
@@ -564,3 +569,12 @@ def test_rows_show_values_marks_and_origin(user):
 def test_material_is_frozen(db):
     with pytest.raises(dataclasses.FrozenInstanceError):
         db.material("PA6").youngs_modulus = 1.0
+
+
+def test_a_range_holds_its_value(user):
+    entry = "materials: {PA6: {yield_strength: {value: 0.05, unit: GPa, placeholder: true, range: [0.04, 0.055]}}}"
+    record = load_database(user(entry)).material("PA6").records["yield_strength"]
+    assert record.value == pytest.approx(50) and record.range == pytest.approx((40, 55))
+    for wrong in ("[51, 60]", "[40]", "50", "[60, 40]"):
+        with pytest.raises(InputError, match="range"):
+            load_database(user(f"materials: {{PA6: {{yield_strength: {{value: 50, range: {wrong}}}}}}}"))

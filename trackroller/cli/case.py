@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import InputError, WorkError, unknown_name
+from trackroller.errors import InputError, WorkError, check_names, unknown_name
 from trackroller.files import files_beside, parse_yaml, read_mapping, write_whole
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
@@ -43,6 +43,15 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
             options[key] = [part.strip() for part in options[key].split(",")]
     with files_beside(path):
         return Case.from_dict(values), options
+
+
+def groups_of(words: str) -> tuple[str, ...]:
+    """Return the groups of outputs of the limits `all`, or of limits whose names are separated by commas."""
+    from trackroller.damage import LIMITS  # heavy: numpy and scipy
+
+    names = list(LIMITS) if words == "all" else [word.strip() for word in words.split(",")]
+    check_names("--limits", names, (*LIMITS, "all"))
+    return (*dict.fromkeys(LIMITS[name].group for name in names), "limits")
 
 
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
@@ -91,11 +100,14 @@ def solve_and_tell(
         write_result(dataset, target)
     from trackroller.report.pages.sheet import write_sheet  # heavy: rich and jinja2
     from trackroller.report.pages.sheet_text import as_json, print_facts
+    from trackroller.report.tables.limits import print_limits
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
     if json:
         print(as_json(dataset))
+    elif target is None and "limiting_mechanism" in dataset and not is_failed(dataset):
+        print_limits(dataset)
     elif target is None:
         print_facts(dataset)
     if not is_failed(dataset):

@@ -12,7 +12,7 @@ import traceback
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -57,6 +57,7 @@ def solve(
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
     sheet: Annotated[Path | None, typer.Option("--report", help="write a printable sheet (HTML) as well")] = None,
+    limits: Annotated[str | None, typer.Option(help="print limits in one table: all, or names with commas")] = None,
     no_shortcuts: NoShortcuts = False,
 ) -> None:
     """Solve one case, and exit with 1 if it fails.
@@ -65,7 +66,11 @@ def solve(
     """
     from trackroller.cli.case import solve_and_tell
 
-    more = {"shortcuts": False} if no_shortcuts else {}
+    more: dict[str, Any] = {"shortcuts": False} if no_shortcuts else {}
+    if limits is not None:
+        from trackroller.cli.case import groups_of
+
+        more["outputs"] = groups_of(limits)
     raise typer.Exit(solve_and_tell(case, settings or [], as_json, out, sheet, **more))
 
 

@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
-from trackroller.damage import fatigue
-from trackroller.damage.limit import Limit
+from collections.abc import Collection
 
-_FILES = (fatigue,)
+from trackroller.damage import fatigue, rating, static, verdict
+from trackroller.damage.limit import Limit, declarations
+
+_FILES = (static, fatigue, rating)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
+
+
+def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
+    """Return the limits that groups of outputs ask for; the group `limits` without another one asks for all."""
+    named = tuple(limit for limit in LIMITS.values() if limit.group in outputs)
+    return tuple(LIMITS.values()) if verdict.GROUP in outputs and not named else named
+
+
+def declared() -> str:
+    """Return what the limits declare to `parameters`, as JSON."""
+    return declarations(LIMITS.values(), {verdict.GROUP: verdict.MEANING})

@@ -86,5 +86,7 @@ LIMIT = Limit(
         ("guide_life_hours", (), "h", "L_h,G", "hours to the first failure of the guide"),
         ("pair_life_hours", (), "h", "L_h", "hours to the first failure of roller or guide"),
     ),
+    requires=("guide_overrollings_per_hour",),
+    ends_at_once=False,
     distribution=SN_SCATTER,
 )

@@ -7,6 +7,7 @@ result variables, fields of a case, values of a material, the JSON schema and th
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
@@ -113,6 +114,10 @@ class Limit:
         Values of a material that belong to this limit.
     requires : tuple of str
         Fields of a case and values of a material without which there is no verdict.
+    bodies : tuple of str
+        Bodies that the limit concerns.
+    ends_at_once : bool
+        Whether a utilisation of 1 ends the life at once although the limit has hours.
     distribution : str
         What the failure probability of the life rests on: "S-N scatter", "Weibull 10/9", "none".
     """
@@ -128,6 +133,8 @@ class Limit:
     parameters: tuple[Parameter, ...] = ()
     materials: tuple[Parameter, ...] = ()
     requires: tuple[str, ...] = ()
+    bodies: tuple[str, ...] = BODIES
+    ends_at_once: bool = True
     distribution: str = "none"
 
 
@@ -136,11 +143,29 @@ def variables(group: str, *rows: tuple[str, tuple[str, ...], str, str, str]) -> 
     return tuple(Variable(name, group, *rest) for name, *rest in rows)  # type: ignore[arg-type]
 
 
-def declarations(limits: Iterable[Limit]) -> str:
-    """Return the groups, fields of a case and values of a material of limits as the JSON that `parameters` reads."""
+def optional(
+    name: str, symbol: str, unit: str, meaning: str, lower: float, upper: float = math.inf, closed: bool = False
+) -> Parameter:
+    """Return a field of a case or a value of a material that may be left out; `closed` allows its bounds."""
+    open_upper = not closed and math.isfinite(upper)
+    return Parameter(
+        name, symbol, unit, math.nan, meaning, lower, upper, not closed, open_upper, allow_missing=True, label=meaning
+    )
+
+
+def declarations(limits: Iterable[Limit], groups: Mapping[str, str]) -> str:
+    """Return groups, fields of a case and values of a material as the JSON that `parameters` reads.
+
+    Parameters
+    ----------
+    limits : iterable of Limit
+        The limits.
+    groups : mapping of str to str
+        Meanings of further groups of outputs.
+    """
     limits = tuple(limits)
     told = {
-        "groups": {limit.group: limit.meaning for limit in limits if limit.meaning},
+        "groups": {limit.group: limit.meaning for limit in limits if limit.meaning} | dict(groups),
         "parameters": [asdict(parameter) for limit in limits for parameter in limit.parameters],
         "materials": [asdict(value) for limit in limits for value in limit.materials],
     }

@@ -83,6 +83,12 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
                 "Give the lower number of cycles to the tensile strength.",
             )
 
+        for name, of, symbol in (("yield_strength", "tensile_strength", "R_m"),):
+            value, bound = getattr(self, name, None), getattr(self, of)
+            if value is not None and value > bound:
+                allowed = f"it must not exceed {symbol} = {bound:g} MPa"
+                raise InputError(f"{where}.{name}", value, allowed, "Correct one of the two values.")
+
     @property
     def fatigue_limit(self) -> float:
         """Return the fatigue limit sigma_D [MPa] at N_k cycles."""
@@ -101,8 +107,17 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     @property
     def placeholders(self) -> tuple[str, ...]:
-        """Return the names of the values that are guesses without a source."""
-        return tuple(name for name, record in self.records.items() if record.placeholder)
+        """Return the names of the values that are guesses without a source, those of single limits left out."""
+        return tuple(name for name, record in self.records.items() if record.placeholder and name not in OF_LIMITS)
+
+    @property
+    def guesses_of_limits(self) -> dict[str, str]:
+        """Return the values of single limits that are guesses without a source, with the range that is expected."""
+        return {
+            name: "no range is given" if r.range is None else f"expected from {r.range[0]:g} to {r.range[1]:g} {r.unit}"
+            for name, r in self.records.items()
+            if r.placeholder and name in OF_LIMITS
+        }
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain numbers and texts, which a case accepts as a material."""

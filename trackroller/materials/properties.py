@@ -64,7 +64,8 @@ REQUIRED = tuple(p.name for p in _PROPERTIES if not p.allow_missing)
 class Value:
     """A property or a friction coefficient: number, unit, source, note, and the file that defines it (`origin`).
 
-    `placeholder` is True if the number is a guess without a source.
+    `placeholder` is True if the number is a guess without a source. `range` then holds the bounds between which the
+    true number is expected, if they are given.
     """
 
     value: float
@@ -73,6 +74,7 @@ class Value:
     placeholder: bool = False
     note: str = ""
     origin: str = ""
+    range: tuple[float, float] | None = None
 
 
 def check_number(prop: Parameter, value: Any, where: str, factor: float = 1.0) -> float:

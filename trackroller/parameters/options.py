@@ -202,6 +202,12 @@ _OPTIONS = (
         },
     ),
     Option(
+        "failure_probability",
+        0.5,
+        "failure probability at which the group limits states each life",
+        kind="number",
+    ),
+    Option(
         "normal",
         "hertz",
         "how patch and pressure are found",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller import __version__
-from trackroller.damage import LIMITS
+from trackroller.damage import LIMITS, verdict
 from trackroller.damage.limit import variables
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIMES
 
@@ -115,7 +115,7 @@ _GROUPS = {
 }
 
 VARIABLES = {v.name: v for group, rows in _GROUPS.items() for v in variables(group, *rows)}
-VARIABLES |= {v.name: v for limit in LIMITS.values() for v in limit.results}
+VARIABLES |= {v.name: v for rows in (*(limit.results for limit in LIMITS.values()), verdict.RESULTS) for v in rows}
 
 VALIDITY_BITS = {
     "half_space": "a or b above 0.3 of the smallest radius of curvature: the bodies are not half-spaces",
@@ -149,6 +149,7 @@ FLAGS: dict[str, tuple[str, Sequence[str]]] = {
     "converged": ("the residual is within its limit (attribute converged_up_to of residual)", ("no", "yes")),
     "contact_model_used": ("contact model that solved the case", CONTACT_MODELS),
     "first_to_fail": ("body that fails first, in hours", FIRST_TO_FAIL),
+    "limiting_mechanism": ("limit of the body that is reached first", (*LIMITS, "unknown")),
     "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),
 }
 
@@ -159,7 +160,7 @@ def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, d
         meaning, words = FLAGS[name]
         attrs = {"long_name": meaning, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8)}
         attrs |= {"comment": COMMENTS[name]} if name in COMMENTS else {}
-        return ("case",), values.astype(np.int8), attrs | {"flag_meanings": " ".join(words)}
+        return ("case", "body")[: values.ndim], values.astype(np.int8), attrs | {"flag_meanings": " ".join(words)}
     attrs = {
         "long_name": "validity flags: where an assumption of the model does not hold"
         + (" for a body" if name == "validity_body" else ""),
@@ -213,6 +214,8 @@ def build(
         ),
         "body": ("body", np.array(["roller", "guide"]), {"long_name": "body"}),
     }
+    if "utilisation" in values:
+        coords["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
     if any(name.startswith("stress_") for name in values):
         coords["component"] = (
             "component",

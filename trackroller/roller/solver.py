@@ -11,7 +11,7 @@ from numba.core.registry import cpu_target
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.settings import converged_up_to
-from trackroller.damage import LIMITS
+from trackroller.damage import asked, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS
@@ -56,6 +56,7 @@ def solve(
     hertz: str | None = None,
     stress_bodies: str | None = None,
     life_rule: str | None = None,
+    failure_probability: float | None = None,
     normal: str | None = None,
     stop_if: str | None = None,
     shortcuts: bool | None = None,
@@ -74,7 +75,8 @@ def solve(
         study's design can be analysed and reported: see `trackroller.open_study`.
     outputs : str or iterable of str
         Groups of results; a group is computed only if it is asked for: "forces", "contact", "peak_stress", "life" (by
-        default these four), "friction_work", "tractions", "subsurface".
+        default these four), "friction_work", "tractions", "subsurface", "limits", and one group a
+        limit.
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
         "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). "kalker" uses its table at
@@ -92,6 +94,8 @@ def solve(
         "both" bodies with their own Poisson's ratios, or "published" for one body with the mean.
     life_rule : str
         S-N curve below the fatigue limit: "elementary", "haibach" or "unlimited".
+    failure_probability : float
+        Failure probability in (0, 1) at which the group "limits" states each life.
     normal : str
         "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which drawn profiles need.
     stop_if : str, optional
@@ -143,6 +147,7 @@ def solve(
         "hertz": hertz,
         "stress_bodies": stress_bodies,
         "life_rule": life_rule,
+        "failure_probability": failure_probability,
         "normal": normal,
         "stop_if": stop_if,
         "shortcuts": shortcuts,
@@ -179,6 +184,8 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
     ds = with_reasons(_assemble(join(windows), options, single), table, options)
     _tell_errors(ds, table, options)
+    if verdict.GROUP in options.outputs:
+        ds.attrs["limits_notes"] = "\n".join(stages_case.notes_on_limits(table, options))
     return ds
 
 
@@ -240,7 +247,7 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
     results = Results.start(scene, balance(scene))
     wanted = set(options.outputs)
-    wanted |= {need for limit in LIMITS.values() if limit.group in wanted for need in limit.needs}
+    wanted |= {need for limit in asked(wanted) for need in limit.needs}
     stages.forces(results)
     stages.force_error(results, options)
     stages.contact(results, options)
@@ -276,8 +283,10 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     if block.bodies is not None:
         flags["validity_body"] = block.bodies
     flags["contact_model_used"] = block.model
-    if "first_to_fail" in block.values:
-        flags["first_to_fail"] = block.values["first_to_fail"]
+    grouped = {"first_to_fail": "life", "limiting_mechanism": verdict.GROUP}
+    flags |= {name: block.values[name] for name, group in grouped.items() if group in options.outputs}
+    if verdict.GROUP in options.outputs:
+        attrs["limits"] = " ".join(limit.name for limit in asked(options.outputs))
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     ds = build({name: block.values[name] for name in keep}, flags, attrs, single)

@@ -22,7 +22,8 @@ _LimitFields = make_dataclass("_LimitFields", [(name, np.ndarray) for name in OF
 class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D [MPa], N_Rm, N_k [1].
 
-    The base class adds the optional values of a material, NaN where they are not given.
+    The base class adds the optional values of a material, NaN where they are not given. `guesses` holds the values of
+    limits that are placeholders, a mapping of names to words for each material.
     """
 
     name: np.ndarray
@@ -32,6 +33,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     fatigue_limit: np.ndarray
     cycles_at_tensile_strength: np.ndarray
     cycles_at_fatigue_limit: np.ndarray
+    guesses: np.ndarray
 
     @classmethod
     def of(cls, materials: list[Material]) -> MaterialArrays:
@@ -51,6 +53,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
             fatigue_limit=values("fatigue_strength_ratio") * values("tensile_strength"),
             cycles_at_tensile_strength=values("cycles_at_tensile_strength"),
             cycles_at_fatigue_limit=values("cycles_at_fatigue_limit"),
+            guesses=np.array([m.guesses_of_limits for m in distinct.values()], dtype=object)[index],
             **{name: values(name) for name in OPTIONAL_VALUES},
         )
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS
-from trackroller.damage.limit import Solved
+from trackroller.damage import LIMITS, asked, verdict
+from trackroller.damage.limit import Solved, lacks
 from trackroller.parameters import CONTACT_MODELS, PARAMETERS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
@@ -37,7 +37,7 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 
 def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> Solved:
     """Return cases, materials and results as the limits receive them."""
-    names = [field.name for field in fields(table.roller) if field.name != "name"]
+    names = [field.name for field in fields(table.roller) if field.name not in ("name", "guesses")]
     return Solved(
         {name: getattr(table, name) for name in PARAMETERS},
         {name: np.stack([getattr(body, name) for body in (table.roller, table.guide)], axis=1) for name in names},
@@ -48,11 +48,28 @@ def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options)
 
 
 def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
-    """Add the results of the limits whose group is asked for to the results `v`."""
-    solved = solved_of(table, v, options)
-    for limit in LIMITS.values():
-        if limit.group in options.outputs:
-            v |= limit.evaluate(solved)
+    """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
+    wanted, solved = asked(options.outputs), solved_of(table, v, options)
+    for limit in wanted:
+        v |= limit.evaluate(solved)
+    if verdict.GROUP in options.outputs:
+        names = list(LIMITS)
+        v |= verdict.verdict(solved, wanted, [names.index(limit.name) for limit in wanted], len(names))
+
+
+def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
+    """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
+    solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
+    names = {body: own.name for body, own in bodies.items()}
+    pairs = {str(name): told for own in bodies.values() for name, told in zip(own.name, own.guesses, strict=True)}
+    out = []
+    for limit in asked(options.outputs):
+        out += lacks(limit, solved, names)
+        for material, told in pairs.items():
+            guessed = [f"{name} ({words})" for name, words in told.items() if name in limit.requires]
+            if guessed:
+                out.append(f"{limit.name}: placeholders of material '{material}': {', '.join(guessed)}.")
+    return out
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:

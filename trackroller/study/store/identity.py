@@ -26,7 +26,7 @@ from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.case import CaseTable, MaterialArrays
 from trackroller.study.store.sources import solver_digest
 
-_MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name != "name")
+_MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name not in ("name", "guesses"))
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:

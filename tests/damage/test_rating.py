@@ -1,0 +1,73 @@
+"""The standard rating of wheel and rail, and static failure."""
+
+import math
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.damage.rating import contacts_to_limit, static_pressure
+from trackroller.errors import InputError
+
+STEEL = {"like": "1.7225-normalised", "hardness": 220.0, "yield_strength": 480.0}
+
+
+def line_pressure(force, diameter, width, modulus, poisson):
+    """Hertz: p_0 = sqrt(F E* / (pi b R)) of a wheel on a flat rail of the same material [MPa]."""
+    return math.sqrt(force * modulus / (2 * (1 - poisson**2)) / (math.pi * width * diameter / 2))
+
+
+@pytest.mark.parametrize(("hardened", "factor"), [(False, 7 * 220.0), (True, 4.2 * 480.0)])
+def test_static_pressure_gives_the_line_contact_force_of_the_standard(hardened, factor):
+    """F_Rd,s = factor^2 / gamma_m pi D b (1 - nu^2) / E, as marsDemonstrator computes it."""
+    d, b, e, nu = 400.0, 60.0, 210000.0, 0.3
+    force = factor**2 / 1.1 * math.pi * d * b * (1 - nu**2) / e
+    assert static_pressure(220.0, 480.0, hardened) == pytest.approx(line_pressure(force, d, b, e, nu), rel=1e-12)
+
+
+@pytest.mark.parametrize(("hardened", "factor"), [(False, 3 * 220.0), (True, 1.8 * 480.0)])
+def test_contacts_follow_the_force_of_the_standard(hardened, factor):
+    """F_Rd,f = F_u / s_c^(1/m) with m = 10/3 and s_c the contacts over 6.4e6."""
+    d, b, e, nu = 400.0, 60.0, 210000.0, 0.3
+    for share in (0.01, 1.0, 30.0):
+        force = factor**2 * math.pi * d * b * (1 - nu**2) / e / share ** (3 / 10)
+        pressure = line_pressure(force, d, b, e, nu)
+        assert contacts_to_limit(pressure, 220.0, 480.0, hardened) == pytest.approx(6.4e6 * share, rel=1e-12)
+
+
+def test_rating_of_a_roller_uses_its_own_hardness():
+    case = tr.Case(motor_force=0, roller_material=STEEL, guide_material="POM", guide_overrollings_per_hour=30)
+    ds = tr.solve(case, outputs=("rating", "contact", "limits"), contact_model="sliding")
+    used = ds.rating_utilisation_static
+    assert used.sel(body="roller").values == pytest.approx(
+        ds.max_pressure.values * math.sqrt(1.1) / (7 * 220), rel=1e-14
+    )
+    assert np.isnan(used.sel(body="guide")).all()
+    radius = 21.75 - 6 * math.cos(math.radians(30))
+    per_hour = 60.0 * 60e3 / (2 * math.pi * radius)  # 60 m/min
+    contacts = contacts_to_limit(ds.max_pressure.values, 220.0, 480.0, False)
+    assert ds.rating_life_hours.sel(body="roller").values == pytest.approx(contacts / per_hour, rel=1e-12)
+    (note,) = ds.attrs["limits_notes"].splitlines()
+    assert note.startswith(
+        "rating: material 'POM' has no hardness. Enter it in config/materials.yaml under materials.POM"
+    )
+    assert note.endswith("or in the case: {like: POM, hardness: NUMBER}.")
+
+
+def test_a_value_that_nobody_measured_is_named_with_its_range():
+    case = tr.Case(motor_force=0, guide_overrollings_per_hour=30)
+    ds = tr.solve(case, outputs=("rating", "limits"), contact_model="sliding")
+    told = "rating: placeholders of material '1.7225-normalised': hardness (expected from 200 to 240 HB)."
+    assert ds.attrs["limits_notes"] == told
+
+
+def test_static_failure_is_the_peak_stress_over_the_tensile_strength():
+    ds = tr.solve(tr.Case(motor_force=0), outputs=("peak_stress", "limits"), contact_model="sliding")
+    assert ds.utilisation.sel(limit="static").values == pytest.approx(
+        ds.peak_stress.max("contact").values / 720, rel=1e-14
+    )
+
+
+def test_a_yield_strength_above_the_tensile_strength_is_refused():
+    with pytest.raises(InputError, match=r"yield_strength = 800.*R_m = 720"):
+        tr.solve(tr.Case(roller_material=STEEL | {"yield_strength": 800.0}), outputs="rating")

@@ -1,0 +1,88 @@
+"""The verdict over the limits: which one comes first, and when."""
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.damage import LIMITS, asked
+from trackroller.damage.limit import Limit, Solved, Verdict
+from trackroller.damage.verdict import verdict
+
+NAMES = list(LIMITS)
+
+
+def limit(name, used, hours, **more):
+    """A limit with a given utilisation and hours of roller and guide."""
+    shaped = [None if v is None else np.array([v], dtype=float) for v in (used, hours)]
+    return Limit(name, name, name, lambda solved: {}, lambda solved, found: Verdict(*shaped), **more)
+
+
+def judged(*limits):
+    solved = Solved({}, {}, {}, np.ones(1))
+    found = verdict(solved, limits, range(len(limits)), len(limits))
+    return [found[name][0].tolist() for name in ("limiting_mechanism", "life_to_first_limit_hours")]
+
+
+def test_the_shortest_life_comes_first():
+    assert judged(limit("a", [0.5, 0.5], [100, 7]), limit("b", [0.9, 0.1], [20, 9])) == [[1, 0], [20, 7]]
+
+
+def test_a_limit_without_time_is_reached_at_once_or_never():
+    assert judged(limit("a", [1.2, 0.9], None), limit("b", None, [20, 30])) == [[0, 1], [0, 30]]
+
+
+def test_limits_that_are_never_reached_are_ranked_by_utilisation():
+    which, hours = judged(limit("a", [0.3, 0.8], None), limit("b", [0.6, 0.1], None))
+    assert which == [1, 0] and hours == [np.inf, np.inf]
+
+
+def test_a_utilisation_above_one_ends_a_life_only_where_the_limit_says_so():
+    runs_on = limit("a", [1.5, 1.5], [50, 60], ends_at_once=False)
+    assert judged(runs_on) == [[0, 0], [50, 60]]
+    assert judged(limit("a", [1.5, 0.5], [50, 60])) == [[0, 0], [0, 60]]
+
+
+def test_an_unknown_limit_is_left_out_but_not_hidden():
+    """A finite life stands as it is; "never" would be wrong where another limit is unknown."""
+    which, hours = judged(limit("a", None, [np.nan, np.nan]), limit("b", [0.5, 0.5], [40, np.inf]))
+    assert which == [1, 1] and hours[0] == 40 and np.isnan(hours[1])
+    which, hours = judged(limit("a", None, [np.nan, 5]))
+    assert which == [1, 0] and hours[1] == 5
+
+
+def test_a_limit_of_the_roller_does_not_concern_the_guide():
+    which, hours = judged(limit("a", [0.5, 0.5], [3, 3], bodies=("roller",)), limit("b", [0.2, 0.2], [9, np.inf]))
+    assert which == [0, 1] and hours == [3, np.inf]
+
+
+def test_asked_limits_follow_from_the_groups():
+    assert [own.name for own in asked(("forces", "life", "limits"))] == ["fatigue"]
+    assert [own.name for own in asked(("forces", "limits"))] == NAMES
+    assert asked(("forces", "contact")) == ()
+
+
+def test_the_data_set_tells_the_first_limit_in_flags():
+    case = tr.Case(motor_force=0, guide_overrollings_per_hour=500)
+    ds = tr.solve([case, case], outputs=("peak_stress", "life", "limits"), contact_model="sliding")
+    assert ds.utilisation.dims == ("case", "limit", "body") and ds.limit.values.tolist() == ["static", "fatigue"]
+    flags = ds.limiting_mechanism
+    assert flags.dims == ("case", "body")
+    words = flags.attrs["flag_meanings"].split()
+    assert words == [*NAMES, "unknown"] and words[int(flags[0, 0])] == "fatigue"
+    hours = ds.life_hours_by_limit.sel(limit="fatigue", body="roller").values
+    assert hours == pytest.approx(ds.roller_life_hours.values) and ds.attrs["limits_notes"] == ""
+
+
+def test_another_failure_probability_needs_the_scatter_of_the_material():
+    case = {"motor_force": 0, "guide_overrollings_per_hour": 500}
+    scattered = {"like": "1.7225-normalised", "scatter_in_cycles": 4.0}
+    options = {"outputs": ("life", "limits"), "contact_model": "sliding", "failure_probability": 0.1}
+    ds = tr.solve(tr.Case(**case, roller_material=scattered), **options)
+    hours = ds.life_hours_by_limit.sel(limit="fatigue")
+    assert hours.sel(body="roller") == pytest.approx(float(ds.roller_life_hours) / 2.0, rel=1e-12)  # 4^-1/2
+    assert np.isnan(hours.sel(body="guide")) and "has no scatter_in_cycles" in ds.attrs["limits_notes"]
+
+
+def test_nothing_is_computed_that_was_not_asked_for():
+    ds = tr.solve(tr.Case(motor_force=0), outputs=("forces", "contact"), contact_model="sliding")
+    assert not {"utilisation", "rating_life_hours", "life_cycles", "limiting_mechanism"} & set(ds.data_vars)

@@ -1,0 +1,20 @@
+"""Static failure: the peak von Mises stress reaches the tensile strength."""
+
+from __future__ import annotations
+
+from trackroller.damage.limit import Limit, Results, Solved, Verdict, worst
+
+
+def verdict(solved: Solved, results: Results) -> Verdict:
+    """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time."""
+    return Verdict(worst(solved.values["peak_stress"]) / solved.materials["tensile_strength"], None)
+
+
+LIMIT = Limit(
+    name="static",
+    title="static failure (peak stress over R_m)",
+    group="peak_stress",
+    evaluate=lambda solved: {},
+    verdict=verdict,
+    needs=("peak_stress",),
+)

@@ -1,0 +1,73 @@
+"""The verdict: how far each limit is used, when it is reached, and which limit comes first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from trackroller.damage.limit import BODIES, Limit, Results, Solved, variables
+
+GROUP = "limits"
+MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"
+_LB = ("limit", "body")
+RESULTS = variables(
+    GROUP,
+    ("utilisation", _LB, "1", "", "load over the load at which the limit is reached"),
+    ("life_hours_by_limit", _LB, "h", "", "hours to the limit at the failure probability"),
+    ("life_to_first_limit_hours", ("body",), "h", "", "hours to the first limit that is known"),
+)
+
+
+def verdict(solved: Solved, limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
+    """Return utilisation and hours of each limit, the hours to the first limit, and its number.
+
+    Parameters
+    ----------
+    solved : Solved
+        Cases with the results that the limits need, and with the results of the limits themselves.
+    limits : sequence of Limit
+        The limits that count.
+    numbers : sequence of int
+        Number of each limit in the flags of `limiting_mechanism`.
+    unknown : int
+        Number for bodies of which no limit is known.
+
+    Returns
+    -------
+    dict of str to numpy.ndarray
+        `utilisation` [1], `life_hours_by_limit` [h], (n, limit, body); `life_to_first_limit_hours` [h] and
+        `limiting_mechanism`, (n, body).
+
+    Notes
+    -----
+    A limit that has no time counts as reached at once where its utilisation is at least 1, and otherwise never. Equal
+    hours are ranked by utilisation. A limit that lacks a value is left out. Hours to the first limit are NaN where no
+    known limit is ever reached and the hours of another one are not known.
+    """
+    n = len(solved.rolling_radius)
+    used, hours, reached = (np.full((n, len(limits), 2), np.nan) for _ in range(3))
+    concerned = np.array([[body in limit.bodies for body in BODIES] for limit in limits]).reshape(-1, 2)
+    for i, limit in enumerate(limits):
+        found = limit.verdict(solved, dict(solved.values))
+        if found.utilisation is not None:
+            used[:, i] = found.utilisation
+        over = used[:, i] >= 1.0
+        if found.life_hours is None:
+            reached[:, i] = np.where(np.isnan(used[:, i]), np.nan, np.where(over, 0.0, np.inf))
+        else:
+            hours[:, i] = found.life_hours
+            reached[:, i] = np.where(over & limit.ends_at_once, 0.0, hours[:, i])
+    for values in (used, hours, reached):
+        values[:, ~concerned] = np.nan
+    known = ~np.isnan(reached)
+    first = np.min(np.where(known, reached, np.inf), axis=1)
+    missing = (~known & concerned).any(axis=1)
+    rank = np.where(known & (reached == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
+    which = np.asarray(numbers, dtype=int)[np.argmax(rank, axis=1)]
+    return {
+        "utilisation": used,
+        "life_hours_by_limit": hours,
+        "life_to_first_limit_hours": np.where(np.isinf(first) & missing, np.nan, first),
+        "limiting_mechanism": np.where(known.any(axis=1), which, unknown),
+    }
