@@ -93,7 +93,8 @@ def at_surface(ds: xr.Dataset) -> xr.DataArray:
     limit: Any = 1e-3
     if {"semi_axis_lateral", "semi_axis_rolling"} <= set(ds):
         limit = SURFACE_SHARE * np.minimum(ds["semi_axis_lateral"], ds["semi_axis_rolling"])
-    return (ds["peak_z"] <= limit).astype(float).where(ds["peak_z"].notnull()).transpose(*ds["peak_z"].dims)
+    at_surface: xr.DataArray = (ds["peak_z"] <= limit).astype(float).where(ds["peak_z"].notnull())
+    return at_surface.transpose(*ds["peak_z"].dims)
 
 
 def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:

@@ -18,7 +18,7 @@ from trackroller.analysis.pawn import bins, pawn, pawn_interval, thinned
 MIN_ROWS = 30
 GROUPS = 20  # of the grouped jackknife
 HARMONICS, ROWS_PER_HARMONIC = 10, 16  # of RBD-FAST: SALib's number, fewer for small samples
-FAST_RESAMPLES, FAST_ROWS = 32, 4096  # of the bootstrap
+FAST_RESAMPLES, FAST_ROWS, RARE_ROWS = 32, 4096, 40  # of the bootstrap; RARE_ROWS are those of a rare event
 MEASURES = {
     "first": ("first", "first_low", "first_high"),
     "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
@@ -93,8 +93,8 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     -----
     Continuous factors: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur. SALib's bootstrap draws
     half of the rows, so its half width is scaled by sqrt(1/2) (m out of n bootstrap [2]_). The bootstrap of a long
-    sample takes 4096 of its rows, and its half width is scaled by one over the root of the rows. For an inert factor
-    the true half width falls faster, as one over the rows; the interval is then too wide.
+    sample takes 4096 of its rows, more for a rare event, and its half width is scaled by one over the root of the
+    rows. For an inert factor the true half width falls faster, as one over the rows; the interval is then too wide.
     Categories and columns whose values repeat: `first_order` of the groups, because RBD-FAST orders equal values by
     their rows. It is biased for a category (0.88 for a share of 0.96), and in a table with the rows of a grid it
     takes other factors for this one (0.63 for a share of 0.004). ``validation/index_estimators.py`` compares both.
@@ -111,7 +111,8 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     out = {name: np.full(count, np.nan) for name in MEASURES["first"]}
     if len(y) < MIN_ROWS or constant(y):
         return out
-    some = thinned(len(y), FAST_ROWS)
+    unlike = int((y != np.median(y)).sum())  # few if the output is 1 where a rare event occurs
+    some = thinned(len(y), max(FAST_ROWS, RARE_ROWS * len(y) // max(1, unlike)))
     for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
         x = unit[:, j]
         values, group = np.unique(x, return_inverse=True)
@@ -163,7 +164,7 @@ def _epsilon(sums: np.ndarray, square: np.ndarray) -> np.ndarray:
     mean = total.sum(axis=-1) / rows
     whole = square - rows * mean**2
     between = (total**2 / np.maximum(number, 1)).sum(axis=-1) - rows * mean**2
-    return 1 - (whole - between) / (rows - filled) * (rows - 1) / whole
+    return np.asarray(1 - (whole - between) / (rows - filled) * (rows - 1) / whole)
 
 
 def prcc(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

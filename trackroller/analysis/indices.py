@@ -8,12 +8,14 @@ SALib has no counterpart for the shares of a grid and for the fit of a response 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy import stats
 
 Z = 1.959964  # 97.5 % quantile of the normal distribution
 Estimates = dict[str, np.ndarray]
-Terms = list[tuple]
+Terms = list[tuple[Any, ...]]
 
 
 def constant(y: np.ndarray) -> bool:

@@ -98,4 +98,4 @@ def allowed_cases(ds: xr.Dataset, dims: tuple[str, ...], factors: Iterable[str] 
         return None
     rows, factors = int(np.prod([ds.sizes[d] for d in dims])), list(factors)
     values = {n: column(ds, dims, n, factors)[0] for n in sorted({n for text in texts for n in names_in(text)})}
-    return np.all(list(meeting(texts, values, rows).values()), axis=0)
+    return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))

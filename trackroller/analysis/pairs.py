@@ -185,4 +185,4 @@ def _shares(gram: np.ndarray, moment: np.ndarray, square: float, rows: int, *, t
     coefficient = lapack.dpotrs(factor, moment)[0]
     error = np.diag(lapack.dpotri(factor)[0]) * (square - moment @ coefficient) / max(1, rows - len(term))
     variance = square / rows - (moment[0] / rows) ** 2  # the first column is the constant
-    return np.bincount(term + 1, coefficient**2 - error)[1:] / variance
+    return np.asarray(np.bincount(term + 1, coefficient**2 - error)[1:] / variance)

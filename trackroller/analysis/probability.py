@@ -84,6 +84,5 @@ def _unexplained(hits: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> np.
     order = np.argsort(degrees, kind="stable")
     table = np.concatenate([np.ones((len(hits), 1)), *(base for base, _ in known)], axis=1)[:, order]
     missed = held_out(hits, table, [int((degrees <= limit).sum()) for limit in DEGREES])
-    return np.min(
-        [np.full(hits.shape[1], np.inf), *((one**2).mean(axis=0) for one in missed if one is not None)], axis=0
-    )
+    variances = [(residual**2).mean(axis=0) for residual in missed if residual is not None]
+    return np.asarray(np.min([np.full(hits.shape[1], np.inf), *variances], axis=0))

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -156,7 +157,7 @@ def deviation(material: Mapping[str, float]) -> float:
     return float(SNCurve.of(material).log_life_deviation)
 
 
-def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list[Output]) -> dict:
+def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list[Output]) -> dict[str, Any]:
     first = np.arange(shape[0]) * shape[1]
     outer = {name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]}
     point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(shape[0])]

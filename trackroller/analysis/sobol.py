@@ -151,7 +151,7 @@ def _control(half: np.ndarray, square: np.ndarray, product: np.ndarray) -> np.nd
     influence = (product - rho * square - 2 * (1 - rho) * mean * half) / spread
     influence -= influence.mean(axis=0)
     control = influence[:, :1]
-    return (influence * control).sum(axis=0) / max(float((control**2).sum()), 1e-300)
+    return np.asarray((influence * control).sum(axis=0) / max(float((control**2).sum()), 1e-300))
 
 
 def _correlations(weights: np.ndarray, terms: np.ndarray, beta: np.ndarray) -> np.ndarray:

@@ -178,7 +178,7 @@ class StudyView:
         """
         name = f"validity_{body}" if body else "validity"
         bit = 1 << self.flags.index(flag)
-        return (np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0
+        return np.asarray((np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0)
 
     @property
     def by_body(self) -> bool:
@@ -188,7 +188,7 @@ class StudyView:
     @cached_property
     def rolling(self) -> np.ndarray:
         """Return the cases that roll and converged, shape (n,)."""
-        return (self.regime == 0) & (self.column("converged", 1.0) == 1)
+        return np.asarray((self.regime == 0) & (self.column("converged", 1.0) == 1))
 
     @cached_property
     def inside(self) -> np.ndarray:

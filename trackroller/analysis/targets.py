@@ -110,7 +110,7 @@ def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
     ASSUME: the materials of roller and guide scatter independently of each other.
     """
     bodies = np.array([body_of(name) for name in names])
-    return np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0)
+    return np.asarray(np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0))
 
 
 def _of_points(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:

@@ -122,12 +122,12 @@ class SNCurve:
     def exponent(self) -> np.ndarray:
         """Return the exponent k = ln(N_k/N_Rm) / ln(R_m/sigma_D) > 0 [1]."""
         strength, limit, first, knee = self._points
-        return curve_exponent(knee / first, strength / limit)
+        return np.asarray(curve_exponent(knee / first, strength / limit))
 
     @property
     def scatters(self) -> np.ndarray:
         """Return whether the scatter of life or of strength is known, a bool array."""
-        return ~(np.isnan(_known(self.scatter_cycles)) & np.isnan(_known(self.scatter_stress)))
+        return np.asarray(~(np.isnan(_known(self.scatter_cycles)) & np.isnan(_known(self.scatter_stress))))
 
     @property
     def scatter_ranges(self) -> tuple[np.ndarray, np.ndarray]:
@@ -139,7 +139,7 @@ class SNCurve:
     @property
     def log_life_deviation(self) -> np.ndarray:
         """Return the standard deviation of log10 life, lg(T_N) / 2.563 [1]; 0 without scatter."""
-        return np.log10(self.scatter_ranges[0]) / DECADES
+        return np.asarray(np.log10(self.scatter_ranges[0]) / DECADES)
 
     @property
     def knee(self) -> tuple[np.ndarray, np.ndarray]:

@@ -22,7 +22,7 @@ AGREE = 0.01  # largest relative difference between a given value and the value 
 _ALL = PROPERTIES | ALTERNATIVES
 
 
-def curve_exponent(cycles, stresses):
+def curve_exponent(cycles: np.ndarray | float, stresses: np.ndarray | float) -> np.ndarray | float:
     """Return the exponent of an S-N curve, k = ln(N_k/N_Rm) / ln(R_m/sigma_D).
 
     Parameters

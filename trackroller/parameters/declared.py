@@ -16,4 +16,5 @@ FILE = Path(__file__).with_name("limits.json")
 @cache
 def declared() -> dict[str, Any]:
     """Return the declarations: `groups` (meaning by name), `parameters` and `materials` (fields of `Parameter`)."""
-    return json.loads(FILE.read_text(encoding="utf-8"))
+    content: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
+    return content

@@ -267,14 +267,14 @@ class _Evaluation:
     def logic(self, node: ast.AST) -> np.ndarray:
         match node:
             case ast.UnaryOp(op=ast.Not(), operand=operand):
-                return np.logical_not(self.truth(operand))
+                return np.asarray(np.logical_not(self.truth(operand)))
             case ast.BoolOp(op=op, values=parts):
                 join = np.logical_and if isinstance(op, ast.And) else np.logical_or
                 return reduce(join, [self.truth(part) for part in parts])
             case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
                 sides = [np.asarray(self.value(part)) for part in (left, *rest)]
                 held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
-                return np.logical_and.reduce(held)
+                return np.asarray(np.logical_and.reduce(held))
         raise self.refused(node, type(node).__name__.lower())
 
     def named(self, node: ast.Name | ast.Subscript) -> Any:

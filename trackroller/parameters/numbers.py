@@ -83,7 +83,7 @@ class Parameter:
             good &= (v < self.upper) if self.open_upper else (v <= self.upper)
             if self.nonzero:
                 good &= v != 0
-        return good | np.isnan(v) if self.allow_missing else good
+        return np.asarray(good | np.isnan(v) if self.allow_missing else good)
 
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
