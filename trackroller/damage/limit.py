@@ -86,7 +86,7 @@ class Verdict:
 
 def worst(values: np.ndarray) -> np.ndarray:
     """Return the largest value of both contacts, (n, contact, body) to (n, body); NaN if a contact has none."""
-    return np.max(values, axis=1)
+    return np.asarray(np.max(values, axis=1))
 
 
 @dataclass(frozen=True)

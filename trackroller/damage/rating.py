@@ -33,7 +33,8 @@ def static_pressure(hardness: ArrayLike, yield_strength: ArrayLike, hardened: Ar
     numpy.ndarray
         7 HB / sqrt(1.1), or 4.2 f_y / sqrt(1.1) [MPa]; the factor 1.1 belongs to the force.
     """
-    return np.where(hardened, 4.2 * np.asarray(yield_strength), 7.0 * np.asarray(hardness)) / np.sqrt(RESISTANCE)
+    pressure = np.where(hardened, 4.2 * np.asarray(yield_strength), 7.0 * np.asarray(hardness))
+    return np.asarray(pressure / np.sqrt(RESISTANCE))
 
 
 def contacts_to_limit(
@@ -45,7 +46,7 @@ def contacts_to_limit(
     """
     limit = np.where(hardened, 1.8 * np.asarray(yield_strength), 3.0 * np.asarray(hardness))
     with np.errstate(divide="ignore", over="ignore"):
-        return CONTACTS * (limit / np.asarray(pressure, dtype=float)) ** EXPONENT
+        return np.asarray(CONTACTS * (limit / np.asarray(pressure, dtype=float)) ** EXPONENT)
 
 
 def evaluate(solved: Solved) -> Results:
