@@ -73,8 +73,8 @@ def rolling_slip(x, sine, cosine, radius, shift):
 def rolling_slip_without_division(x, sine, cosine, radius, shift):
     """Return `rolling_slip` as eq. (21) writes it; the stress kernels take it at millions of points.
 
-    The division of `rolling_slip` makes these kernels 15 % slower (validation/benchmarks/slip_forms.py). This form
-    cancels at small x: its absolute error is 1e-16 r cos(alpha).
+    The division of `rolling_slip` makes these kernels 15 % slower. This form cancels at small x: its absolute error is
+    1e-16 r cos(alpha).
     """
     flat = radius * cosine
     deep = np.minimum(x * cosine * (2.0 * radius * sine + x * cosine), flat * flat)

@@ -11,10 +11,8 @@ TIMED = (
     "explorer_speed",
     "kalker_cost",
     "million",
-    "published_transcription",
     "scaling",
     "shortcuts",
-    "slip_forms",
     "speed",
 )
 

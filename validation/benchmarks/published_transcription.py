@@ -5,14 +5,10 @@ Omega come from SymPy (as in the paper), are evaluated on n x n surface points, 
 integrated by Simpson's rule; displacement gradients and Hooke's law follow as printed. One point per evaluation, as
 an optimiser asks for them. The peak is sought by SciPy's differential evolution with its default settings.
 
-    python -m validation.benchmarks.published_transcription [--sample N] [--seed S]
-
-Three styles give the same numbers at very different cost. A ratio must name its style, and an honest report quotes
-"printed" and "reused" side by side:
+Two styles give the same numbers at very different cost, so `validation.benchmarks.speed` measures both:
 "printed"  every integral is evaluated where it stands in eqs. (4)-(5), by scipy.integrate.simpson;
 "reused"   each of the twenty derivatives of Omega is evaluated once per point and each integral is a weighted sum:
-           the same mathematics written with care, some twenty times faster;
-"shared"   as "reused", with common subexpressions of all derivatives taken out (no faster: sums and memory decide).
+           the same mathematics written with care, some twenty times faster.
 """
 
 from __future__ import annotations
@@ -32,7 +28,6 @@ import trackroller as tr
 from trackroller.halfspace.influence import corner_loads, stress_parts
 from trackroller.halfspace.stress import body_stress, von_mises
 from trackroller.roller.case import Case
-from validation.benchmarks.command import run
 
 POINTS = 40  # surface points per direction
 POPSIZE = 15  # scipy's default; 3 unknowns make a population of 45
@@ -42,7 +37,7 @@ _ORDERS = [(i, j, 3 - i - j) for i in range(4) for j in range(4 - i)] + [
     for i in range(4)
     for j in range(4 - i)  # every fourth derivative has at least one z
 ]
-STYLES = ("printed", "reused", "shared")
+STYLES = ("printed", "reused")
 
 
 @dataclass(frozen=True)
@@ -72,31 +67,6 @@ def derivatives_of_omega() -> dict:
     }
 
 
-@cache
-def shared_derivatives():
-    """Return one function of (x - xi, y - eta, z) that gives all derivatives in the order of _ORDERS."""
-
-    x, y, z = sp.symbols("x y z", real=True)
-    rho = sp.sqrt(x**2 + y**2 + z**2)
-    omega = z * sp.log(rho + z) - rho
-    return sp.lambdify((x, y, z), [sp.diff(omega, x, i, y, j, z, k) for i, j, k in _ORDERS], "numpy", cse=True)
-
-
-def simpson_weights(x: np.ndarray) -> np.ndarray:
-    """Return the weights of the composite Simpson rule on equidistant nodes.
-
-    For an even number of nodes the last interval is integrated with the parabola through the last three nodes.
-    """
-    h, n = x[1] - x[0], x.size
-    w = np.zeros(n)
-    odd = n if n % 2 else n - 1
-    for start in range(0, odd - 1, 2):
-        w[start : start + 3] += h / 3 * np.array([1.0, 4.0, 1.0])
-    if odd < n:
-        w[-3:] += h / 12 * np.array([-1.0, 8.0, 5.0])
-    return w
-
-
 def _integrals(contact: Contact, point: Sequence[float], style: str):
     """Return a function Q(load, along): the derivative of the potential Q_load, eq. (1), along the named axes."""
     x, y, z = point
@@ -111,12 +81,9 @@ def _integrals(contact: Contact, point: Sequence[float], style: str):
             return float(simpson(simpson(q[load] * omega, x=contact.x, axis=1), x=contact.y))
 
         return integral
-    if style == "shared":
-        table = dict(zip(_ORDERS, shared_derivatives()(u, v, z), strict=True))
-    else:
-        rho = np.sqrt(u**2 + v**2 + z**2)
-        table = {order: f(u, v, z, rho) for order, f in derivatives_of_omega().items()}
-    weights = np.outer(simpson_weights(contact.y), simpson_weights(contact.x))
+    rho = np.sqrt(u**2 + v**2 + z**2)
+    table = {order: f(u, v, z, rho) for order, f in derivatives_of_omega().items()}
+    weights = np.outer(*(simpson(np.eye(nodes.size), x=nodes, axis=1) for nodes in (contact.y, contact.x)))
     sums = {(load, order): float(np.sum(weights * q[load] * d)) for load in AXES for order, d in table.items()}
     return lambda load, along: sums[load, tuple(along.count(axis) for axis in AXES)]
 
@@ -161,41 +128,19 @@ def search_box(contact: Contact) -> list[tuple[float, float]]:
     return [(x[0], x[-1]), (y[0], y[-1]), (start, max(deepest, 2 * start))]
 
 
-def peak_by_differential_evolution(contact: Contact, seed: int = 1, style: str = "printed", evaluate=None) -> dict:
-    """Return the largest equivalent stress by SciPy's differential evolution with a seed (popsize 15, polish).
-
-    `evaluate(point) -> MPa` stands in for the transcription where only the number of evaluations matters.
-    Returns dict(peak [MPa], position [mm], evaluations, seconds).
-    """
-
-    if evaluate is None:
-
-        def evaluate(point):
-            return equivalent(stress_at(contact, point, style))
-
+def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
+    """Count the evaluations of SciPy's differential evolution (popsize 15, polish) with our faster kernels."""
+    loads = corner_loads(contact.x, contact.y, np.stack([contact.q_x, contact.q_y, contact.q_z], -1))
     count = 0
 
-    def negative(point):
+    def negative(point: np.ndarray) -> float:
         nonlocal count
         count += 1
-        return -evaluate(point)
-
-    start = time.perf_counter()
-    found = differential_evolution(negative, search_box(contact), popsize=POPSIZE, rng=seed)
-    seconds = time.perf_counter() - start
-    return {"peak": -float(found.fun), "position": found.x, "evaluations": count, "seconds": seconds}
-
-
-def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
-    """Count the evaluations of the search on the same field, evaluated with our faster kernels."""
-
-    loads = corner_loads(contact.x, contact.y, np.stack([contact.q_x, contact.q_y, contact.q_z], -1))
-
-    def evaluate(point):
         parts = stress_parts(loads, np.asarray(point, dtype=float)[None])[0]
-        return float(von_mises(body_stress(parts, contact.poisson_ratio, 1.0)))
+        return -float(von_mises(body_stress(parts, contact.poisson_ratio, 1.0)))
 
-    return int(peak_by_differential_evolution(contact, seed, evaluate=evaluate)["evaluations"])
+    differential_evolution(negative, search_box(contact), popsize=POPSIZE, rng=seed)
+    return count
 
 
 def tractions_of_paper(
@@ -260,57 +205,28 @@ def contacts_of_case(case=None, points: int = POINTS) -> list[Contact]:
 
 
 def time_transcription(
-    case=None,
-    contacts: Sequence[Contact] | None = None,
-    sample: int = 20,
-    seed: int = 1,
-    style: str = "printed",
-    full: bool = False,
-) -> dict:
-    """Return the seconds that the transcription needs for the peaks of one case (both contacts, one body each).
+    contacts: Sequence[Contact], sample: int = 20, seed: int = 1, style: str = "printed"
+) -> dict[str, Any]:
+    """Return the processor time that the transcription needs for the peaks of one case (both contacts, one body each).
 
-    Times `sample` evaluations at random points of each contact and multiplies by the evaluations the search takes
-    (`full=True` runs the search itself instead). SymPy's derivation is not counted.
-    Returns dict(seconds_per_case, cpu_seconds_per_case, evaluations, seconds_per_evaluation, points, sample, measured,
-    style).
+    Times `sample` evaluations at random points of each contact and multiplies by the evaluations that the search takes.
+    SymPy's derivation is not counted.
+
+    Returns
+    -------
+    dict
+        `seconds`, `evaluations`, `points` of the patch across, `style`.
     """
-    contacts = contacts_of_case(case) if contacts is None else contacts
     rng = np.random.default_rng(seed)
-    seconds, cpu, evaluations = 0.0, 0.0, 0
+    seconds, evaluations = 0.0, 0
     for contact in contacts:
-        if full:
-            start = time.process_time()
-            run = peak_by_differential_evolution(contact, seed, style)
-            seconds, evaluations = seconds + run["seconds"], evaluations + run["evaluations"]
-            cpu += time.process_time() - start
-            continue
         low, high = np.array(search_box(contact)).T
         places = rng.uniform(low, high, (sample, 3))
-        equivalent(
-            stress_at(contact, places[0], style)
-        )  # the measured time leaves out the derivation and the first call
-        start, start_cpu = time.perf_counter(), time.process_time()
+        stress_at(contact, places[0], style)  # the measured time leaves out the derivation and the first call
+        start = time.process_time()
         for place in places:
             equivalent(stress_at(contact, place, style))
-        each, each_cpu = (time.perf_counter() - start) / sample, (time.process_time() - start_cpu) / sample
+        each = (time.process_time() - start) / sample
         count = evaluations_of_search(contact, seed)
-        seconds, cpu, evaluations = seconds + each * count, cpu + each_cpu * count, evaluations + count
-    return {
-        "seconds_per_case": seconds,
-        "cpu_seconds_per_case": cpu,
-        "evaluations": evaluations,
-        "seconds_per_evaluation": seconds / evaluations,
-        "points": contacts[0].x.size,
-        "sample": 0 if full else sample,
-        "measured": full,
-        "style": style,
-    }
-
-
-def measure(sample: int = 20, seed: int = 1) -> dict[str, Any]:
-    """Return the times of each style for the paper's case."""
-    return {kind: time_transcription(sample=sample, seed=seed, style=kind) for kind in STYLES}
-
-
-if __name__ == "__main__":
-    run(measure, __doc__)
+        seconds, evaluations = seconds + each * count, evaluations + count
+    return {"seconds": seconds, "evaluations": evaluations, "points": contacts[0].x.size, "style": style}

@@ -18,7 +18,7 @@ os.environ["NUMBA_NUM_THREADS"] = "1"
 import trackroller as tr
 from validation.benchmarks.command import run
 from validation.benchmarks.kalker_cost import OUTPUTS, costs
-from validation.benchmarks.published_transcription import time_transcription
+from validation.benchmarks.published_transcription import STYLES, contacts_of_case, time_transcription
 from validation.benchmarks.samples import geometry_study
 
 FORCES = ("forces", "contact")
@@ -39,7 +39,6 @@ SLOW: dict[str, dict[str, Any]] = {
     "sliding, non-Hertzian": {"contact_model": "sliding", "normal": "halfspace"},
     "kalker, non-Hertzian": {"contact_model": "kalker", "normal": "halfspace"},
 }
-STYLES = ("printed", "reused")  # of the transcription; "reused" is some twenty times faster
 
 
 def measure(cases: int = 100, seed: int = 1, slow: int = 8) -> dict[str, Any]:
@@ -51,7 +50,7 @@ def measure(cases: int = 100, seed: int = 1, slow: int = 8) -> dict[str, Any]:
     found = {name: spent[name] / yardstick for name in QUICK}
     found |= {name: value / own for name, value in costs(few, SLOW, repeats=1).items()}
     for style in STYLES:
-        published = time_transcription(tr.Case(motor_force=0), style=style)["cpu_seconds_per_case"]
+        published = time_transcription(contacts_of_case(tr.Case(motor_force=0)), style=style)["seconds"]
         found[f"published equations, {style}"] = published / yardstick
     return {"yardstick_ms": 1e3 * yardstick, "outputs": OUTPUTS, "ratios": found}
 

@@ -19,7 +19,6 @@ from trackroller.analysis.table import StudyView
 from trackroller.files import write_whole
 from trackroller.report.build import analyse_study, draw_study, report_study
 from trackroller.report.figures import style
-from trackroller.report.words.comparison import sentences
 from trackroller.roller.case import Case
 from trackroller.roller.solver import solve
 from trackroller.study.file.load import load_study
@@ -37,7 +36,7 @@ PATCHES = ((0.05, 0.0), (0.15, 0.0), (0.15, 0.5), (0.5, 0.0), (0.5, 0.5))
 
 
 def compare(study_file: Path, out: Path) -> None:
-    """Solve the study, then figures, words and report as of any study, with pictures of the patch, into `out`."""
+    """Solve the study, then figures, errors and report as of any study, with pictures of the patch, into `out`."""
 
     study = load_study(study_file)
     plan = run_study(study, out.parent)
@@ -48,18 +47,8 @@ def compare(study_file: Path, out: Path) -> None:
     draw_study(gathered, analysis, str(figures))
     base = {k: v for k, v in study.config.base.items() if k not in study.factors}
     draw_patches(Case.from_dict(base), figures)
-    write_words(gathered, out / "words.txt")
     write_errors(gathered, out / "contact_models.json")
     report_study(gathered, str(figures), analysis, str(out / "report.html"))
-
-
-def write_words(study_nc: str, path: Path) -> None:
-    """Write the findings of the comparison, one sentence a line."""
-
-    with xr.open_dataset(study_nc) as ds:
-        paired = pairs(StudyView.of(ds))
-        said = sentences(paired) if paired is not None else ["The study has only one contact model."]
-    path.write_text("\n".join(said) + "\n", encoding="utf-8")
 
 
 def write_errors(study_nc: str, path: Path) -> None:
