@@ -1,33 +1,36 @@
-"""Read the files of users, find the files that they name, and write files whole: one way for the whole program.
-
-A YAML text is YAML 1.2 (core schema). A scalar without quotes that YAML 1.1 reads differently, such as `030`, `1:30`,
-`3_0` or `yes`, is refused; the message says what to write instead. Values are counted while they are composed, aliases
-in full, so that a small file cannot grow into millions of values. ruamel.yaml parses and writes; its own composer reads
-these scalars without a word, ends the process at deep nesting, and takes twice as long.
-"""
+"""Read the files of users, find the files that they name, and write files and folders whole."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import hashlib
-import io
 import os
-from collections.abc import Callable, Iterator, Mapping
+import tempfile
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
-from ruamel.yaml.representer import SafeRepresenter
-
 from trackroller.errors import InputError, WorkError
-from trackroller.yaml_composer import TAG, Composer, plain_scalar
 
 MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
+Reads = dict[Path, tuple[str, str]]  # kind and SHA-256 of each file that was read
 _beside: ContextVar[Path | None] = ContextVar("beside", default=None)
+_noted: ContextVar[Reads | None] = ContextVar("noted", default=None)
+
+
+@contextmanager
+def noted_reads() -> Iterator[Reads]:
+    """Note the kind and the SHA-256 of each file that `read_text` reads; an inner context adds to the outer one."""
+    outer = _noted.get()
+    noted: Reads = {} if outer is None else outer
+    token = _noted.set(noted)
+    try:
+        yield noted
+    finally:
+        _noted.reset(token)
 
 
 def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
@@ -65,7 +68,10 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
                 f"a file of at most {MAX_BYTES // 1_000_000} MB",
                 "Put many cases into a CSV file and use design: table.",
             )
-        return path.read_bytes().decode("utf-8-sig")
+        content = path.read_bytes()
+        if (noted := _noted.get()) is not None:
+            noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
+        return content.decode("utf-8-sig")
     except InputError:
         raise
     except FileNotFoundError:
@@ -75,97 +81,6 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
         raise InputError(what, str(path), f"UTF-8 text (byte {exc.start} is not)", remedy) from None
     except (OSError, ValueError) as exc:
         raise InputError(what, str(path), f"a readable file ({exc})", "Check path and rights.") from None
-
-
-def parse_yaml(text: str, what: str) -> Any:
-    """Return the plain data of a YAML text.
-
-    Parameters
-    ----------
-    text : str
-        One YAML document.
-    what : str
-        Kind of text, for messages.
-
-    Returns
-    -------
-    dict, list, str, int, float, bool or None
-
-    Raises
-    ------
-    InputError
-        With the line, if the text is not YAML, is ambiguous, holds a key twice, an unknown tag, too many values or
-        too deep a nesting.
-    """
-    try:
-        return Composer(YAML(typ="safe").parse(io.StringIO(text)), what).document()
-    except InputError:
-        raise
-    except MarkedYAMLError as exc:
-        mark = exc.problem_mark or exc.context_mark
-        where = f"line {mark.line + 1}" if mark else "the file"
-        reason = " ".join(str(exc.problem or exc).split())
-        raise InputError(
-            what, where, f"YAML; this is not YAML: {reason}", "Mend the line; texts with ': ' or ' #' need quotes."
-        ) from None
-    except (YAMLError, ValueError, RecursionError) as exc:
-        reason = " ".join(str(exc).split())[:200]
-        raise InputError(what, "the file", f"YAML: {reason}", "Save it as plain UTF-8 text.") from None
-
-
-def parse_mapping(text: str, what: str) -> dict[str, Any]:
-    """Return the mapping of a YAML text; see `parse_yaml`.
-
-    Raises
-    ------
-    InputError
-        Also if the top level is not a mapping from texts.
-    """
-    data = parse_yaml(text, what)
-    if not isinstance(data, dict):
-        raise InputError(
-            what, type(data).__name__, "a mapping of keys to values", "Write lines of the form 'key: value'."
-        )
-    for key in data:
-        if not isinstance(key, str):
-            raise InputError(what, key, "keys that are texts", "Put the key in quotes.")
-    return data
-
-
-def read_mapping(path: Path | str, what: str = "file") -> dict[str, Any]:
-    """Return the mapping of a user's YAML file; see `read_text` and `parse_mapping`."""
-    return parse_mapping(read_text(path, what), what)
-
-
-def write_yaml(data: Mapping[str, Any]) -> str:
-    """Return plain data as YAML text that `parse_yaml` reads as the same data."""
-    writer = YAML(typ="safe", pure=True)
-    writer.Representer = _Representer
-    writer.default_flow_style = False
-    writer.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # the library types its default, None
-    writer.allow_unicode = True
-    out = io.StringIO()
-    writer.dump(dict(data), out)
-    return out.getvalue()
-
-
-def needs_quotes(text: str) -> bool:
-    """Return whether a text without quotes would be refused or read as something else."""
-    try:
-        return plain_scalar(text) != text
-    except ValueError:
-        return True
-
-
-class _Representer(SafeRepresenter):
-    """Writes texts in quotes wherever the reader would not take them as texts."""
-
-    def represent_text(self, text: str) -> Any:
-        """Return the node of a text."""
-        return self.represent_scalar(f"{TAG}str", text, style='"' if needs_quotes(text) else None)
-
-
-_Representer.add_representer(str, _Representer.represent_text)
 
 
 @contextmanager
@@ -258,6 +173,38 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 def write_text(path: Path, text: str) -> None:
     """Write a text file whole or not at all; see `write_whole`."""
     write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8"))
+
+
+@contextmanager
+def whole_folder(path: Path) -> Iterator[Path]:
+    """Yield an empty folder that takes the place of `path` at the end; two processes may do so at once.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The folder to replace. A failure leaves it as it is.
+
+    Raises
+    ------
+    WorkError
+        If the folder cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent) as scratch:
+        new, old = Path(scratch, "new"), Path(scratch, "old")
+        new.mkdir()
+        old.mkdir()
+        yield new
+        for attempt in range(100):  # another process may have put its folder there meanwhile
+            with contextlib.suppress(FileNotFoundError):
+                path.rename(old / str(attempt))
+            try:
+                new.rename(path)
+                return
+            except OSError as exc:
+                if exc.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+                    raise disk_error(exc, path) from exc
+        raise WorkError(f"{path}: other processes replace this folder all the time. Start again when they have ended.")
 
 
 def _sync_folder(folder: Path) -> None:

@@ -20,8 +20,8 @@ PACKAGE = "trackroller"
 # a room imports only from the rooms before it; the top of the package holds public names and may import all of them
 ORDER = (
     "errors",
-    "yaml_composer",
     "files",
+    "yaml_file",
     "parameters",
     "numerics",
     "materials",

@@ -150,7 +150,7 @@ def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
             **quiet,
         )
         folder = tmp_path / "results" / "tiny"
-        wait_until(lambda: any(folder.glob("parts/*.nc")) or any(folder.glob("chunks/*.nc")))
+        wait_until(lambda: any(folder.glob("chunks/*.nc")))
         helpers[1].kill()
         assert run.wait(timeout=120) == 0
     finally:

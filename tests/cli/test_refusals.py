@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from trackroller.cli.main import app, run_app
 from trackroller.errors import InputError
-from trackroller.files import parse_mapping
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
+from trackroller.yaml_file import parse_mapping
 
 GRID = "name: t\nfactors: {axial_force: {values: [0, 10]}}\n"
 SAMPLE = "name: t\nfactors: {axial_force: {uniform: [0, 10]}}\ndesign: lhs\n"

@@ -17,7 +17,7 @@ from trackroller.analysis.table import StudyView
 from trackroller.report.build import build_report
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
-from trackroller.study.store.crate import damaged_files, read_crate, write_crate
+from trackroller.study.store.crate import damaged_files, read_crate
 from trackroller.study.store.plan import study_folder
 
 SMALL = {
@@ -39,10 +39,7 @@ def run(data, results, **more):
 def run_and_report(data, results: Path) -> None:
     """Do what `trackroller run STUDY --report` does."""
     run(data, results)
-    study = parse_study(data)
-    folder = study_folder(study.name, results)
-    build_report(folder)
-    write_crate(study, folder.root)
+    build_report(study_folder(data["name"], results))
 
 
 def kill_at(point: int, action: Callable[[], None]) -> bool:
@@ -87,11 +84,11 @@ def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, solved
         for name in ("design.nc", "study.nc"):
             same(killed / "s" / name, tmp_path / "calm" / "s" / name)
         twice = sum(n - 1 for n in (solved() - before).values())
-        assert twice <= 4, f"only the block in work is lost, at kill point {point}"
-        assert not list(killed.rglob("*.tmp")) and not list((killed / "s" / "parts").iterdir())
+        assert twice <= 4, f"only the chunk in work is lost, at kill point {point}"
+        assert not list(killed.rglob("*.tmp"))
         before = solved()
         point += 1
-    assert point >= 20, "lists, plan, parts, chunks, design, study and their checksums"
+    assert point >= 20, "lists, plan, inputs, chunks, design, study and their checksums"
 
 
 def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tmp_path, solved):
@@ -113,7 +110,7 @@ def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tm
         run(grown, place, rerun_failed=True)
         same(place / "s" / "study.nc", tmp_path / "calm" / "s" / "study.nc")
         again = solved() - before
-        assert sum(n - 1 for n in again.values()) <= 4, f"only the block in work is lost, at kill point {point}"
+        assert sum(n - 1 for n in again.values()) <= 4, f"only the chunk in work is lost, at kill point {point}"
         assert len(again) == 4 + 2, "4 new cases and the 2 that failed"
         if not killed:
             break

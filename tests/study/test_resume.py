@@ -21,8 +21,8 @@ from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 from trackroller.study.store import chunks
-from trackroller.study.store.identity import chunk_name
-from trackroller.study.store.plan import identify, working_plan
+from trackroller.study.store.identity import Cases, chunk_name
+from trackroller.study.store.planning import working_plan
 
 HERE = Path(__file__).parents[1]
 LOADS = [float(v) for v in range(20, 50)]
@@ -184,25 +184,21 @@ class Stopped(BaseException):
     """Ends a run as a user's Ctrl-C does."""
 
 
-@pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle])
-def test_damaged_part_of_an_unfinished_chunk_is_found_named_and_solved_again(tmp_path, solved, damage):
-    data = changed(friction_coefficient=np.linspace(0.05, 0.4, 14).tolist()) | {"chunk_size": 420}
+def test_stopped_run_keeps_its_complete_chunks_and_tells_progress_within_a_chunk(tmp_path, solved):
+    data = changed(friction_coefficient=np.linspace(0.05, 0.4, 14).tolist()) | {"chunk_size": 210}
+    steps: list[int] = []
 
     def solver(design, database=None, **options):
-        if sum(solved().values()) >= 100:
+        if sum(solved().values()) >= 250:
             raise Stopped
         return fake_solver.solve(design)
 
     with pytest.raises(Stopped):
-        run_study(parse_study(data), tmp_path, solver=solver)
-    parts = sorted((tmp_path / "s" / "parts").glob("*.nc"), key=lambda path: len(chunks.check(path)))
-    assert [len(chunks.check(path)) for path in parts] == [64, 256]
-    damage(parts[0])
-    _, ds, lines = run(data, tmp_path)
-    assert sum(n - 1 for n in solved().values()) == 64, "the cases of the damaged part"
-    assert any(parts[0].name in line and "corrupt" in line for line in lines)
+        run_study(parse_study(data), tmp_path, solver=solver, progress=steps.append)
+    assert steps == [64, 146, 64]
+    _, ds, _ = run(data, tmp_path)
+    assert sum(n - 1 for n in solved().values()) == 64, "the block that was solved in the chunk that was stopped"
     assert np.isfinite(ds["normal_force"]).all()
-    assert not list((tmp_path / "s" / "parts").iterdir()), "a complete chunk needs no parts"
 
 
 @pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle])
@@ -420,7 +416,7 @@ def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, sol
     run(data | {"samples": small}, tmp_path)
     before = solved()
     plan, ds, _ = run(data | {"samples": large}, tmp_path)
-    cases = len(np.unique(identify(plan.study, plan.study.design())))
+    cases = len(np.unique(Cases(plan.study).fingerprints))
     assert 0 < sum(before.values()) < sum(solved().values()) == cases, "each case of the larger sample once"
     run(data | {"samples": large}, tmp_path)
     assert sum(solved().values()) == cases, "planning again changes nothing"
@@ -436,25 +432,3 @@ def test_doubled_latin_hypercube_is_one_again_and_every_size_keeps_its_rows():
     assert (np.sort((large * 40).astype(int), axis=0) == np.arange(40)[:, None]).all()
     assert all(len(np.unique((column * 57).astype(int))) >= 45 for column in odd.T)
     assert ((odd >= 0) & (odd < 1)).all()
-
-
-def test_results_of_an_earlier_default_model_are_kept(tmp_path, solved):
-    """A file that names no model is neither solved anew nor answered with results of another model."""
-    unnamed = {name: value for name, value in DATA.items() if name != "contact_model"}
-    plan, _, _ = run(DATA, tmp_path)
-    kept, count = plan.folder.gathered.read_bytes(), sum(solved().values())
-    for ask in (lambda study: run(study, tmp_path), lambda study: status_of(parse_study(study), tmp_path)):
-        with pytest.raises(InputError, match=r"`contact_model: sliding`.*keep.*`contact_model: kalker`"):
-            ask(unnamed)
-    assert plan.folder.gathered.read_bytes() == kept
-    assert status_of(parse_study(DATA), tmp_path).missing == 0
-    run(DATA, tmp_path)
-    assert sum(solved().values()) == count
-    run(unnamed | {"contact_model": "kalker"}, tmp_path)
-    assert sum(solved().values()) == 2 * count
-    run(unnamed, tmp_path)
-    assert sum(solved().values()) == 2 * count
-    run(unnamed | {"contact_model": ["sliding", "kalker"]}, tmp_path)
-    before = sum(solved().values())
-    run(unnamed, tmp_path)  # the list of the earlier file was no default
-    assert sum(solved().values()) == before

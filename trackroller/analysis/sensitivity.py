@@ -30,6 +30,7 @@ from trackroller.files import write_whole
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes, settings
+from trackroller.study.store.seal import check_sealed
 
 NEEDS = {
     "grid": "a full grid, every level weighing the same",
@@ -256,7 +257,8 @@ def analyse(study_nc: str | Path, out_nc: str | Path) -> xr.Dataset:
     InputError
         As `analyse_dataset`.
     """
-    with xr.open_dataset(study_nc, cache=False) as opened:  # variables one by one: a study may be large
+    path = check_sealed(Path(study_nc))
+    with xr.open_dataset(path, cache=False) as opened:  # variables one by one: a study may be large
         result = analyse_dataset(opened)
     write_whole(Path(out_nc), lambda part: result.to_netcdf(part))
     return result

@@ -17,6 +17,7 @@ from trackroller.analysis.limits import allowed_cases
 from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.study.design.levels import NAMED
 from trackroller.study.outputs import read_study
+from trackroller.study.store.seal import read_result
 
 LIVES = (
     ("roller_life_hours", "life of the roller", "h"),
@@ -67,8 +68,8 @@ class StudyView:
 
         A missing analysis file, and one that only says why there is no analysis, count as no analysis.
         """
-        known = xr.load_dataset(analysis_nc) if analysis_nc is not None and Path(analysis_nc).is_file() else None
-        return cls.of(xr.load_dataset(study_nc), known)
+        known = read_result(analysis_nc) if analysis_nc is not None and Path(analysis_nc).is_file() else None
+        return cls.of(read_result(study_nc), known)
 
     @classmethod
     def of(cls, ds: xr.Dataset, analysis: xr.Dataset | None = None) -> StudyView:

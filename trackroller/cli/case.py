@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller.errors import InputError, WorkError, check_names, unknown_name
-from trackroller.files import files_beside, parse_yaml, read_mapping, write_whole
+from trackroller.files import files_beside, write_whole
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
+from trackroller.yaml_file import parse_yaml, read_mapping
 
 if TYPE_CHECKING:
     import xarray as xr

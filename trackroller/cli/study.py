@@ -19,7 +19,6 @@ from trackroller.roller.options import Options, options_of_cases
 from trackroller.study.cost import bytes_a_case, duration
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.load import load_study
-from trackroller.study.file.study import Study
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import find_study, status_of
@@ -60,24 +59,22 @@ def run_with_progress(
             progress=progress,
         )
     if report:
-        print(_report(plan.study, plan.folder))
+        print(_report(plan.folder))
     else:
-        write_crate(plan.study, plan.folder.root)
+        write_crate(plan.folder.root)
         print(plan.folder.gathered)
 
 
 def make_report(name: str, results: Path) -> None:
     """Make analysis, figures and report of a study that was run."""
     study = find_study(name, results)
-    print(_report(study, study_folder(study.name, results)))
+    print(_report(study_folder(study.name, results)))
 
 
-def _report(study: Study, folder: StudyFolder) -> Path:
+def _report(folder: StudyFolder) -> Path:
     from trackroller.report.build import build_report  # heavy: SALib
 
-    page = build_report(folder, lambda line: print(line, file=sys.stderr))
-    write_crate(study, folder.root)
-    return page
+    return build_report(folder, lambda line: print(line, file=sys.stderr))
 
 
 def print_status(name: str, results: Path) -> None:

@@ -18,7 +18,8 @@ from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.plan import Plan, read_plan, study_folder, working_plan
+from trackroller.study.store.plan import Plan, read_plan, study_folder
+from trackroller.study.store.planning import working_plan
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends

@@ -15,11 +15,12 @@ from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from trackroller.errors import InputError, check_names
-from trackroller.files import needs_quotes, read_text
+from trackroller.files import read_text
 from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
+from trackroller.yaml_file import needs_quotes
 
 HEADER = """\
 # Your own materials and friction coefficients; they replace built-in ones of the same name.

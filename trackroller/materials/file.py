@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, check_names
-from trackroller.files import parse_yaml, read_text
+from trackroller.files import read_text
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
+from trackroller.yaml_file import parse_yaml
 
 BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
@@ -50,19 +51,15 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
 
 
 def read_database(user_file: Path | None) -> MaterialDatabase:
-    """Return the built-in database with the values of the user's file; both are cached until the file changes."""
-    if user_file is None:
-        return _cached(None, 0, 0)
-    stat = os.stat(user_file)
-    return _cached(str(user_file), stat.st_mtime_ns, stat.st_size)
+    """Return the built-in database with the values of the user's file, which is parsed again only if it has changed."""
+    return _cached(None, "") if user_file is None else _cached(user_file, read_text(user_file, "materials file"))
 
 
 @functools.lru_cache(maxsize=8)
-def _cached(user_file: str | None, modified: int, size: int) -> MaterialDatabase:
-    database = build_database(BUILTIN_FILE.read_text(encoding="utf-8"), BUILTIN)
+def _cached(user_file: Path | None, text: str) -> MaterialDatabase:
     if user_file is None:
-        return database
-    return build_database(read_text(user_file, "materials file"), user_file, over=database)
+        return build_database(BUILTIN_FILE.read_text(encoding="utf-8"), BUILTIN)
+    return build_database(text, str(user_file), over=_cached(None, ""))
 
 
 def build_database(text: str, file: str, over: MaterialDatabase | None = None) -> MaterialDatabase:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import shutil
 import tempfile
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,15 +13,19 @@ import xarray as xr
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
-from trackroller.files import write_whole
+from trackroller.files import whole_folder, write_whole
 from trackroller.report.pages.study import contents, page_text, write_report
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.crate import write_crate
+from trackroller.study.store.folder import StudyFolder, locked
+from trackroller.study.store.seal import check_sealed, read_result, sealing
 
 log = logging.getLogger("trackroller")
 
 
 def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) -> Path:
-    """Write `sensitivity.nc`, `figures/` and `report.html` beside the gathered results of a study.
+    """Write `sensitivity.nc`, `figures/`, `report.html` and the crate beside the gathered results of a study.
+
+    Two processes that report on the same study do so one after the other.
 
     Parameters
     ----------
@@ -41,17 +44,23 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     InputError
         If the study is not gathered yet.
     WorkError
-        If the folder cannot be written.
+        If a result was altered after it was written, or the folder cannot be written.
     """
     if not folder.gathered.is_file():
         raise InputError("study", str(folder.root), "a study with study.nc", "Run the study to its end first.")
-    tell("analyse the results")
-    view = StudyView.of(xr.load_dataset(folder.gathered))
-    view = replace(view, analysis=_analysed(view.data, folder.root / "sensitivity.nc"))
-    tell("draw the figures")
-    _draw(view, folder.root / "figures")
-    tell("write the report")
-    return write_report(view, folder.root / "figures", folder.root / "report.html")
+    alone = folder.create().lock.with_name(".report")
+    alone.touch()
+    with locked(folder.lock, shared=True), locked(alone, tell=tell):
+        tell("analyse the results")
+        view = StudyView.of(read_result(folder.gathered))
+        view = replace(view, analysis=_analysed(view.data, folder.root / "sensitivity.nc"))
+        tell("draw the figures")
+        _draw(view, folder.root / "figures")
+        tell("write the report")
+        report = _report(view, folder.root / "figures", folder.root / "report.html")
+        if folder.plan_file.exists():  # results that were solved in Python have no plan, and no crate
+            write_crate(folder.root)
+    return report
 
 
 def report_text(ds: xr.Dataset) -> str:
@@ -80,13 +89,15 @@ def _analysis(ds: xr.Dataset) -> xr.Dataset:
 
 def _analysed(ds: xr.Dataset, out: Path) -> xr.Dataset | None:
     result = _analysis(ds)
-    write_whole(out, lambda beside: result.to_netcdf(beside))
+    with sealing(out):
+        write_whole(out, lambda beside: result.to_netcdf(beside))
     return result if result.data_vars else None
 
 
 def analyse_study(study_nc: str, out: str) -> None:
     """Write the sensitivity analysis of a study, or a file that says why there is none."""
-    with xr.open_dataset(study_nc, cache=False) as opened:  # variables one by one: a study may be large
+    path = check_sealed(Path(study_nc))
+    with xr.open_dataset(path, cache=False) as opened:  # variables one by one: a study may be large
         _analysed(opened, Path(out))
 
 
@@ -98,14 +109,15 @@ def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:
 def _draw(view: StudyView, out: Path) -> None:
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    beside = out.with_name(f".{out.name}.tmp")
-    shutil.rmtree(beside, ignore_errors=True)
-    beside.mkdir(parents=True)
-    draw_all(view, beside)
-    shutil.rmtree(out, ignore_errors=True)
-    beside.rename(out)
+    with sealing(out), whole_folder(out) as beside:
+        draw_all(view, beside)
 
 
 def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:
     """Write the report, with the sensitivity analysis where there is one."""
-    write_report(StudyView.read(study_nc, sensitivity_nc), Path(figures), Path(out))
+    _report(StudyView.read(study_nc, sensitivity_nc), check_sealed(Path(figures)), Path(out))
+
+
+def _report(view: StudyView, figures: Path, out: Path) -> Path:
+    with sealing(out), sealing(out.with_name("tables")):
+        return write_report(view, figures, out)

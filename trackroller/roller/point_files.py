@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from trackroller.errors import InputError
-from trackroller.files import find_beside
+from trackroller.files import find_beside, read_text
 
 HEADINGS = 5  # largest number of heading lines before the first point
 _COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")  # a number with a decimal comma
@@ -37,17 +37,8 @@ def read_points(name: Any, field: str) -> list[list[float]]:
     InputError
         If the path is not allowed, the file does not exist, or a line does not hold two numbers.
     """
-    path = find_beside(name, field)
+    text = read_text(find_beside(name, field), field)
     rows: list[list[float]] = []
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (UnicodeDecodeError, OSError) as error:
-        raise InputError(
-            field,
-            str(name),
-            f"a readable text file in UTF-8 ({error})",
-            "Save the points as text: two columns, x and z.",
-        ) from None
     for number, line in enumerate(text.splitlines(), start=1):
         cells = _cells(line.split("#")[0])
         if not cells:

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.files import parse_yaml
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.yaml_file import parse_yaml
 
 BOOKKEEPING = {
     "regime",

@@ -12,7 +12,8 @@ from trackroller.study.cluster import workers
 from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store.folder import Tell
 from trackroller.study.store.gather import gather
-from trackroller.study.store.plan import Plan, working_plan
+from trackroller.study.store.plan import Plan
+from trackroller.study.store.planning import working_plan
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -60,10 +61,10 @@ def run_study(
     InputError
         If the study or the address of the scheduler is wrong.
     WorkError
-        If the work cannot be completed, for example on a full disk; every finished case is kept.
+        If the work cannot be completed, because an input was edited meanwhile or the disk is full, for example; every
+        finished chunk is kept.
     """
     tell = tell or (lambda line: None)
-    before = _text(study.path)
     with contextlib.ExitStack() as stack:
         plan = stack.enter_context(working_plan(study, results, tell=tell, rerun_failed=rerun_failed))
         left = plan.open
@@ -75,15 +76,4 @@ def run_study(
         for name in left:
             tell(solve_chunk(plan.folder, name, study.materials, executor=executor, tell=tell, progress=progress))
         gather(plan, tell=tell)
-    if _text(study.path) != before:
-        tell(
-            f"{study.path} was edited during this run, which solved the earlier version. Start again to solve the new."
-        )
     return plan
-
-
-def _text(path: Path | None) -> bytes:
-    try:
-        return path.read_bytes() if path is not None else b""
-    except OSError:
-        return b""

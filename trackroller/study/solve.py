@@ -1,4 +1,4 @@
-"""Solve the missing cases of a chunk. Every runner calls `solve_chunk`; runners differ in where cases are solved."""
+"""Solve the cases of a chunk. Every runner calls `solve_chunk`; runners differ in where cases are solved."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import json
 import logging
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, ShapeError, WorkError
-from trackroller.roller.case import to_table
+from trackroller.materials import MaterialDatabase, load_database
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import StudyFolder, Tell, locked
-from trackroller.study.store.identity import fingerprints
+from trackroller.study.store.identity import solver_and_materials
+from trackroller.study.store.inputs import check_inputs
 
 log = logging.getLogger("trackroller")
-BLOCK_SECONDS = 3.0  # a killed process loses at most the block that it works on
+BLOCK_SECONDS = 3.0  # between two steps of the progress bar
 SMALLEST_BLOCK, LARGEST_BLOCK = 16, 8192
 Solver = Callable[..., Any]
 Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases of a list, block by block
@@ -31,7 +31,7 @@ def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
     return cases.map(lambda column: column if column.dims else column.broadcast_like(cases["case"]))
 
 
-def solve_cases(cases: xr.Dataset, database: Any, solver: Solver | None = None) -> xr.Dataset:
+def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None) -> xr.Dataset:
     """Solve cases and return their results as one block.
 
     If the solver raises, the cases are halved until the responsible case is alone. That case becomes a row with
@@ -90,7 +90,9 @@ def _reason(exc: Exception) -> str:
     return text[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {text}"[:200]
 
 
-def solve_here(cases: xr.Dataset, database: Any, solver: Solver | None = None) -> Iterator[xr.Dataset]:
+def solve_here(
+    cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None
+) -> Iterator[xr.Dataset]:
     """Solve cases in this process, in blocks of about `BLOCK_SECONDS`."""
     start, size = 0, 64
     while start < cases.sizes["case"]:
@@ -104,15 +106,13 @@ def solve_here(cases: xr.Dataset, database: Any, solver: Solver | None = None) -
 def solve_chunk(
     folder: StudyFolder,
     name: str,
-    database: Any = None,
+    database: MaterialDatabase | None = None,
     *,
     executor: Executor = solve_here,
     tell: Tell = log.warning,
     progress: Callable[[int], None] | None = None,
 ) -> str:
-    """Solve the missing cases of a chunk and write its file.
-
-    Each finished block is written at once, so that a killed process loses only the blocks in work.
+    """Solve the cases of a chunk and write its file. A killed process loses the chunk that it works on.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def solve_chunk(
     tell : callable
         Receives one line for each event that the user should read.
     progress : callable, optional
-        Receives the number of cases that were solved earlier, and that of each finished block.
+        Receives the number of cases of each finished block.
 
     Returns
     -------
@@ -145,17 +145,10 @@ def solve_chunk(
                 folder.mark(name).touch()
                 return f"chunk {name}: already solved"
             cases = load_cases(folder, name)
-            _check_identity(name, cases, database)
-            corrupt: dict[Path, str] = {}
-            blocks = [block for _, block in chunks.read_sound(folder.parts(name), corrupt)]
-            chunks.remove_corrupt(corrupt, tell)
-            finished = np.concatenate([np.empty(0, dtype="S32"), *(block["case"].values for block in blocks)])
-            missing = cases.isel(case=~np.isin(cases["case"].values, finished))
-            if progress is not None:
-                progress(len(finished))
+            _check_unchanged(folder, cases, database)
             started = time.perf_counter()
-            for block in executor(missing, database):
-                chunks.write_part(folder, name, block)
+            blocks = []
+            for block in executor(cases, database):
                 blocks.append(block)
                 if progress is not None:
                     progress(block.sizes["case"])
@@ -163,9 +156,7 @@ def solve_chunk(
             chunk = chunks.join(blocks).sel(case=cases["case"].values)
             chunks.write(folder.chunk(name), chunk, packed=True)
             folder.mark(name).touch()
-            for path in folder.parts(name):
-                path.unlink(missing_ok=True)
-            return _summary(chunk, name, missing.sizes["case"], spent)
+            return _summary(chunk, name, spent)
     except FileNotFoundError:
         why = "is missing: the study was edited and planned anew by another process"
         raise WorkError(f"{folder.case_list(name)} {why}. Start again: every finished case is kept.") from None
@@ -173,17 +164,18 @@ def solve_chunk(
         raise WorkError(f"corrupt case list: {exc}. Start again: its cases are planned anew.") from None
 
 
-def _summary(chunk: xr.Dataset, name: str, count: int, spent: float) -> str:
-    speed = f", {count / spent:.0f} cases/s" if spent > 0 and count else ""
-    failed = int((chunk["regime"] == chunks.FAILED).sum())
-    return f"chunk {name}: {chunk.sizes['case']} cases, {count} solved now in {spent:.1f} s{speed}, {failed} failed"
+def _summary(chunk: xr.Dataset, name: str, spent: float) -> str:
+    count, failed = chunk.sizes["case"], int((chunk["regime"] == chunks.FAILED).sum())
+    return (
+        f"chunk {name}: {count} cases solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
+    )
 
 
-def _check_identity(name: str, cases: xr.Dataset, database: Any) -> None:
-    """Raise `WorkError` unless the materials and the solver are those of the plan."""
-    found = fingerprints(to_table(cases, database), json.loads(cases.attrs["options"]))
-    if (found != cases["case"].values).any():
+def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:
+    """Raise `WorkError` unless the inputs, the materials and the solver are those of the plan."""
+    check_inputs(folder.record().get("inputs", {}))
+    if cases.attrs["identity"] != solver_and_materials(load_database() if database is None else database):
         raise WorkError(
-            f"chunk {name}: the materials or the solver changed after the study was planned. "
-            "Start the run again: it plans anew."
+            f"{folder.root}: the materials or the solver changed after the study was planned. Start the run again: it "
+            "plans anew, and the cases that did not change are kept."
         )

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.errors import InputError, nearest
-from trackroller.files import read_mapping
 from trackroller.parameters import REGIMES
 from trackroller.study.cost import study_rate
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
-from trackroller.study.file.load import load_study, parse_study
+from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED
-from trackroller.study.store.inventory import check_default_model
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.plan import locate, study_folder
 
 if TYPE_CHECKING:
@@ -81,13 +81,13 @@ def find_study(study: str, results: Path | str = "results") -> Study:
     path = Path(study)
     if path.suffix in (".yaml", ".yml") or path.is_file():
         return load_study(path)
-    folder = path if (path / "study.yaml").is_file() else Path(results) / study
-    if not (folder / "study.yaml").is_file():
-        known = sorted(p.parent.name for p in Path(results).glob("*/study.yaml"))
+    root = path if StudyFolder(path).study_file.is_file() else Path(results) / study
+    if not StudyFolder(root).study_file.is_file():
+        known = sorted(p.parent.parent.name for p in Path(results).glob("*/inputs/study.yaml"))
         close = nearest(study, known)
         allowed = f"a study file, or a study in {results}/: {', '.join(known) or 'none yet'}"
         raise InputError("study", study, allowed, f"Did you mean '{close}'?" if close else "")
-    return parse_study(read_mapping(folder / "study.yaml", "study"), folder / "study.yaml")
+    return study_of_folder(StudyFolder(root))
 
 
 def status_of(study: Study, results: Path | str = "results") -> Status:
@@ -104,14 +104,8 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     -------
     Status
         Numbers of cases and the expected time. The time is proportional to the number of cases.
-
-    Raises
-    ------
-    InputError
-        If the folder holds results of an earlier default contact model.
     """
     folder = study_folder(study.name, results)
-    check_default_model(study, folder)
     study = with_history(study, folder)
     _, found, place = locate(study, folder)
     solved = np.flatnonzero(place >= 0)

@@ -53,11 +53,11 @@ if os.environ.get("SURVIVE_LOG"):
     def batch(cases, *more, inner=solve.solve_cases, **named):
         told(b"S", cases["case"].values)
         return inner(cases, *more, **named)
-    def part(folder, name, block, inner=chunks.write_part):
-        path = inner(folder, name, block)
-        told(b"W", block["case"].values)
-        return path
-    solve.solve_cases, chunks.write_part = batch, part
+    def write(path, block, packed=False, inner=chunks.write):
+        inner(path, block, packed)
+        if packed:  # a chunk, not a case list
+            told(b"W", block["case"].values)
+    solve.solve_cases, chunks.write = batch, write
 """
 FLOW, RUN, DASK = "snakemake", "run", "run --scheduler local"
 ALL, HEAD, WORKER = "everything", "the main process", "one worker"
@@ -126,9 +126,9 @@ def finished(place: Path) -> set[bytes]:
 
 def moment(place: Path, phase: str, before: int) -> Callable[[], bool]:
     """Return True while the wanted work is going on."""
-    if phase == "solving":  # blocks of an unfinished chunk are there, and more of them than at the start
-        return lambda: any(results(place).glob("parts/*.nc")) and marks(place, b"W") > before
-    pattern = {"gathering": ".study.nc.*.tmp", "drawing": ".figures.tmp/*", "reporting": "logs/report.log"}[phase]
+    if phase == "solving":  # more chunks are there than at the start
+        return lambda: marks(place, b"W") > before
+    pattern = {"gathering": ".study.nc.*.tmp", "drawing": ".figures.*.tmp/new/*", "reporting": "logs/report.log"}[phase]
     return lambda: any(results(place).glob(pattern))
 
 

@@ -5,4 +5,4 @@ from trackroller.study.store.crate import write_crate
 
 log_to(snakemake.log[0])
 plan = workflow_plan(snakemake.params.config, main=False)
-write_crate(plan.study, plan.folder.root)
+write_crate(plan.folder.root)

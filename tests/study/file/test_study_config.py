@@ -13,9 +13,9 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.errors import InputError
-from trackroller.files import parse_mapping
 from trackroller.study.file import schema
 from trackroller.study.file.load import parse_study
+from trackroller.yaml_file import parse_mapping
 
 STUDIES = sorted((Path(__file__).parents[3] / "config" / "studies").glob("*.yaml"))
 PAIR = ["1.7225-normalised", "PA6"]

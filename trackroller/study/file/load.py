@@ -9,11 +9,12 @@ from typing import Any
 from pydantic import ValidationError
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.files import files_beside, find_beside, parse_mapping, read_text
+from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.study.file.checks import check_geometry, cross_check
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.study import Study
+from trackroller.yaml_file import parse_mapping
 
 
 def _translate(error: ValidationError) -> InputError:
@@ -37,14 +38,15 @@ def parse_study(
     data: Mapping[str, Any], path: Path | None = None, database: Any = None, planned: bool = False
 ) -> Study:
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
-    try:
-        config = StudyFile.model_validate(dict(data))
-    except ValidationError as error:
-        raise _translate(error) from None
-    study = Study(config, path, database)
-    cross_check(study)
-    if not planned:
-        check_geometry(study)
+    with noted_reads() as inputs:
+        try:
+            config = StudyFile.model_validate(dict(data))
+        except ValidationError as error:
+            raise _translate(error) from None
+        study = Study(config, path, database, inputs)
+        cross_check(study)
+        if not planned:
+            check_geometry(study)
     return study
 
 
@@ -79,7 +81,7 @@ def load_study(path: str | Path, database: Any = None, planned: bool = False) ->
     2
     """
     path = Path(path)
-    with files_beside(path):
+    with files_beside(path), noted_reads():
         data = parse_mapping(read_text(path, "study file"), "study file")
         if data.get("table") is not None:
             find_beside(data["table"], "table")

@@ -8,12 +8,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.files import write_yaml
+from trackroller.files import Reads
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.study.design import build
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import Factor, parse
 from trackroller.study.file.config import IN_STUDY, StudyFile
+from trackroller.yaml_file import write_yaml
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,11 +24,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Study:
-    """A checked study: its configuration, the path of its file, and its materials."""
+    """A checked study: its configuration, the path of its file, its materials, and the files that were read for it."""
 
     config: StudyFile
     path: Path | None = None
     database: Any = field(default=None, compare=False, repr=False)
+    inputs: Reads = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def name(self) -> str:
@@ -65,18 +67,14 @@ class Study:
         """Return the keyword arguments of `solve` that are not factors."""
         return {o.name: getattr(self.config, o.name) for o in IN_STUDY if o.name not in self.factors}
 
-    def merged(self, whole_paths: bool = False, table: str | None = None) -> str:
+    def merged(self, table: str | None = None) -> str:
         """Return the study as YAML with every default written out.
 
         Parameters
         ----------
-        whole_paths : bool
-            Write the path of the table of cases from the root on.
         table : str, optional
-            Write this path of the table instead.
+            Write this path of the table of cases instead of that in the study file.
         """
-        if table is None and whole_paths and self.config.table is not None:
-            table = str(self.table_path.resolve())
         return self._text if table is None else write_yaml(self._data | {"table": table})
 
     @property

@@ -27,13 +27,14 @@ import numpy as np
 
 from trackroller.damage.sn_curve import PROBABILITIES
 from trackroller.errors import InputError, check_names
-from trackroller.files import files_beside, find_beside, parse_mapping, read_text
+from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
 from trackroller.study.file.csv import csv_lines
+from trackroller.yaml_file import parse_mapping
 
 LOAD_FIELDS = (
     "radial_force",

@@ -19,7 +19,7 @@ import xarray as xr
 from trackroller.files import write_whole
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
-from trackroller.study.store.folder import StudyFolder, Tell
+from trackroller.study.store.folder import Tell
 from trackroller.study.store.identity import chunk_name
 
 FAILED = REGIMES.index("failed")
@@ -74,28 +74,20 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
     write_whole(path, save)
 
 
-def write_part(folder: StudyFolder, chunk: str, block: xr.Dataset) -> Path:
-    """Write a finished block of a chunk that is not complete yet; return its path."""
-    path = folder.part(chunk, block["case"].values[0].decode())
-    write(path, block)
-    return path
-
-
 @contextlib.contextmanager
 def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     """Open a file, and yield it with its fingerprints, shape (n,).
 
-    Raise `CorruptFile` unless the file is as it was written and holds the cases that its name tells: a complete chunk
-    and its list are named by the hash of their cases, and the name of a part ends with its first case.
+    Raise `CorruptFile` unless the file is as it was written and holds the cases that its name tells: a chunk and its
+    list are named by the hash of their cases.
     """
     content = path.read_bytes()
     if hashlib.sha256(content[:-32]).digest() != content[-32:]:
-        raise CorruptFile(path, "its content does not fit its checksum, or an earlier version of the program wrote it")
+        raise CorruptFile(path, "its content does not fit its checksum")
     with netCDF4.Dataset(path.name, memory=content[:-32]) as file:
         file.set_auto_mask(False)
         cases: np.ndarray = np.ascontiguousarray(file["case"][:]).view("S32").reshape(-1)
-        _, _, first = path.stem.partition("-")
-        if first != cases[0].decode() if first else chunk_name(cases) != path.stem:
+        if chunk_name(cases) != path.stem:
             raise CorruptFile(path, "it holds other cases than its name announces")
         yield file, cases
 
@@ -128,7 +120,7 @@ def read_sound(
             yield path, how(path)
         except CorruptFile as exc:
             corrupt[path] = str(exc)
-        except FileNotFoundError:  # a running process has just completed the chunk
+        except FileNotFoundError:  # a running process has just forgotten the failed cases of this file
             continue
 
 

@@ -1,7 +1,8 @@
 """Describe a solved study as a Workflow Run RO-Crate: its files with digests, its inputs, versions and licence.
 
 The crate is the study folder. `ro-crate-metadata.json` lists the files. `inputs/` holds what is needed to solve the
-study anywhere: the study file with every default written out, its table of cases and the user's materials.
+study anywhere: the study file with every default written out, its table of cases and the user's materials. Results are
+listed if their digests were recorded when they were written; a result that does not fit its digest is refused.
 
 References
 ----------
@@ -10,43 +11,37 @@ RO-Crate 1.1, https://w3id.org/ro/crate/1.1; Workflow Run Crate 0.5, https://w3i
 
 from __future__ import annotations
 
-import functools
 import json
 import mimetypes
-import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.files import sha256, write_text, write_whole
-from trackroller.materials import builtin_database, load_database
-from trackroller.materials.file import find_user_file
-from trackroller.study.file.load import load_study
+from trackroller.files import sha256, write_text
 from trackroller.study.repeat import compare
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.provenance import versions
+from trackroller.study.store.seal import METADATA, check_sealed, files_of, read_result, recorded
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-METADATA = "ro-crate-metadata.json"
 INPUTS = "inputs"
-STUDY_FILE, MATERIALS_FILE = f"{INPUTS}/study.yaml", f"{INPUTS}/materials.yaml"
+STUDY_FILE = f"{INPUTS}/study.yaml"
 RESULTS = ("design.nc", "study.nc", "sensitivity.nc", "report.html", "figures", "tables")
 LICENCE = "https://spdx.org/licenses/MIT"
 PROFILES = tuple(f"https://w3id.org/ro/wfrun/{name}" for name in ("process/0.5", "workflow/0.5"))
 
 
-def write_crate(study: Study, root: Path) -> Path:
-    """Copy the inputs of a study into its folder and write the description of all its files.
+def write_crate(root: Path) -> Path:
+    """Write the description of all files of a study, whose inputs were stored when it was planned.
 
     Parameters
     ----------
-    study : Study
-        The study as it was solved.
     root : Path
         Its folder, `results/NAME`.
 
@@ -58,37 +53,15 @@ def write_crate(study: Study, root: Path) -> Path:
     Raises
     ------
     WorkError
-        If the folder cannot be written.
+        If an input or a result was altered after it was written, or the folder cannot be written.
     """
-    _copy_inputs(study, root)
-    graph = _graph(study, root)
+    study = study_of_folder(StudyFolder(root))
+    results = [root / name for name in RESULTS if recorded(root / name) is not None]
+    inputs, written = files_of(root / INPUTS), [file for path in results for file in files_of(check_sealed(path))]
+    graph = _graph(study, root, *([file.relative_to(root).as_posix() for file in files] for files in (inputs, written)))
     text = json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
     write_text(root / METADATA, text)
     return root / METADATA
-
-
-def _copy_inputs(study: Study, root: Path) -> None:
-    """Write the inputs of a study, and remove the inputs of an earlier version."""
-    text, user, copies = study.merged(), find_user_file(), {}
-    if study.config.table is not None:
-        name = Path(study.config.table).name
-        copies[f"{INPUTS}/{name}"] = study.table_path
-        text = study.merged(table=name)
-    if user is not None:
-        copies[MATERIALS_FILE] = user
-    for old in set(_files(root, INPUTS)) - {*copies, STUDY_FILE}:
-        (root / old).unlink()
-    for name, source in copies.items():
-        write_whole(root / name, functools.partial(shutil.copyfile, source))
-    write_text(root / STUDY_FILE, text)
-
-
-def _files(root: Path, *names: str) -> Iterator[str]:
-    """Return the paths of the files below `names`, from the root of the crate, in a fixed order."""
-    for name in names:
-        place = root / name
-        found = sorted(p for p in place.rglob("*") if p.is_file()) if place.is_dir() else [place]
-        yield from (p.relative_to(root).as_posix() for p in found if p.is_file() and not p.name.startswith("."))
 
 
 def _entry(place: str, kind: str | list[str], **more: Any) -> dict[str, Any]:
@@ -111,9 +84,8 @@ def _file(root: Path, name: str) -> dict[str, Any]:
     return entry
 
 
-def _graph(study: Study, root: Path) -> list[dict[str, Any]]:
+def _graph(study: Study, root: Path, inputs: list[str], results: list[str]) -> list[dict[str, Any]]:
     """Return the entries of the metadata file, the study, its run, the programs, the licence and every file."""
-    inputs, results = list(_files(root, INPUTS)), list(_files(root, *RESULTS))
     found, work = versions(), "CreativeWork"
     ended = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
     return [
@@ -162,7 +134,7 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
         files = {
             str(e["@id"]): e for e in graph if "File" in ([e["@type"]] if isinstance(e["@type"], str) else e["@type"])
         }
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         remedy = "Give a folder results/NAME of a study that was run to its end."
         raise InputError("crate", str(root), f"a folder with a readable {METADATA}", remedy) from None
     for name in files:
@@ -201,12 +173,9 @@ def study_of_crate(root: Path | str) -> Study:
     if damaged:
         name, what = next(iter(damaged.items()))
         raise InputError("crate", name, f"inputs as they were written; this one is {what}", "Fetch the crate again.")
-    materials = Path(root) / MATERIALS_FILE
-    database = load_database(materials) if materials.is_file() else builtin_database()
-    return load_study(Path(root) / STUDY_FILE, database)
+    return study_of_folder(StudyFolder(Path(root)))
 
 
 def compare_results(before: Path, after: Path) -> dict[str, float]:
     """Return the largest relative difference of each variable of two `study.nc`, see `compare`."""
-    with xr.open_dataset(before) as one, xr.open_dataset(after) as two:
-        return compare(one, two)
+    return compare(read_result(before), read_result(after))

@@ -1,17 +1,22 @@
-"""Name the files of a study, lock them, and record the checksums of its results."""
+"""Name the files of a study, lock them, and keep the record of what was planned."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
 import fcntl
+import hashlib
+import json
+import shutil
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 
 from trackroller.errors import InputError
-from trackroller.files import disk_error, read_mapping, sha256, write_text
+from trackroller.files import disk_error, write_text
+from trackroller.study.store.seal import is_sealed, read_result
+from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
@@ -24,10 +29,10 @@ class StudyFolder:
     ----------
     design, gathered : pathlib.Path
         The cases of the study, and its gathered results.
-    study_file : pathlib.Path
-        The study file with every default written out.
+    inputs, study_file : pathlib.Path
+        Folder with the files that the study was made from, and the study file in it, with every default written out.
     plan_file : pathlib.Path
-        The names of the chunks that the study consists of.
+        The record of the plan: its chunks, and the study and inputs that it was made from.
     lock : pathlib.Path
         Lock that processes share while they work from the plan; only its sole holder may change the plan.
     """
@@ -35,15 +40,9 @@ class StudyFolder:
     def __init__(self, root: Path) -> None:
         self.root = root
         self.design, self.gathered = root / "design.nc", root / "study.nc"
-        self.study_file, self.plan_file = root / "study.yaml", root / "plan.json"
+        self.inputs, self.plan_file = root / "inputs", root / "plan.json"
+        self.study_file = self.inputs / "study.yaml"
         self.lock = root / "plan" / ".lock"
-
-    def earlier(self) -> dict[str, Any]:
-        """Return the study as it was planned last, {} if there is none."""
-        try:
-            return read_mapping(self.study_file, "study")
-        except InputError:
-            return {}
 
     def case_list(self, chunk: str) -> Path:
         """Return the cases of a chunk."""
@@ -57,22 +56,9 @@ class StudyFolder:
         """Return the results of a solved chunk."""
         return self.root / "chunks" / f"{chunk}.nc"
 
-    def part(self, chunk: str, first_case: str) -> Path:
-        """Return the results of one block of a chunk that is not complete yet."""
-        return self.root / "parts" / f"{chunk}-{first_case}.nc"
-
-    def parts(self, chunk: str = "*") -> list[Path]:
-        """Return the existing blocks of one chunk, or of all chunks."""
-        return sorted((self.root / "parts").glob(f"{chunk}-*.nc"))
-
-    def solved_files(self) -> Iterator[Path]:
-        """Find the files with results of solved cases: parts first, as a process may complete a chunk meanwhile."""
-        yield from self.parts()
-        yield from sorted((self.root / "chunks").glob("*.nc"))
-
-    def checksum(self, path: Path) -> Path:
-        """Return the file that holds the checksum of `design.nc` or `study.nc`."""
-        return self.root / "plan" / f"{path.name}.sha256"
+    def solved_files(self) -> list[Path]:
+        """Return the files with results of solved cases."""
+        return sorted((self.root / "chunks").glob("*.nc"))
 
     def create(self) -> StudyFolder:
         """Create the folders of the study.
@@ -90,7 +76,7 @@ class StudyFolder:
             If the folder cannot be written.
         """
         try:
-            for name in ("plan", "chunks", "parts"):
+            for name in ("plan", "chunks"):
                 (self.root / name).mkdir(parents=True, exist_ok=True)
             with open(self.lock, "a"):
                 pass
@@ -101,18 +87,28 @@ class StudyFolder:
             raise disk_error(exc, self.root) from None
         return self
 
+    def record(self) -> dict[str, Any]:
+        """Return the record of the plan; {} if there is none or it was altered, which its digest shows."""
+        try:
+            record = json.loads(self.plan_file.read_text(encoding="utf-8"))
+            return record if record.pop("digest") == _digest(record) else {}
+        except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+            return {}
 
-def record_checksum(folder: StudyFolder, path: Path) -> None:
-    """Write the SHA-256 of a file, in the format of `sha256sum`, into the folder `plan`."""
-    write_text(folder.checksum(path), f"{sha256(path)}  ../{path.name}\n")
+    def earlier(self) -> dict[str, Any]:
+        """Return the study as it was planned or gathered last, {} if neither record is sound."""
+        text = self.record().get("study")
+        if text is None and self.gathered.is_file() and is_sealed(self.gathered):
+            text = read_result(self.gathered).attrs.get("study")
+        return {} if text is None else parse_mapping(text, str(self.plan_file))
+
+    def write_record(self, record: Mapping[str, Any]) -> None:
+        """Write the record of the plan with its digest."""
+        write_text(self.plan_file, json.dumps({**record, "digest": _digest(record)}) + "\n")
 
 
-def matches_checksum(folder: StudyFolder, path: Path) -> bool:
-    """Return whether a file is as it was when its checksum was recorded."""
-    try:
-        return folder.checksum(path).read_text().split()[:1] == [sha256(path)]
-    except (OSError, UnicodeDecodeError):
-        return False
+def _digest(record: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
 
 
 def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
@@ -148,13 +144,9 @@ def locked(path: Path, shared: bool = False, tell: Tell | None = None) -> Iterat
 
 
 def sweep(folder: StudyFolder) -> None:
-    """Remove what killed processes left: temporary files and parts of complete chunks.
-
-    Only the sole holder of the lock may call this, after damaged chunks are removed.
-    """
-    for path in folder.parts():
-        if folder.chunk(path.stem.partition("-")[0]).is_file():
-            path.unlink(missing_ok=True)
+    """Remove temporary files and folders of killed processes; only the sole holder of the lock may call this."""
     for path in (*folder.root.glob(".*.tmp"), *folder.root.glob("*/.*.tmp")):
-        if path.is_file():  # the figures are drawn in a temporary folder
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
             path.unlink(missing_ok=True)

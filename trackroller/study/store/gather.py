@@ -16,25 +16,26 @@ from trackroller.errors import WorkError
 from trackroller.files import write_whole
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import StudyFolder, Tell, record_checksum
-from trackroller.study.store.inventory import Inventory
+from trackroller.study.store.folder import Tell
+from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.labels import labelled
-from trackroller.study.store.plan import Plan, locate
+from trackroller.study.store.plan import Plan
+from trackroller.study.store.seal import is_sealed, sealing
 
 if TYPE_CHECKING:
-    from trackroller.study.file.study import Study
+    pass
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
 
-def write_design(study: Study, folder: StudyFolder) -> None:
-    """Write `design.nc`, the cases of a study, and record its checksum."""
-    design = study.design()
-    title = f"Cases of the parameter study '{study.name}' of locating-bearing track rollers"
+def write_design(plan: Plan) -> None:
+    """Write `design.nc`, the cases of a study, and record its digest."""
+    design, path = plan.cases.design, plan.folder.design
+    title = f"Cases of the parameter study '{plan.study.name}' of locating-bearing track rollers"
     described = design.assign_attrs(file_attributes(title, "drawn") | design.attrs)
     encoding = {str(name): {"_FillValue": None} for name in described.variables}
-    write_whole(folder.design, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
-    record_checksum(folder, folder.design)
+    with sealing(path):
+        write_whole(path, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
 
 
 def gather(plan: Plan, tell: Tell | None = None) -> Path:
@@ -63,9 +64,10 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
     file in the study's folder.
     """
     study, folder = plan.study, plan.folder
-    if not folder.design.is_file():
-        write_design(study, folder)
-    design, found, place = locate(study, folder)
+    if not is_sealed(folder.design):
+        write_design(plan)
+    design, found = plan.cases.design, take_inventory(folder)
+    place = found.find(plan.cases.fingerprints)
     count = len(place)
     if missing := int((place < 0).sum()):
         damaged = "".join(f" Corrupt: {why}." for why in found.corrupt.values())
@@ -74,8 +76,8 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
     def save(beside: Path) -> None:
         labelled(study, design, *_collect(found, place, folder.root)).to_netcdf(beside, engine="netcdf4")
 
-    write_whole(folder.gathered, save)
-    record_checksum(folder, folder.gathered)
+    with sealing(folder.gathered):
+        write_whole(folder.gathered, save)
     if tell is not None:
         tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered

@@ -17,14 +17,21 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import fields
-from typing import Any
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import xarray as xr
 
+from trackroller.materials import MaterialDatabase
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
-from trackroller.roller.case import CaseTable, MaterialArrays
+from trackroller.roller.case import CaseTable, MaterialArrays, to_table
+from trackroller.roller.options import options_of_cases
 from trackroller.study.store.sources import solver_digest
+
+if TYPE_CHECKING:
+    from trackroller.study.file.study import Study
 
 _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name not in ("name", "guesses"))
 
@@ -80,3 +87,34 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
 def chunk_name(cases: np.ndarray) -> str:
     """Return the name of a chunk, a hash of its cases' fingerprints (dtype S32, shape (n,))."""
     return hashlib.sha256(np.ascontiguousarray(cases).tobytes()).hexdigest()[:16]
+
+
+def solver_and_materials(database: MaterialDatabase) -> str:
+    """Return a digest of the solver and of every value in a database: the two that a planned case does not state."""
+    friction = sorted((sorted(pair), levels) for pair, levels in database.friction_table.items())
+    stated = repr((solver_digest(), sorted(database.materials.items()), friction))
+    return hashlib.sha256(stated.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Cases:
+    """The cases of a study, which are built and identified when they are first needed, and only once."""
+
+    study: Study
+
+    @cached_property
+    def design(self) -> xr.Dataset:
+        """Return the cases as the solver takes them."""
+        return self.study.design()
+
+    @cached_property
+    def options(self) -> tuple[list[dict[str, Any]], np.ndarray]:
+        """Return the different options of `solve`, and the index of each case's options."""
+        return options_of_cases(self.design, {})
+
+    @cached_property
+    def fingerprints(self) -> np.ndarray:
+        """Return the fingerprint of each case, dtype S32, shape (n,); raise `InputError` if a case is not valid."""
+        options, group = self.options
+        table = to_table(self.design.drop_vars(list(self.design.coords)), self.study.materials)
+        return fingerprints(table, *options, group=group)

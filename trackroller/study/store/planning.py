@@ -1,0 +1,127 @@
+"""Make the plan of a study and keep it while processes work from it.
+
+Every process that works from a plan holds the study's lock together with the others. Only the sole holder of the lock
+repairs the folder and may change the plan.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trackroller.errors import InputError, WorkError
+from trackroller.study.design.growth import with_history
+from trackroller.study.store.folder import StudyFolder, Tell, sweep, try_lock, wait_for_lock
+from trackroller.study.store.inputs import store_inputs
+from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
+from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder
+from trackroller.study.store.seal import altered
+from trackroller.study.store.sources import solver_digest
+
+if TYPE_CHECKING:
+    from trackroller.study.file.study import Study
+
+
+@contextlib.contextmanager
+def working_plan(
+    study: Study, results: Path | str = "results", *, tell: Tell | None = None, rerun_failed: bool = False
+) -> Iterator[Plan]:
+    """Plan a study and keep other processes from changing the plan.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study.
+    results : path
+        Parent of the study's folder.
+    tell : callable, optional
+        Receives one line for each event that the user should read, such as a damaged file.
+    rerun_failed : bool
+        Remove the failed cases, so that they are solved again.
+
+    Yields
+    ------
+    Plan
+        The plan, which stays as it is until the context ends.
+
+    Raises
+    ------
+    InputError
+        If the design holds an invalid case, or the results folder cannot be a folder.
+    WorkError
+        If another process works on another version of the study, an input was edited after the study was loaded, or the
+        folder cannot be written.
+    """
+    folder = study_folder(study.name, results).create()
+    with open(folder.lock, "rb+") as lock:
+        plan = _make_plan(study, folder, tell or (lambda line: None), rerun_failed) if try_lock(lock) else None
+        wait_for_lock(lock, shared=True)
+        if plan is None and not rerun_failed:  # another process has planned
+            plan = read_plan(study, folder)
+        if plan is None:
+            raise WorkError(
+                f"study '{study.name}': another process is solving it, from another version of the study file or "
+                f"of the materials. Wait until that process ends, or stop it; then start again: {folder.root} keeps "
+                "every finished case. To solve both versions at once, give this one another name."
+            )
+        yield plan
+
+
+def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Plan:
+    """Remove damaged files, and plan anew unless the plan on the disk accounts for every case."""
+    if folder.record().get("solver_digest", solver_digest()) != solver_digest():
+        tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
+    study = with_history(study, folder)  # before an altered study.nc, which also has the history, is removed
+    _remove_altered(folder, tell)
+    found = _sound_inventory(folder, tell)
+    if rerun_failed:
+        tell(f"{forget_failed(folder, found)} failed cases are solved again")
+        found = take_inventory(folder)
+    plan, damaged = sound_plan(study, folder, found)
+    for line in damaged:
+        tell(line)
+    if plan is None:
+        if study.config.grown_from:
+            tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
+        plan = new_plan(study, folder, found)
+        folder.design.unlink(missing_ok=True)
+    _keep(plan)
+    return plan
+
+
+def _remove_altered(folder: StudyFolder, tell: Tell) -> None:
+    """Remove design and gathered results unless they are as they were written; they are made anew."""
+    for path in (folder.design, folder.gathered):
+        if path.is_dir():
+            raise InputError(path.name, str(path), "a file; this is a folder", "Move the folder away.")
+        if path.exists() and altered(path):
+            tell(f"{path} is truncated or was altered (its SHA-256 differs): it is made anew")
+            path.unlink()
+
+
+def _sound_inventory(folder: StudyFolder, tell: Tell) -> Inventory:
+    """Return the solved cases after damaged and temporary files are removed."""
+    found = take_inventory(folder)
+    for path, why in found.corrupt.items():
+        tell(f"corrupt results, their cases are solved again: {why}")
+        path.unlink(missing_ok=True)
+    sweep(folder)
+    return found
+
+
+def _keep(plan: Plan) -> None:
+    """Write the record of a plan after its inputs, and remove the files of earlier plans."""
+    folder = plan.folder
+    record = record_of(plan, store_inputs(plan.study, folder))
+    if record != folder.record():
+        folder.write_record(record)
+    for path in folder.lock.parent.iterdir():
+        if path.suffix in (".nc", ".solved") and path.stem not in plan.chunks:
+            path.unlink(missing_ok=True)
+    for name in plan.chunks:
+        if not folder.chunk(name).is_file():
+            folder.mark(name).unlink(missing_ok=True)
+        elif not folder.mark(name).is_file():  # a mark keeps its date, on which the workflow's rules depend
+            folder.mark(name).touch()

@@ -1,0 +1,128 @@
+"""Record the digests of results, and compare a result with its digest before it is read.
+
+The SHA-256 of each result stands in `plan/NAME.sha256`, in the format of `sha256sum`; a folder such as `figures/` has a
+line for each file. A result without such a record is compared with the RO-Crate beside it, if there is one. A lone
+netCDF file has neither and is read as it is.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import xarray as xr
+
+from trackroller.errors import InputError, WorkError
+from trackroller.files import sha256, write_text
+
+METADATA = "ro-crate-metadata.json"
+
+
+def _record(path: Path) -> Path:
+    """Return the file with the digests of a result."""
+    return path.parent / "plan" / f"{path.name}.sha256"
+
+
+def files_of(path: Path) -> list[Path]:
+    """Return the files of a result, which is a file or a folder; hidden files do not count."""
+    files = sorted(path.rglob("*")) if path.is_dir() else [path]
+    return [file for file in files if file.is_file() and not file.name.startswith(".")]
+
+
+@contextlib.contextmanager
+def sealing(path: Path) -> Iterator[None]:
+    """Record the digests of a result that is written within this context.
+
+    The earlier record is removed first, so that a process killed in between leaves a result without a record, not one
+    that looks altered.
+    """
+    _record(path).unlink(missing_ok=True)
+    yield
+    lines = [f"{sha256(file)}  ../{file.relative_to(path.parent).as_posix()}\n" for file in files_of(path)]
+    write_text(_record(path), "".join(lines))
+
+
+def recorded(path: Path) -> dict[str, str] | None:
+    """Return the recorded SHA-256 of a result by file, relative to the study's folder; None without a record."""
+    try:
+        lines = _record(path).read_text(encoding="utf-8").splitlines()
+    except FileNotFoundError:
+        return None
+    except (OSError, UnicodeDecodeError):
+        return {}
+    return {name.removeprefix("../"): digest for digest, _, name in (line.partition("  ") for line in lines)}
+
+
+def altered(path: Path) -> str | None:
+    """Return what is wrong with a result that was recorded, None if it is as it was written.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        A file or folder in a study's folder.
+    """
+    known = recorded(path)
+    if known is None:
+        return None
+    now = {file.relative_to(path.parent).as_posix(): sha256(file) for file in files_of(path)}
+    for name in sorted({*known, *now}):
+        if known.get(name) != now.get(name):
+            here, before = now.get(name, "nothing"), known.get(name, "nothing")
+            return f"{path.parent / name} has the SHA-256 {here}, but {before} stands in {_record(path)}"
+    return None
+
+
+def is_sealed(path: Path) -> bool:
+    """Return whether a result has a record and is as it was written."""
+    return recorded(path) is not None and altered(path) is None
+
+
+def check_sealed(path: Path) -> Path:
+    """Return the path of a result after its content was compared with the recorded digest.
+
+    Raises
+    ------
+    WorkError
+        If the result was altered or damaged after it was written.
+    """
+    why = altered(path)
+    if why is None and recorded(path) is None and (known := _digest_in_crate(path)) is not None:
+        if (now := sha256(path)) != known:
+            why = f"{path} has the SHA-256 {now}, but {known} stands in {path.parent / METADATA}"
+    if why is not None:
+        raise WorkError(
+            f"{path} was altered or damaged after it was written: {why}. Start `trackroller run` or `trackroller "
+            "report` with the study file: the results are gathered again from the chunks, which are kept."
+        )
+    return path
+
+
+def _digest_in_crate(path: Path) -> str | None:
+    try:
+        graph = json.loads((path.parent / METADATA).read_text(encoding="utf-8"))["@graph"]
+        return next((str(entry["sha256"]) for entry in graph if entry.get("@id") == path.name), None)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return None
+
+
+def read_result(path: Path | str) -> xr.Dataset:
+    """Return a netCDF result in memory, after its content was compared with the recorded digest.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, or is not a netCDF file.
+    WorkError
+        If the file was altered or damaged after it was written.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError("results", str(path), "a netCDF file that exists", "Run the study first.")
+    check_sealed(path)
+    try:
+        return xr.load_dataset(path, engine="netcdf4")
+    except (OSError, ValueError, RuntimeError, AttributeError, IndexError) as exc:
+        reason = " ".join(str(exc).split())[:200]
+        raise InputError("results", str(path), f"a readable netCDF file ({reason})", "Run the study again.") from None

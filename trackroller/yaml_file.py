@@ -1,0 +1,217 @@
+"""Read and write the YAML files of users: one guarded loader for every such file of the program.
+
+ruamel.yaml reads the text as YAML 1.2 with the rules of `_Resolver`. A scalar without quotes that YAML 1.1 reads
+differently, such as `030`, `1:30`, `3_0` or `yes`, is refused; the message says what to write instead. Nesting and
+aliases are counted on the events of the parser first, so that a small file can neither grow into millions of values nor
+end the process.
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, ClassVar
+
+from ruamel.yaml import YAML
+from ruamel.yaml.constructor import DuplicateKeyError, SafeConstructor
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, ScalarEvent
+from ruamel.yaml.nodes import ScalarNode
+from ruamel.yaml.representer import SafeRepresenter
+from ruamel.yaml.resolver import BaseResolver
+
+from trackroller.errors import InputError
+from trackroller.files import read_text
+
+MAX_VALUES = 200_000  # with aliases counted in full
+MAX_DEPTH = 60
+TAG = "tag:yaml.org,2002:"
+AMBIGUOUS = f"{TAG}ambiguous"
+_INFINITY = r"[-+]?\.(?:inf|Inf|INF)"
+_PLAIN = {  # what a scalar without quotes is, in the order in which the patterns are tried
+    "null": r"null|Null|NULL|~|",
+    "bool": r"true|True|TRUE|false|False|FALSE",
+    "merge": r"<<",
+    "int": r"[-+]?(?:0|[1-9][0-9]{0,39})",
+    "ambiguous": r"[-+]?0[0-9]+|[-+]?0[xob][0-9a-fA-F_]+|[-+]?[0-9]{41,}"  # octal, other bases, too long
+    r"|[-+]?[0-9][0-9_]*(?::[0-5]?[0-9])+(?:\.[0-9_]*)?"  # a number to base 60 in YAML 1.1
+    r"|[-+]?[0-9][0-9_]*_[0-9_.]*(?:[eE][-+]?[0-9]+)?"  # a number in YAML 1.1 and a text in YAML 1.2
+    r"|yes|Yes|YES|no|No|NO|on|On|ON|off|Off|OFF"  # a truth value in YAML 1.1 and a text in YAML 1.2
+    r"|(?=.*[^\x00-\x7f])[-+]?[\d.]+(?:[eE][-+]?\d+)?",  # digits of another script
+    "float": rf"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|{_INFINITY}|\.(?:nan|NaN|NAN)",
+}
+
+
+class _Resolver(BaseResolver):
+    """Says what a scalar without quotes is: YAML 1.2, and nothing that YAML 1.1 reads differently."""
+
+    def __init__(self, version: Any = None, loadumper: Any = None) -> None:
+        super().__init__(loadumper)  # without the patterns of a version, which `YAML` would add
+
+
+for _name, _pattern in _PLAIN.items():
+    _Resolver.add_implicit_resolver_base(f"{TAG}{_name}", re.compile(rf"(?:{_pattern})\Z"), None)
+
+
+class _Constructor(SafeConstructor):
+    """Makes plain data; a tag other than those of plain data is an error of the library."""
+
+    yaml_constructors: ClassVar[dict[Any, Any]] = {}  # type: ignore[misc]
+
+    def number(self, node: Any) -> float:
+        """Return a number with a fraction, an exponent, or no end."""
+        text = node.value.lower().replace(".inf", "inf").replace(".nan", "nan")
+        value = float(text)
+        if math.isinf(value) and "inf" not in text:
+            raise self.refused(node)
+        return value
+
+    def refused(self, node: Any) -> InputError:
+        """Return the error for an ambiguous scalar, or one that no number can hold."""
+        shown = node.value if len(node.value) <= 60 else f"{node.value[:57]}..."
+        allowed = "an unambiguous value; YAML 1.1 and YAML 1.2 differ here, or the number is too large"
+        remedy = "Write a plain decimal number, true or false; or put a text in quotes."
+        return InputError(f"line {node.start_mark.line + 1}", shown, allowed, remedy)
+
+    def ambiguous(self, node: Any) -> Any:
+        """Refuse an ambiguous scalar."""
+        raise self.refused(node)
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> Any:
+        """Return a mapping; a key is a text, whatever YAML 1.1 made of it."""
+        for key, _ in node.value:
+            if isinstance(key, ScalarNode) and key.tag == AMBIGUOUS and key.value.isalpha():
+                key.tag = f"{TAG}str"
+        return super().construct_mapping(node, deep)
+
+
+for _tag in (None, *(f"{TAG}{_name}" for _name in ("null", "bool", "seq", "map", "str"))):  # None refuses other tags
+    _Constructor.add_constructor(_tag, SafeConstructor.yaml_constructors[_tag])
+_Constructor.add_constructor(f"{TAG}int", lambda self, node: int(node.value))
+_Constructor.add_constructor(f"{TAG}float", _Constructor.number)
+_Constructor.add_constructor(AMBIGUOUS, _Constructor.ambiguous)
+
+
+def _check_size(text: str, what: str) -> None:
+    """Refuse nesting that is too deep, more values than `MAX_VALUES`, and an alias of a value that contains it."""
+    open_sizes, names = [0], [None]
+    anchors: dict[str | None, int] = {}
+    for event in YAML(typ="safe").parse(io.StringIO(text)):
+        size = 0
+        if isinstance(event, CollectionStartEvent):
+            open_sizes.append(1)
+            names.append(event.anchor)
+        elif isinstance(event, CollectionEndEvent):
+            size, name = open_sizes.pop(), names.pop()
+            anchors[name] = size
+        elif isinstance(event, ScalarEvent):
+            size = anchors[event.anchor] = 1
+        elif isinstance(event, AliasEvent):
+            if event.anchor in names:
+                where = f"{what}, line {event.start_mark.line + 1}"
+                raise InputError(where, f"*{event.anchor}", "a value that does not contain itself", "Remove the alias.")
+            size = anchors.get(event.anchor, 0)
+        open_sizes[-1] += size
+        if len(open_sizes) > MAX_DEPTH or open_sizes[-1] > MAX_VALUES:
+            allowed = f"YAML of at most {MAX_DEPTH} levels and {MAX_VALUES} values, aliases counted in full"
+            remedy = "Put many cases into a CSV file, and nest lists and mappings less deeply."
+            raise InputError(f"{what}, line {event.start_mark.line + 1}", "too much", allowed, remedy)
+
+
+def parse_yaml(text: str, what: str) -> Any:
+    """Return the plain data of a YAML text.
+
+    Parameters
+    ----------
+    text : str
+        One YAML document.
+    what : str
+        Kind of text, for messages.
+
+    Returns
+    -------
+    dict, list, str, int, float, bool or None
+
+    Raises
+    ------
+    InputError
+        With the line, if the text is not YAML, is ambiguous, holds a key twice, an unknown tag, too many values or
+        too deep a nesting.
+    """
+    loader = YAML(typ="safe")
+    loader.Resolver, loader.Constructor = _Resolver, _Constructor
+    try:
+        _check_size(text, what)
+        return loader.load(io.StringIO(text))
+    except InputError as exc:
+        if exc.field.startswith("line"):
+            raise InputError(f"{what}, {exc.field}", exc.value, exc.allowed, exc.remedy) from None
+        raise
+    except MarkedYAMLError as exc:
+        mark = exc.problem_mark or exc.context_mark
+        where = f"line {mark.line + 1}" if mark else "the file"
+        reason = " ".join(str(exc.problem or exc).split())
+        if isinstance(exc, DuplicateKeyError):
+            raise InputError(
+                f"{what}, {where}", reason, "each key once; it stands twice", "Remove one of the two lines."
+            ) from None
+        allowed = f"one document of plain YAML, without tags; this is not YAML of that kind: {reason}"
+        raise InputError(what, where, allowed, "Mend the line; texts with ': ' or ' #' need quotes.") from None
+    except (YAMLError, ValueError, RecursionError) as exc:
+        reason = " ".join(str(exc).split())[:200]
+        raise InputError(what, "the file", f"YAML: {reason}", "Save it as plain UTF-8 text.") from None
+
+
+def parse_mapping(text: str, what: str) -> dict[str, Any]:
+    """Return the mapping of a YAML text; see `parse_yaml`.
+
+    Raises
+    ------
+    InputError
+        Also if the top level is not a mapping from texts.
+    """
+    data = parse_yaml(text, what)
+    if not isinstance(data, dict):
+        raise InputError(
+            what, type(data).__name__, "a mapping of keys to values", "Write lines of the form 'key: value'."
+        )
+    for key in data:
+        if not isinstance(key, str):
+            raise InputError(what, key, "keys that are texts", "Put the key in quotes.")
+    return data
+
+
+def read_mapping(path: Path | str, what: str = "file") -> dict[str, Any]:
+    """Return the mapping of a user's YAML file; see `read_text` and `parse_mapping`."""
+    return parse_mapping(read_text(path, what), what)
+
+
+def write_yaml(data: Mapping[str, Any]) -> str:
+    """Return plain data as YAML text that `parse_yaml` reads as the same data."""
+    writer = YAML(typ="safe", pure=True)
+    writer.Representer = _Representer
+    writer.default_flow_style = False
+    writer.sort_base_mapping_type_on_output = False  # type: ignore[assignment]  # the library types its default, None
+    writer.allow_unicode = True
+    out = io.StringIO()
+    writer.dump(dict(data), out)
+    return out.getvalue()
+
+
+def needs_quotes(text: str) -> bool:
+    """Return whether a text without quotes would be refused or read as something else."""
+    return any(re.fullmatch(pattern, text) for pattern in _PLAIN.values())
+
+
+class _Representer(SafeRepresenter):
+    """Writes texts in quotes wherever the reader would not take them as texts."""
+
+    def represent_text(self, text: str) -> Any:
+        """Return the node of a text."""
+        return self.represent_scalar(f"{TAG}str", text, style='"' if needs_quotes(text) else None)
+
+
+_Representer.add_representer(str, _Representer.represent_text)
