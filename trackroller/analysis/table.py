@@ -20,6 +20,7 @@ from trackroller.study.outputs import read_study
 from trackroller.study.store.seal import read_result
 
 LIVES = (
+    ("pair_life_hours", "life of the pair", "h"),
     ("roller_life_hours", "life of the roller", "h"),
     ("guide_life_hours", "life of the guide", "h"),
     ("life_cycles_roller", "life of the roller", "overrollings"),
@@ -152,8 +153,12 @@ class StudyView:
 
     @cached_property
     def life(self) -> tuple[str, str, str] | None:
-        """Return the column, wording and unit of the life to show, or None when the study has no life."""
-        for column, words, unit in LIVES:
+        """Return the column, wording and unit of the life to show, or None when the study has no life.
+
+        It is the life of the pair where the hours of the guide are known in a case, otherwise that of the roller.
+        """
+        known = self.has("guide_life_hours")
+        for column, words, unit in LIVES[0 if known else 1 :]:
             if column in self.table and (self.table[column] > 0).any():
                 return column, words, unit
         return None

@@ -14,6 +14,9 @@ UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+BEYOND = "beyond the S-N data"
+
+
 def number(value: float) -> str:
     """Write a number in at most four figures.
 
@@ -60,6 +63,25 @@ def near(value: float, span: float) -> str:
 def life(value: float) -> str:
     """Write a life: three figures, or the word 'unlimited'."""
     return "unlimited" if value == math.inf else rounded(value)
+
+
+def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
+    """Write a life, with the remark that it lies beyond the S-N data; an unlimited life is no number of hours."""
+    if value == math.inf:
+        return f"no failure ({BEYOND})"
+    return f"{rounded(value)} {unit}".strip() + (f" ({BEYOND})" if beyond else "")
+
+
+class Life(float):
+    """A life for a table: a number that is written with the remark that it lies beyond the S-N data."""
+
+    beyond: bool
+
+    def __new__(cls, value: float, beyond: bool = False) -> Life:
+        """Return the life, marked if it lies beyond the S-N data."""
+        made = super().__new__(cls, value)
+        made.beyond = bool(beyond)
+        return made
 
 
 def count(cases: int) -> str:

@@ -9,11 +9,10 @@ import xarray as xr
 
 from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
-from trackroller.parameters import REGIME_LABELS
+from trackroller.parameters import REGIME_LABELS, ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, listing, long_name, plain, with_unit
 from trackroller.report.tables.targets import MAX_POINTS
-from trackroller.report.words.cases import CONDITIONS
 from trackroller.report.words.design_points import best_point, point_words
 from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading, goals_of, pareto_sentence
@@ -25,7 +24,7 @@ _WAYS = {"max": "up", "min": "down"}
 def _given(front: xr.Dataset) -> str:
     """Warn where conditions of use are among the factors: a designer cannot choose their best value."""
     names = front.attrs["factors"].split(", ")
-    given = [plain(n) for n in names if n in CONDITIONS or "load" in n or "drive" in n]
+    given = [plain(n) for n in names if ROLE_OF.get(n) == "condition" or "load" in n or "drive" in n]
     told = f" Factors that the use sets and a designer cannot choose: {listing(given)}." if given else ""
     models = [long_name(n) for n in names if n in OPTION_FACTORS]
     return told + (f" An option of the calculation, not of the design: {listing(models)}." if models else "")

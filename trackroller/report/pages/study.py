@@ -18,8 +18,9 @@ from trackroller.files import write_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, long_name, percent, rounded
-from trackroller.report.tables.cases import best_table, reason_table, regime_table, validity_table
+from trackroller.report.tables.cases import reason_table, regime_table, validity_table
 from trackroller.report.tables.design_points import robust_tables
+from trackroller.report.tables.designs import best_table
 from trackroller.report.tables.indices import index_table, measure_table, part_tables
 from trackroller.report.tables.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
 from trackroller.report.tables.pareto import pareto_table

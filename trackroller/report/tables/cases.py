@@ -2,48 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital, plain, share
-from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.cases import ranked
+from trackroller.report.tables.table import Table
 from trackroller.report.words.flags import OF_BODY, words_of
 from trackroller.report.words.regimes import occurrence
 from trackroller.roller.dataset import VALIDITY_BITS
-
-BEST = 5  # designs in the table of the best
-
-
-def best_table(view: StudyView) -> Table | None:
-    """List the best valid designs as columns.
-
-    Where a design differs from the best one, the cell stands out.
-    """
-    found = ranked(view)
-    if found is None:
-        return None
-    designs = view.table.iloc[found[:BEST]]
-    rows: list[list[Any]] = [["Case", *(int(i) for i in found[:BEST])]]
-    for name in (n for n in view.factors if n != "contact_model"):
-        rows.append([heading(name), *(factor_cell(name, v) for v in designs[name])])
-    results = [(f"{b}_life_hours", f"Life of the {b} [h]") for b in BODIES]
-    results += [(f"life_cycles_{b}", f"Overrollings of the {b}") for b in BODIES]
-    results += [(f"peak_stress_{b}", f"Peak stress of the {b} [MPa]") for b in BODIES]
-    rows += [[words, *map(float, designs[c])] for c, words in results if c in designs and designs[c].notna().any()]
-    for body in (b for b in BODIES if f"at_surface_{b}" in designs):
-        places = {1.0: "at the surface", 0.0: "below the surface"}
-        rows.append([f"Place of the peak, {body}", *(places.get(v, "–") for v in designs[f"at_surface_{body}"])])
-    marks = {(i, j) for i, row in enumerate(rows) for j in range(2, len(row)) if i and row[j] != row[1]}
-    heads = ["", *(f"Best {k + 1}" for k in range(len(designs)))]
-    model = "" if "contact_model" not in view.factors else f" Designs solved with {view.held_level('contact_model')}."
-    by = f"longest {view.life[1]}" if view.life else "lowest peak stress"
-    note = f"Valid designs with the {by}; bold: differs from the best.{model}"
-    return Table("best_designs", "Best valid designs", heads, rows, note, frozenset(marks))
 
 
 def regime_table(view: StudyView) -> Table | None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.parameters import PARAMETERS
-from trackroller.report.numbers import capital, count, level_text, life, long_name, rounded, unit_text
+from trackroller.report.numbers import Life, capital, count, lasting, level_text, life, long_name, rounded, unit_text
 
 _SPOKEN = ("motor_force", "guide_curve_radius")
 
@@ -33,6 +33,8 @@ def cell(value: Any) -> str:
     """Write a cell: texts as they are, whole numbers with commas, others in four figures."""
     if isinstance(value, str):
         return value
+    if isinstance(value, Life):
+        return lasting(value, beyond=value.beyond)
     if isinstance(value, (int, np.integer)):
         return count(int(value))
     return life(value) if np.isposinf(value) else rounded(float(value), 4)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -12,8 +11,6 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import count, listing, quantity, setting
 from trackroller.report.words.flags import OF_BODY, of_body, words_of
 from trackroller.report.words.sentence import Sentence
-
-CONDITIONS = ("radial_force", "axial_force", "motor_force", "friction_coefficient", "velocity", "guide_curve_radius")
 
 
 def valid_designs(view: StudyView) -> Sentence:
@@ -57,59 +54,6 @@ def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> str:
     for flag, body, cases in reasons:
         said.setdefault(flag, []).append(f"{of_body(flag, body)} ({count(cases)})".lstrip())
     return listing([f"{words_of(flag)} {' or '.join(where)}" for flag, where in said.items()], "or")
-
-
-def best_design(view: StudyView) -> Sentence | None:
-    """Name the valid design with the longest life, and its life under the worst conditions."""
-    found = ranked(view)
-    if found is None or not view.life:
-        return None
-    column, words, unit = view.life
-    life, best = view.column(column), int(found[0])
-    ties = int((life[found] == life[best]).sum())
-    design = [f for f in view.factors if f not in CONDITIONS and f != "contact_model"]
-    use = [f for f in view.factors if f in CONDITIONS]
-    where = ", ".join(setting(f, view.table[f].iloc[best]) for f in (*design, *use))
-    place = f"case {best}" + (f", one of {count(ties)} with this life" if ties > 1 else "")
-    text = f"Longest valid {words}: {quantity(life[best], unit)}{f' with {where}' if where else ''} ({place})."
-    values: dict[str, Any] = {"case": best, "life": float(life[best]), "ties": ties, "column": column}
-    if design and use:
-        same = np.isin(np.arange(len(life)), found)
-        for name in design:
-            same &= (view.table[name] == view.table[name].iloc[best]).to_numpy()
-        worst = int(np.flatnonzero(same)[np.argmin(life[same])])
-        if life[worst] < life[best]:
-            there = ", ".join(
-                setting(f, view.table[f].iloc[worst])
-                for f in use
-                if view.table[f].iloc[worst] != view.table[f].iloc[best]
-            )
-            text += f" With {there} the same roller lasts {quantity(life[worst], unit)} (case {worst})."
-            values |= {"worst": worst, "worst_life": float(life[worst]), "design": design}
-    return Sentence("best", text, values, np.isin(np.arange(len(life)), found))
-
-
-def ranked(view: StudyView) -> np.ndarray | None:
-    """Return the valid cases by falling life (else by rising peak stress), or None when nothing ranks them.
-
-    Of a study with several contact models only the cases of the most exact model rank, because a model is not a design
-    choice. The cases of an inner/outer design do not rank, because scattering values cannot be chosen: B10 ranks its
-    design points.
-    """
-    if view.study.get("design") == "inner_outer":
-        return None
-    rows, columns = view.valid.copy(), [f"peak_stress_{b}" for b in BODIES if view.has(f"peak_stress_{b}")]
-    if "contact_model" in view.factors:
-        rows &= (view.table["contact_model"] == view.held_level("contact_model")).to_numpy()
-    keys = [-view.column(view.life[0])] if view.life else []
-    keys += [view.column(c) for c in columns]
-    if not keys:
-        return None
-    rows &= ~np.isnan(keys[0])
-    if not rows.any():
-        return None
-    index = np.flatnonzero(rows)
-    return index[np.lexsort([np.nan_to_num(k[index], posinf=np.inf, neginf=-np.inf) for k in keys[::-1]])]
 
 
 def extremes(view: StudyView, column: str, words: str, unit: str, shown: Sequence[str], rows: np.ndarray) -> Sentence:

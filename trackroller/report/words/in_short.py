@@ -11,8 +11,9 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital, count
 from trackroller.report.words import indices
 from trackroller.report.words.accuracy import accuracy, friction_error, full_sliding
-from trackroller.report.words.cases import best_design, valid_designs
+from trackroller.report.words.cases import valid_designs
 from trackroller.report.words.design_points import best_point
+from trackroller.report.words.designs import best_design
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.regimes import occurrence
 from trackroller.report.words.samples import samples
@@ -36,10 +37,10 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     robust = sens is not None and robust_design(sens)
     met = [target(sens, -1)] if sens is not None and "target" in sens.dims else []  # the last one joins several
     compared = [Sentence("models", text) for text in models]
-    lines = [
+    lines: list[tuple[str, list[Sentence | None]]] = [
         ("Valid designs", [valid_designs(view), stopped(view)]),
         ("Best design point", [*decides(sens), *met]) if robust else ("What decides", decides(sens)),
-        ("Best", [best_design(view), *([] if robust else met)]),
+        ("Best", [*best_design(view), *([] if robust else met)]),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
         ("How sure", [friction_error(view), full_sliding(view), *accuracy(view), *compared]),
         ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),

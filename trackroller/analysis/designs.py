@@ -1,0 +1,270 @@
+"""Compare designs over their conditions.
+
+A design is one combination of choices. It is judged over all conditions in which the study has it, the worst first.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+
+from trackroller.analysis.robustness import b10
+from trackroller.analysis.table import BODIES, StudyView
+from trackroller.parameters import FIRST_TO_FAIL, MATERIAL_FIELDS
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factors import parse
+from trackroller.study.design.roles import roles_of
+
+DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
+FEWEST = 20  # sampled conditions of a design below which its life is not stated
+DRAWN = ("lhs", "sobol", "saltelli", "morris", "inner_outer")  # designs of experiments with random conditions
+TIED = 1e-9  # relative difference of lives that count as equal
+
+
+def factor_roles(view: StudyView) -> dict[str, str]:
+    """Return the role of each factor of a study that varies: `choice` or `condition`."""
+    given = view.study.get("factors")
+    specs = given if isinstance(given, Mapping) else {}
+    parsed = {name: parse(name, spec) for name, spec in specs.items() if isinstance(spec, Mapping) and spec}
+    return roles_of(view.factors, parsed, view.study.get("roles") or {}, str(view.study.get("design", "")))
+
+
+def beyond_data(view: StudyView, body: str) -> np.ndarray:
+    """Mark the cases in which the life of a body lies beyond the S-N data, shape (n,).
+
+    The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings.
+    """
+    stored = json.loads(str(view.attrs.get("materials", "{}")))
+    i = BODIES.index(body)
+    if "material_pair" in view.table:
+        names = view.table["material_pair"].astype(str).str.split(" / ").str[i]
+    else:
+        field = MATERIAL_FIELDS[i]
+        names = view.table.get(field, pd.Series(str(view.base.get(field, "")), index=view.table.index)).astype(str)
+    knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
+    limit = np.minimum(names.map(knees).to_numpy(dtype=float), DATA_END)
+    beyond: np.ndarray = (view.column(f"life_cycles_{body}") > limit) | np.isposinf(view.column(f"{body}_life_hours"))
+    return beyond
+
+
+def pair_beyond_data(view: StudyView) -> np.ndarray:
+    """Mark the cases in which the life of the body that fails first (otherwise the roller) lies beyond, shape (n,)."""
+    guide = view.column("first_to_fail") == FIRST_TO_FAIL.index("guide")
+    return np.where(guide, beyond_data(view, "guide"), beyond_data(view, "roller"))
+
+
+def slip_margin(view: StudyView) -> np.ndarray:
+    """Return the share of the largest transmissible force that the drive leaves, 1 - |F_Motor|/(mu |F_rad|/cos alpha).
+
+    Returns
+    -------
+    Shape (n,) [1]; NaN without friction and drive, and with friction that depends on the slip speed.
+
+    Notes
+    -----
+    At full slip no lateral friction is left, and both contacts carry |F_rad|/cos alpha together.
+    """
+    friction = "friction_coefficient_value" if "friction_coefficient_value" in view.table else "friction_coefficient"
+    motor, mu, radial, angle = (_input(view, n) for n in ("motor_force", friction, "radial_force", "contact_angle"))
+    if view.base.get("friction_law") or "friction_law" in view.table:
+        return np.full(len(view.table), np.nan)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        margin: np.ndarray = 1.0 - np.abs(motor) * np.cos(np.deg2rad(angle)) / (mu * np.abs(radial))
+    return margin
+
+
+def lift_off_margin(view: StudyView) -> np.ndarray:
+    """Return the load of the lighter contact over that of the heavier one, shape (n,) [1]; 0 at lift-off."""
+    loads = np.stack([view.column("normal_force_1"), view.column("normal_force_2")])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio: np.ndarray = np.min(loads, axis=0) / np.max(loads, axis=0)
+    return ratio
+
+
+def _input(view: StudyView, name: str) -> np.ndarray:
+    if name in view.table and view.numeric(name):
+        return view.column(name)
+    value = view.base.get(name)
+    return np.full(len(view.table), float(value) if isinstance(value, (int, float)) else np.nan)
+
+
+@dataclass(frozen=True)
+class Designs:
+    """The designs of a study.
+
+    Attributes
+    ----------
+    view : the study
+    choices, conditions : names of the factors by role
+    goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller
+    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model
+    matched : whether each design has the same conditions, each once
+    """
+
+    view: StudyView
+    choices: tuple[str, ...]
+    conditions: tuple[str, ...]
+    goal: tuple[str, str, str]
+    place: np.ndarray
+    matched: bool
+
+    @classmethod
+    def of(cls, view: StudyView, free: tuple[str, ...] = ()) -> Designs | None:
+        """Return the designs of a study, None without a valid case that has a life or a stress.
+
+        Parameters
+        ----------
+        view : the study
+        free : conditions that count as choices here, because a goal names them
+        """
+        goal = view.life or ("peak_stress_roller", "peak stress of the roller", "MPa")
+        if not (view.valid & ~np.isnan(view.column(goal[0]))).any():
+            return None
+        roles = factor_roles(view) | dict.fromkeys(free, "choice")
+        choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
+        own = np.ones(len(view.table), dtype=bool)
+        for option in (n for n in view.factors if n in OPTION_FACTORS):
+            own &= (view.table[option] == view.held_level(option)).to_numpy()
+        place = np.where(own, _codes(view.table, choices), -1)
+        place[own] = np.unique(place[own], return_inverse=True)[1]
+        use = _codes(view.table, conditions)[own]
+        several, many = place.max() + 1, len(np.unique(use))
+        pairs = len(np.unique(place[own] * (use.max() + 1) + use))
+        return cls(view, choices, conditions, goal, place, bool(pairs == own.sum() == several * many))
+
+    @cached_property
+    def size(self) -> np.ndarray:
+        """Return the number of conditions of each design, shape (designs,)."""
+        return np.bincount(self.place[self.place >= 0])
+
+    @property
+    def drawn(self) -> bool:
+        """Return whether the conditions are a random sample, so that a worst case depends on its size."""
+        return bool(self.conditions) and (not self.matched or self.view.study.get("design") in DRAWN)
+
+    @property
+    def comparable(self) -> bool:
+        """Return whether the designs can be compared: they share their conditions, or each has a sample of them."""
+        return not self.conditions or self.matched or bool(self.size.min() >= FEWEST)
+
+    @property
+    def rising(self) -> bool:
+        """Return whether more of the goal is better."""
+        return "life" in self.goal[0]
+
+    @property
+    def usable(self) -> np.ndarray:
+        """Return the cases whose life or stress counts, shape (n,): valid, compared, and with a value."""
+        rows: np.ndarray = self.view.valid & (self.place >= 0) & ~np.isnan(self.view.column(self.goal[0]))
+        return rows
+
+    @cached_property
+    def possible(self) -> int:
+        """Return the number of conditions in which at least one design is valid; 0 if designs share no conditions."""
+        return len(np.unique(_codes(self.view.table, self.conditions)[self.usable])) if self.matched else 0
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """Return one row a design, the best first; designs without a valid case come last.
+
+        Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median` and `best` of the
+        goal over the valid cases, `worst_case` (its row), and which of the three lie beyond the S-N data; the number
+        of valid cases in which each body fails `first_`; the worst life of each body; the smallest margins
+        of the rolling cases; with random conditions `b10`, the life that nine of ten cases reach if cases that are not
+        valid count as 0, with its 95 % interval; `rank`, equal for ties.
+        """
+        view, count = self.view, len(self.size)
+        members = {name: view.table[name].to_numpy()[self._first] for name in self.choices}
+        found = pd.DataFrame(members, index=range(count))
+        found["cases"] = self.size
+        for name, rows in (("rolls", view.rolling), ("valid", self.usable)):
+            found[name] = self._count(rows)
+        found = found.assign(**self._spread())
+        first = view.column("first_to_fail", FIRST_TO_FAIL.index("unknown"))
+        for code, word in enumerate(FIRST_TO_FAIL):
+            found[f"first_{word}"] = self._count(self.usable & (first == code))
+        for body in BODIES:
+            case = self._least(view.column(f"{body}_life_hours"), self.usable)
+            found[f"worst_{body}"] = np.where(case < 0, np.nan, view.column(f"{body}_life_hours")[case])
+            found[f"worst_{body}_beyond"] = (case >= 0) & beyond_data(view, body)[case]
+        for name, margin in (("slip_margin", slip_margin(view)), ("lift_off_margin", lift_off_margin(view))):
+            case = self._least(margin, view.rolling)
+            found[name] = np.where(case < 0, np.nan, margin[case])
+        sign = 1.0 if self.rising else -1.0
+        key = sign * found["worst"]
+        held = found["valid"] / found["cases"]
+        if self.drawn and self.rising:
+            found = found.assign(**self._quantile())
+            sure = found["b10"] > 0
+            key, held = found["b10"].where(sure, key), held.where(~sure, 2.0)
+        return _ranked(found, held, key, sign * found["median"])
+
+    def cases_of(self, design: int) -> np.ndarray:
+        """Return the cases of a row of `table` by its index, shape (n,) bool."""
+        rows: np.ndarray = self.place == design
+        return rows
+
+    @cached_property
+    def _first(self) -> np.ndarray:
+        """Return the row of the first case of each design."""
+        numbers, first = np.unique(self.place, return_index=True)
+        return first[numbers >= 0]
+
+    def _count(self, rows: np.ndarray) -> np.ndarray:
+        return np.bincount(self.place[rows & (self.place >= 0)], minlength=len(self.size))
+
+    def _least(self, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return the case with the smallest value of each design among the rows, -1 if no value is known."""
+        known = np.flatnonzero(rows & (self.place >= 0) & ~np.isnan(values))
+        order = known[np.lexsort((values[known], self.place[known]))]
+        designs, first = np.unique(self.place[order], return_index=True)
+        out = np.full(len(self.size), -1)
+        out[designs] = order[first]
+        return out
+
+    def _spread(self) -> dict[str, np.ndarray]:
+        """Return worst, median and best of the goal of each design, and whether they lie beyond the S-N data."""
+        values, rows = self.view.column(self.goal[0]), np.flatnonzero(self.usable)
+        order = rows[np.lexsort((values[rows] if self.rising else -values[rows], self.place[rows]))]
+        number = self._count(self.usable)
+        start, some = np.cumsum(number) - number, number > 0
+        beyond = pair_beyond_data(self.view) if self.rising else np.zeros(len(values), dtype=bool)
+        ends = {"worst": (0, 0), "median": ((number - 1) // 2, number // 2), "best": (number - 1, number - 1)}
+        found: dict[str, np.ndarray] = {}
+        for name, two in ends.items():
+            low, high = (order[np.where(some, start + step, 0)] for step in two)
+            middle = np.where(low == high, values[low], (values[low] + values[high]) / 2)
+            found[name] = np.where(some, middle, np.nan)
+            found[f"{name}_beyond"] = some & (beyond[low] | beyond[high])
+        found["worst_case"] = np.where(some, order[np.where(some, start, 0)], -1)
+        found["beyond"] = self._count(self.usable & beyond)
+        return found
+
+    def _quantile(self) -> dict[str, np.ndarray]:
+        """Return the life that nine of ten cases of each design reach, its interval, and whether it lies beyond."""
+        lives = np.where(self.usable, self.view.column(self.goal[0]), 0.0)
+        ends = np.array([b10(lives[self.cases_of(i)]) for i in range(len(self.size))])
+        found = dict(zip(("b10", "b10_low", "b10_high"), ends.T, strict=True))
+        there = self.usable & (lives == ends[self.place, 0]) & pair_beyond_data(self.view)
+        return found | {"b10_beyond": self._count(there) > 0}
+
+
+def _codes(table: pd.DataFrame, names: tuple[str, ...]) -> np.ndarray:
+    """Number the combinations of columns, shape (n,), in the order of appearance."""
+    if not names:
+        return np.zeros(len(table), dtype=int)
+    return table.groupby(list(names), sort=False, dropna=False, observed=True).ngroup().to_numpy()
+
+
+def _ranked(found: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series) -> pd.DataFrame:
+    """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones tie."""
+    order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
+    shares, keys = held.to_numpy()[order], key.to_numpy()[order]
+    same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(keys[1:], keys[:-1], TIED, 0, equal_nan=True)
+    rank = np.maximum.accumulate(np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))]))
+    return found.iloc[order].assign(rank=rank)

@@ -1,0 +1,110 @@
+"""Tables of designs: the best ones with what they last, what fails first, and their margins."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.analysis.designs import Designs
+from trackroller.analysis.table import BODIES, StudyView
+from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.report.numbers import Life, capital, count, percent, rounded
+from trackroller.report.tables.table import Table, factor_cell, heading
+from trackroller.report.words.designs import BEYOND_MEANS, UNKNOWN, alone, condition_words
+
+BEST = 5  # designs in the table of the best
+
+
+def best_table(view: StudyView) -> Table | None:
+    """List the best valid designs as columns, each over all its conditions.
+
+    Where a design differs from the best one, the cell stands out.
+    """
+    designs = Designs.of(view)
+    if designs is None or not designs.comparable:
+        return None
+    best = [row for _, row in designs.table.head(BEST).iterrows() if row["valid"]]
+    rows: list[list[Any]] = [[heading(n), *(factor_cell(n, row[n]) for row in best)] for n in designs.choices]
+    rows += _lives(designs, best) if designs.rising else _stresses(designs, best)
+    for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
+        if any(np.isfinite(row[name]) for row in best):
+            rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
+    if designs.conditions:
+        for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")):
+            rows.append([words, *(f"{count(int(row[name]))} of {count(int(row['cases']))}" for row in best)])
+    marks = {(i, j) for i, row in enumerate(rows) for j in range(2, len(row)) if row[j] != row[1]}
+    one = not designs.choices
+    heads, title = (
+        ["", *(["All conditions"] if one else _heads(best))],
+        "Life of the design" if one else "Best valid designs",
+    )
+    note = _note(designs)
+    return Table("best_designs", title, heads, rows, note, frozenset(marks))
+
+
+def _heads(best: list[pd.Series]) -> list[str]:
+    """Return 'Best 1', or 'Best 1 (tie)' for designs that share a rank."""
+    ranks = [int(row["rank"]) for row in best]
+    return [f"Best {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
+
+
+def _lives(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
+    """Return the rows on lives, with the worst condition and the body that fails first."""
+    words, unit = designs.goal[1:]
+    several = bool(designs.conditions)
+    rows: list[list[Any]] = []
+    if designs.drawn:
+        rows.append([f"Nine of ten reach [{unit}]", *(Life(row["b10"], row["b10_beyond"]) for row in best)])
+        rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
+    shown = (
+        [("worst", "worst condition"), ("median", "median"), ("best", "best condition")] if several else [("worst", "")]
+    )
+    for key, told in shown:
+        head = f"{capital(words)}{f', {told}' if told else ''} [{unit}]"
+        rows.append([head, *(Life(row[key], row[f"{key}_beyond"]) for row in best)])
+    if several:
+        rows.append(["Worst condition", *(condition_words(designs, int(row["worst_case"])) for row in best)])
+    if not alone(designs):
+        for body in BODIES:
+            if any(np.isfinite(row[f"worst_{body}"]) for row in best):
+                head = f"Life of the {body}{', worst condition' if several else ''} [{unit}]"
+                rows.append([head, *(Life(row[f"worst_{body}"], row[f"worst_{body}_beyond"]) for row in best)])
+        rows.append(["Fails first", *(_first(row) for row in best)])
+    return rows
+
+
+def _first(row: pd.Series) -> str:
+    counts = {word: int(row[f"first_{word}"]) for word in FIRST_TO_FAIL}
+    told = [f"{word} in {count(n)}" for word, n in counts.items() if n]
+    return next(word for word, n in counts.items() if n) if len(told) == 1 else ", ".join(told)
+
+
+def _stresses(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
+    words = capital(designs.goal[1])
+    keys = (("worst", "largest"), ("median", "median")) if designs.conditions else (("worst", ""),)
+    rows = [[f"{words}{f', {told}' if told else ''} [MPa]", *(float(row[key]) for row in best)] for key, told in keys]
+    if designs.conditions:
+        rows.append(["Worst condition", *(condition_words(designs, int(row["worst_case"])) for row in best)])
+    return rows
+
+
+def _note(designs: Designs) -> str:
+    """Say how designs are ranked, and what the table's terms mean."""
+    view = designs.view
+    by = "longer life" if designs.rising else "lower peak stress"
+    told = f"Designs that are valid in more conditions come first, then those with a {by} at their worst condition."
+    if designs.drawn and designs.rising:
+        told = (
+            "Designs by the life that nine of ten sampled conditions reach; a condition that is not valid counts as 0."
+        )
+    if not designs.conditions:
+        told = f"Designs by {designs.goal[1]}."
+    if alone(designs):
+        told += f" {capital(UNKNOWN)}."
+    told += f" {BEYOND_MEANS}" if designs.rising else ""
+    told += " Margin to slip: share of the transmissible force that the drive leaves. Margin to lift-off: load of the "
+    told += "lighter over that of the heavier contact. Bold: differs from the best."
+    model = f" Designs solved with {view.held_level('contact_model')}." if "contact_model" in view.factors else ""
+    return told + model

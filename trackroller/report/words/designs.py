@@ -1,0 +1,218 @@
+"""Sentences on designs: which one to build, what ends it first, and which of them meet a target."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.analysis.designs import FEWEST, Designs, factor_roles
+from trackroller.analysis.table import BODIES, StudyView
+from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.report.numbers import (
+    BEYOND,
+    capital,
+    count,
+    lasting,
+    listing,
+    long_name,
+    percent,
+    quantity,
+    rounded,
+    setting,
+    share,
+)
+from trackroller.report.words.sentence import Sentence
+
+BEYOND_MEANS = "Beyond the S-N data: below the fatigue limit, or above 10⁸ overrollings."
+UNKNOWN = "the roller stands for the pair, because the guide's hours are unknown: give `guide_overrollings_per_hour`"
+MOST_TIES = 3  # designs with equal lives that are named
+
+
+def design_words(designs: Designs, row: pd.Series) -> str:
+    """Name a design by its choices, materials first, such as 'PA6 on itself, contact angle 30°'."""
+    names = sorted(designs.choices, key=lambda name: designs.view.numeric(name))
+    return ", ".join(setting(name, row[name]) for name in names)
+
+
+def condition_words(designs: Designs, case: int) -> str:
+    """Name the conditions of a case."""
+    return ", ".join(setting(name, designs.view.table[name].iloc[case]) for name in designs.conditions)
+
+
+def alone(designs: Designs) -> bool:
+    """Return whether the roller stands for the pair in every case, because the guide's hours are unknown."""
+    return designs.rising and not designs.view.has("guide_life_hours")
+
+
+def subject(designs: Designs) -> str:
+    """Name what lasts: roller and guide, or the roller alone."""
+    return "the roller lasts" if alone(designs) else "roller and guide last"
+
+
+def best_design(view: StudyView) -> list[Sentence]:
+    """Say which design to build, what it lasts, what fails first, and which design comes next.
+
+    Returns
+    -------
+    The sentences; none without a valid design. A study whose designs of experiments cannot answer says which one can.
+    """
+    designs = Designs.of(view)
+    if designs is None:
+        return []
+    if not designs.comparable:
+        return [_unanswered(designs)]
+    table, rows = designs.table, designs.usable
+    best = table.iloc[0]
+    ties = int((table["rank"] == 1).sum())
+    name = design_words(designs, best)
+    head = f"Build {name}: " if name else "The study has one design: "
+    text = head + (_life(designs, best) if designs.rising else _stress(designs, best))
+    values: dict[str, Any] = {"design": {n: best[n] for n in designs.choices}, "ties": ties}
+    values |= {key: best[key] for key in ("worst", "median", "best", "valid", "cases", "rolls", "worst_case", "beyond")}
+    said = [Sentence("best", f"{text}.", values, rows)]
+    if ties > 1:
+        said.append(_ties(designs, ties, rows))
+    if designs.rising and (first := _first(designs, best, rows)) is not None:
+        said.append(first)
+    if (margins := _margins(best, rows, bool(designs.conditions))) is not None:
+        said.append(margins)
+    if len(table) > ties and table.iloc[ties]["valid"]:
+        said.append(_next(designs, table.iloc[ties], rows))
+    return said
+
+
+def _life(designs: Designs, row: pd.Series) -> str:
+    """Write worst, median and best life of a design, with the conditions in which it is valid."""
+    unit = designs.goal[2]
+    told, every = _lives(row, unit, "worst", "median", "best")
+    if not designs.conditions:
+        return f"{subject(designs)} {lasting(row['worst'], unit, row['worst_beyond'])}{_alone(designs)}"
+    where = condition_words(designs, int(row["worst_case"]))
+    text = f"{subject(designs)} {told[0]} at its worst condition ({where}), {told[1]} in the median"
+    text += f" and {told[2]} at best{every}"
+    if designs.drawn:
+        low, high = rounded(row["b10_low"]), rounded(row["b10_high"])
+        nine = f"nine of ten of its {count(int(row['cases']))} sampled conditions reach "
+        nine += lasting(row["b10"], unit, row["b10_beyond"])
+        nine += f" (95 % interval {low} to {high})"
+        text = f"{nine if row['b10'] > 0 else 'no life holds in nine of ten sampled conditions'}; {text}"
+    return f"{text}; {_validity(designs, row)}{_alone(designs)}"
+
+
+def _lives(row: pd.Series, unit: str, *which: str) -> tuple[list[str], str]:
+    """Write lives of a design, and a common remark where all of them lie beyond the S-N data."""
+    if "b10" not in row and all(row[f"{k}_beyond"] and np.isfinite(row[k]) for k in which):
+        return [quantity(row[k], unit) for k in which], f", {'all' if len(which) > 2 else 'both'} {BEYOND}"
+    return [lasting(row[k], unit, row[f"{k}_beyond"]) for k in which], ""
+
+
+def _alone(designs: Designs) -> str:
+    return f"; {UNKNOWN}" if alone(designs) else ""
+
+
+def _stress(designs: Designs, row: pd.Series) -> str:
+    worst, unit = quantity(row["worst"], designs.goal[2]), designs.goal[2]
+    if not designs.conditions:
+        return f"its {designs.goal[1]} is {worst}, the lowest; the study holds no lives"
+    where = condition_words(designs, int(row["worst_case"]))
+    text = f"its {designs.goal[1]} is at most {worst} ({where}) and {quantity(row['median'], unit)} in the median"
+    return f"{text}; {_validity(designs, row)}; the study holds no lives"
+
+
+def _validity(designs: Designs, row: pd.Series) -> str:
+    """Write in how many of its conditions a design is valid, and whether another design is valid in the others."""
+    valid, cases, rolls = (int(row[name]) for name in ("valid", "cases", "rolls"))
+    if valid == cases:
+        return f"it is valid in all {count(cases)} conditions"
+    text = f"it is valid in {count(valid)} of {count(cases)} conditions"
+    if rolls > valid:
+        text += f" and rolls in {count(rolls)}"
+    if designs.matched and len(designs.size) > 1:
+        more = designs.possible - valid
+        none = cases - designs.possible
+        told = [f"no design is valid in {count(none)}"] if none else []
+        told += [f"other designs are valid in {count(more)} of the others"] if more else []
+        text += f" ({'; '.join(told)})"
+    return text
+
+
+def _ties(designs: Designs, ties: int, rows: np.ndarray) -> Sentence:
+    """Name the designs that are no worse than the first."""
+    others = designs.table.iloc[1:ties]
+    named = [design_words(designs, row) for _, row in others.head(MOST_TIES).iterrows()]
+    named += [f"{count(len(others) - MOST_TIES)} more"] if len(others) > MOST_TIES else []
+    which = "nine-of-ten life" if designs.drawn and designs.rising else "worst case"
+    text = f"{count(ties)} designs tie with this {which}; the others are {listing(named)}."
+    if len(others) == 1:
+        text = f"{count(ties)} designs tie with this {which}; the other is {named[0]}."
+    return Sentence("ties", text, {"ties": ties}, rows)
+
+
+def _first(designs: Designs, row: pd.Series, rows: np.ndarray) -> Sentence | None:
+    """Say which body of a design fails first, and in how many of its valid cases."""
+    counts = {word: int(row[f"first_{word}"]) for word in FIRST_TO_FAIL}
+    known = counts["roller"] + counts["guide"]
+    if not known:
+        return None
+    most, fewer = sorted(BODIES, key=lambda body: -counts[body])
+    valid = int(row["valid"])
+    if not designs.conditions:
+        text = f"The {most} fails first."
+    elif counts[most] == valid:
+        text = f"The {most} fails first in all of its {count(valid)} valid conditions."
+    else:
+        text = f"The {most} fails first in {count(counts[most])} of its {count(valid)} valid conditions "
+        text += f"({share(counts[most], valid)}), the {fewer} in {count(counts[fewer])}"
+        text += f"; neither fails in {count(counts['none'])}" if counts["none"] else ""
+        text += f"; the guide's hours are unknown in {count(counts['unknown'])}" if counts["unknown"] else ""
+        text += "."
+    return Sentence("first", text, counts, rows)
+
+
+def _margins(row: pd.Series, rows: np.ndarray, several: bool) -> Sentence | None:
+    """Say how far a design stays from slip and lift-off where it rolls."""
+    told, slip, lift = [], float(row["slip_margin"]), float(row["lift_off_margin"])
+    least = "at least " if several else ""
+    if np.isfinite(slip):
+        told.append(f"{least}{percent(slip)} of the transmissible force is left before it slips")
+    if np.isfinite(lift):
+        told.append(f"the lighter contact carries {least}{percent(lift)} of the load of the heavier one")
+    text = f"{'Where it rolls, ' if several else ''}{listing(told)}."
+    return Sentence("margins", capital(text), {"slip": slip, "lift_off": lift}, rows) if told else None
+
+
+def _next(designs: Designs, row: pd.Series, rows: np.ndarray) -> Sentence:
+    """Name the design that comes next, with the same numbers."""
+    unit = designs.goal[2]
+    (worst, middle), every = _lives(row, unit, "worst", "median")
+    if designs.drawn and designs.rising and row["b10"] > 0:
+        text = f"nine of ten conditions reach {lasting(row['b10'], unit, row['b10_beyond'])}; {worst} at the worst"
+    elif not designs.conditions:
+        text, every = lasting(row["worst"], unit, row["worst_beyond"]), ""
+    else:
+        text = f"{worst} at its worst condition, {middle} in the median{every}; valid in {count(int(row['valid']))}"
+    text += "; roller alone: give `guide_overrollings_per_hour`" if alone(designs) else ""
+    told = {"design": {n: row[n] for n in designs.choices}, "worst": row["worst"], "median": row["median"]}
+    return Sentence("next", f"Next: {design_words(designs, row)}: {text}.", told, rows)
+
+
+def _unanswered(designs: Designs) -> Sentence:
+    """Say why a study cannot compare designs, and which design of experiments can."""
+    roles = factor_roles(designs.view)
+    choices, conditions = (
+        listing([long_name(n) for n in roles if roles[n] == role]) for role in ("choice", "condition")
+    )
+    few, most = int(designs.size.min()), int(designs.size.max())
+    method = str(designs.view.study.get("design", "")).replace("_", " ")
+    if most == 1:
+        text = f"Each of the {count(len(designs.size))} cases is a design of its own at one condition"
+    else:
+        sizes = f"{few} to {most}" if few < most else str(few)
+        text = f"The {count(len(designs.size))} designs have {sizes} conditions each, which differ between designs; "
+        text += f"a comparison needs {FEWEST}"
+    text += f", so this {method} study cannot say which design is best. " if method else ". "
+    text += f"To choose, give {choices} as lists and {conditions} as distributions with `design: inner_outer`"
+    values = {"designs": len(designs.size), "least": few, "most": most}
+    return Sentence("unanswered", f"{text}.", values, designs.usable)
