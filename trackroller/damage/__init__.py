@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from trackroller.damage import fatigue, rating, static, verdict
+from trackroller.damage import bearing, catalogue, fatigue, rating, static, verdict
 from trackroller.damage.limit import Limit, declarations
 
-_FILES = (static, fatigue, rating)
+_FILES = (static, fatigue, rating, bearing, catalogue)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.parameters import PARAMETERS, Parameter
+from trackroller.damage.mapping import MappingField
+from trackroller.parameters import MAPPING_FIELDS, Parameter
 from trackroller.parameters.variables import Variable
 
 BODIES = ("roller", "guide")
@@ -48,7 +49,7 @@ class Solved:
     Parameters
     ----------
     cases : mapping of str to numpy.ndarray
-        Parameters of the cases by name, (n,), in the units of `PARAMETERS`.
+        Parameters of the cases by name, (n,), in the units of `PARAMETERS`; fields that are mappings as JSON texts.
     materials : mapping of str to numpy.ndarray
         Values of the materials of roller and guide by name, (n, 2), in the units of `PROPERTIES`; NaN if not given.
     values : mapping of str to numpy.ndarray
@@ -112,6 +113,8 @@ class Limit:
         Fields of a case that belong to this limit. They change no force and no stress.
     materials : tuple of Parameter
         Values of a material that belong to this limit.
+    mappings : tuple of MappingField
+        Fields of a case that are mappings and belong to this limit.
     requires : tuple of str
         Fields of a case and values of a material without which there is no verdict.
     bodies : tuple of str
@@ -132,6 +135,7 @@ class Limit:
     results: tuple[Variable, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     materials: tuple[Parameter, ...] = ()
+    mappings: tuple[MappingField, ...] = ()
     requires: tuple[str, ...] = ()
     bodies: tuple[str, ...] = BODIES
     ends_at_once: bool = True
@@ -166,6 +170,7 @@ def declarations(limits: Iterable[Limit], groups: Mapping[str, str]) -> str:
     limits = tuple(limits)
     told = {
         "groups": {limit.group: limit.meaning for limit in limits if limit.meaning} | dict(groups),
+        "mappings": {own.name: own.meaning for limit in limits for own in limit.mappings},
         "parameters": [asdict(parameter) for limit in limits for parameter in limit.parameters],
         "materials": [asdict(value) for limit in limits for value in limit.materials],
     }
@@ -187,9 +192,10 @@ def lacks(limit: Limit, solved: Solved, names: Mapping[str, np.ndarray]) -> list
     out = []
     scatter = ("scatter_in_cycles",) if limit.distribution == SN_SCATTER else ()
     for name in limit.requires + (scatter if solved.options["failure_probability"] != 0.5 else ()):
-        if name in PARAMETERS:
-            if np.isnan(solved.cases[name]).any():
-                out.append(f"{limit.name}: the case gives no {name}. Add it to the case, or --set {name}=NUMBER.")
+        if name in solved.cases:
+            column = solved.cases[name]
+            if np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):
+                out.append(f"{limit.name}: the case gives no {name}. Add it to the case, or with --set {name}=...")
             continue
         unknown = np.isnan(solved.materials[name])
         if name in scatter:  # The scatter of the strength gives that of the life.

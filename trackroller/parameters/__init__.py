@@ -12,6 +12,7 @@ Units here are those that a user writes: degrees, m/min and hours. The solver wo
 from __future__ import annotations
 
 from trackroller.parameters.contact_models import CONTACT_MODELS, EXACTNESS
+from trackroller.parameters.declared import declared
 from trackroller.parameters.numbers import OF_LIMITS, PARAMETERS, Parameter
 from trackroller.parameters.options import OPTIONS, Option, options_text, words_of
 
@@ -34,12 +35,13 @@ REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")  # the same in prose
 FIRST_TO_FAIL = ("roller", "guide", "none", "unknown")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
-MAPPING_FIELDS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
+MECHANICAL_MAPPINGS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
     "friction_law": "friction as a function of the slip speed in mm/s: {kind: constant | linear | exponential | table, "
     "...}; it scales friction_coefficient, which holds at rest; not given: constant",
     "guide_profile": "drawn or measured cross-section of the guide, for normal: halfspace; not given: the circle",
     "roller_profile": "drawn or measured cross-section of the roller, for normal: halfspace; not given: the circle",
 }
+MAPPING_FIELDS: dict[str, str] = MECHANICAL_MAPPINGS | declared()["mappings"]  # with those of the limits
 ROLES = ("choice", "condition")  # who sets a parameter: the designer, or the use of the roller
 ROLE_OF = {name: parameter.role for name, parameter in PARAMETERS.items()} | {
     **dict.fromkeys((*MATERIAL_FIELDS, "material_pair", *MAPPING_FIELDS), "choice"),

@@ -14,7 +14,14 @@ import numpy as np
 from trackroller.errors import InputError, check_names
 from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.numerics.rows import once_each
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, PARAMETERS
+from trackroller.parameters import (
+    FRICTION_LEVELS,
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    MECHANICAL_MAPPINGS,
+    OF_LIMITS,
+    PARAMETERS,
+)
 from trackroller.roller.fields import FIELDS, Default, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.table import CaseTable, MaterialArrays
@@ -24,7 +31,8 @@ __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", 
 
 _LimitFields = make_dataclass(
     "_LimitFields",
-    [(name, Any, field(default=None if math.isnan(p.default) else p.default)) for name, p in OF_LIMITS.items()],
+    [(name, Any, field(default=None if math.isnan(p.default) else p.default)) for name, p in OF_LIMITS.items()]
+    + [(name, Any, field(default=None)) for name in MAPPING_FIELDS if name not in MECHANICAL_MAPPINGS],
     frozen=True,
     kw_only=True,
 )

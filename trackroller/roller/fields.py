@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import friction_laws, profiles
+from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.rows import once_each
@@ -17,6 +18,7 @@ from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.point_files import read_points
 
 FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
+_OF_LIMITS = {own.name: own for limit in LIMITS.values() for own in limit.mappings}
 
 
 def mapping_text(name: str, value: Any) -> str:
@@ -48,9 +50,12 @@ def mapping_text(name: str, value: Any) -> str:
             raise InputError(name, value, "a mapping, or one written as JSON") from None
     if not isinstance(value, Mapping):
         raise InputError(name, value, "a mapping, or not given")
-    mapping = (
-        friction_laws.canonical(value, name) if name == "friction_law" else profiles.canonical(value, name, read_points)
-    )
+    if name == "friction_law":
+        mapping = friction_laws.canonical(value, name)
+    elif name in _OF_LIMITS:
+        mapping = _OF_LIMITS[name].canonical(value)
+    else:
+        mapping = profiles.canonical(value, name, read_points)
     return json.dumps(mapping, sort_keys=True) if mapping else ""
 
 

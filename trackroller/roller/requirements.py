@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions
-from trackroller.parameters import MAPPING_FIELDS, OF_LIMITS, PARAMETERS
+from trackroller.parameters import MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.roller.case import CaseTable
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
     columns += [m.youngs_modulus for m in (table.roller, table.guide)]
     columns += [m.poisson_ratio for m in (table.roller, table.guide)]
     columns.append(np.where(table.friction_law != "", table.velocity, 0.0))
-    for name in MAPPING_FIELDS:
+    for name in MECHANICAL_MAPPINGS:
         texts = getattr(table, name)
         known = {text: i for i, text in enumerate(dict.fromkeys(texts.tolist()))}
         columns.append(np.array([known[text] for text in texts.tolist()], dtype=float))

@@ -14,7 +14,7 @@ from trackroller.contact.settings import converged_up_to
 from trackroller.damage import asked, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
-from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS
+from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
@@ -233,7 +233,9 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
     """
     bare = requirements.is_frictionless(table) & options.shortcuts
     across = finer_across(table, options)
-    keys = list(zip(bare.tolist(), *(getattr(table, name) for name in MAPPING_FIELDS), across.tolist(), strict=True))
+    keys = list(
+        zip(bare.tolist(), *(getattr(table, name) for name in MECHANICAL_MAPPINGS), across.tolist(), strict=True)
+    )
     rows: dict[tuple, list[int]] = {}
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)

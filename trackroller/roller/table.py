@@ -9,13 +9,14 @@ import numpy as np
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.rows import Rows
-from trackroller.parameters import OF_LIMITS
+from trackroller.parameters import MAPPING_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS
 
 OPTIONAL_VALUES = tuple(name for name, value in PROPERTIES.items() if value.allow_missing)
 _OptionalValues = make_dataclass(
     "_OptionalValues", [(name, np.ndarray) for name in OPTIONAL_VALUES], bases=(Rows,), frozen=True
 )
-_LimitFields = make_dataclass("_LimitFields", [(name, np.ndarray) for name in OF_LIMITS], bases=(Rows,), frozen=True)
+_OF_LIMITS = (*OF_LIMITS, *(name for name in MAPPING_FIELDS if name not in MECHANICAL_MAPPINGS))
+_LimitFields = make_dataclass("_LimitFields", [(name, np.ndarray) for name in _OF_LIMITS], bases=(Rows,), frozen=True)
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 class CaseTable(_LimitFields):  # type: ignore[misc, valid-type]
     """Checked cases as arrays of shape (n,), with the units of `PARAMETERS` and the friction coefficient resolved.
 
-    The base class adds the parameters that the limits declare.
+    The base class adds the fields that the limits declare.
     The mappings of a case (friction law, drawn profiles) stand as canonical JSON in arrays of str objects, "" for none.
     """
 

@@ -10,7 +10,7 @@ import numpy as np
 from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, asked, verdict
 from trackroller.damage.limit import Solved, lacks
-from trackroller.parameters import CONTACT_MODELS, PARAMETERS
+from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
 from trackroller.roller.geometry import rolling_radius
@@ -39,7 +39,7 @@ def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options)
     """Return cases, materials and results as the limits receive them."""
     names = [field.name for field in fields(table.roller) if field.name not in ("name", "guesses")]
     return Solved(
-        {name: getattr(table, name) for name in PARAMETERS},
+        {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
         {name: np.stack([getattr(body, name) for body in (table.roller, table.guide)], axis=1) for name in names},
         values,
         rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)),

@@ -1,0 +1,82 @@
+"""Load factor and kilometres of a maker's catalogue for track rollers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trackroller.damage.bearing import Loads
+from trackroller.damage.limit import Limit, Results, Solved, Verdict, optional, variables
+from trackroller.damage.mapping import MappingField
+
+LAWS = ("dry", "lubricated", "cubic")
+
+
+def catalogue_km(load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarray) -> np.ndarray:
+    """Return the kilometres that a load factor allows.
+
+    Parameters
+    ----------
+    load_factor : numpy.ndarray
+        Sum of the loads over their limits, (n,) [1].
+    basic_life : numpy.ndarray
+        Kilometres at a load factor of 1, (n,) [km].
+    law : numpy.ndarray of str
+        "dry": BL/(0.03 + 0.97 LF)^2, "lubricated": the same with exponent 3 (a maker's laws from tests), or "cubic":
+        BL/LF^3, (n,).
+
+    Returns
+    -------
+    numpy.ndarray
+        Kilometres, (n,); NaN without a law.
+    """
+    mixed = 0.03 + 0.97 * load_factor
+    with np.errstate(divide="ignore"):
+        factors = np.select([law == word for word in LAWS], [mixed**-2.0, mixed**-3.0, load_factor**-3.0], np.nan)
+    return basic_life * factors
+
+
+def evaluate(solved: Solved) -> Results:
+    """Return `catalogue_load_factor` [1] and `catalogue_life_km` [km], (n,)."""
+    loads, c = Loads.of(solved), FIELD.columns(solved.cases["catalogue"])
+    factor = loads.radial / c["radial"] + loads.axial / c["axial"] + loads.moment / c["moment"]
+    return {
+        "catalogue_load_factor": factor,
+        "catalogue_life_km": catalogue_km(factor, c["basic_life_km"], c["law"]),
+    }
+
+
+def verdict(solved: Solved, results: Results) -> Verdict:
+    """Return load factor and hours of travel, (n, body); the guide has neither."""
+    hours = results["catalogue_life_km"] * 1e3 / (solved.cases["velocity"] * 60.0)
+    factor = results["catalogue_load_factor"]
+    return Verdict(*(np.stack([value, np.full_like(value, np.nan)], axis=1) for value in (factor, hours)))
+
+
+FIELD = MappingField(
+    "catalogue",
+    "limits of a maker's catalogue: {radial: 800, axial: 300, moment: 2000, basic_life_km: 100, law: dry} [N, N, N mm, "
+    "km]; law: dry, lubricated or cubic",
+    numbers=(
+        optional("radial", "", "N", "permissible radial force", 0.0),
+        optional("axial", "", "N", "permissible axial force", 0.0),
+        optional("moment", "", "N mm", "permissible moment across the axis", 0.0),
+        optional("basic_life_km", "BL", "km", "life at a load factor of 1", 0.0),
+    ),
+    words={"law": LAWS},
+)
+
+LIMIT = Limit(
+    name="catalogue",
+    title="maker's catalogue (load factor)",
+    group="bearing",
+    evaluate=evaluate,
+    verdict=verdict,
+    results=variables(
+        "bearing",
+        ("catalogue_load_factor", (), "1", "LF", "sum of the loads over the limits of the catalogue"),
+        ("catalogue_life_km", (), "km", "L_km", "travel that the catalogue allows"),
+    ),
+    mappings=(FIELD,),
+    requires=("catalogue",),
+    bodies=("roller",),
+)
