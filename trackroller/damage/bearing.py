@@ -9,7 +9,7 @@ ASSUME: a moment loads a single row as far as its permissible moment, and leaves
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,12 +43,12 @@ class Loads(NamedTuple):
     @property
     def radial(self) -> np.ndarray:
         """Return the radial force [N]."""
-        return np.hypot(self.pressing, self.driving)
+        return np.asarray(np.hypot(self.pressing, self.driving))
 
     @property
     def moment(self) -> np.ndarray:
         """Return the moment across the axis [N mm]."""
-        return np.hypot(self.tilting, self.yawing)
+        return np.asarray(np.hypot(self.tilting, self.yawing))
 
 
 def row_forces(loads: Loads, rows: np.ndarray, distance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -115,7 +115,7 @@ def rating_life(load: np.ndarray, rating: np.ndarray, kind: np.ndarray) -> np.nd
 
 def life_at(life: np.ndarray, probability: float, slope: np.ndarray) -> np.ndarray:
     """Return the life at a failure probability from L10, by Weibull: L10 (ln(1 - F)/ln 0.9)^(1/slope)."""
-    return life * (np.log1p(-probability) / np.log(0.9)) ** (1.0 / slope)
+    return np.asarray(life * (np.log1p(-probability) / np.log(0.9)) ** (1.0 / slope))
 
 
 def evaluate(solved: Solved) -> Results:
@@ -142,7 +142,7 @@ def verdict(solved: Solved, results: Results) -> Verdict:
     return Verdict(*(np.stack([v, np.full_like(v, np.nan)], axis=1) for v in (results["bearing_utilisation"], hours)))
 
 
-def check(given: dict) -> None:
+def check(given: dict[str, Any]) -> None:
     """Refuse a number of rows other than 1 or 2, and rows without the value that carries a moment."""
     if given["rows"] not in (1, 2):
         raise InputError("bearing.rows", given["rows"], "1 or 2")

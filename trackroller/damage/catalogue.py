@@ -32,7 +32,7 @@ def catalogue_km(load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarra
     mixed = 0.03 + 0.97 * load_factor
     with np.errstate(divide="ignore"):
         factors = np.select([law == word for word in LAWS], [mixed**-2.0, mixed**-3.0, load_factor**-3.0], np.nan)
-    return basic_life * factors
+    return np.asarray(basic_life * factors)
 
 
 def evaluate(solved: Solved) -> Results:
