@@ -281,5 +281,5 @@ def test_the_shipped_study_holds_friction_drive_and_spin():
 
 def test_the_sentences_of_a_solved_study_say_where_sliding_is_good_enough(own):
     with xr.open_dataset(own[0]) as ds:
-        words = comparison.sentences(ladder.pairs(ds))
+        words = comparison.sentences(ladder.pairs(StudyView.of(ds)))
     assert any(w.startswith("The sliding model, free rolling: good enough") for w in words)
