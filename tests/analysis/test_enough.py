@@ -86,3 +86,28 @@ def test_designs_without_samples_are_not_told_to_take_more():
     table = samples(sens.assign_attrs(method="table", rows=200), 1024)  # `samples` does not count for a table
     assert table.text.split("only. ")[1].startswith(f"A table of {table.values['number']} rows gives")
     assert table.values["number"] == 200 * table.values["take_times"]
+
+
+def test_first_order_indices_above_100_percent_say_why():
+    """A small sample of a function without interactions, and factors that are correlated."""
+    study = {"name": "e", "design": "lhs", "samples": 40, "seed": 1, "outputs": ["forces", "friction_work"]}
+    study |= {"factors": CARRIERS, "analysis": {"outputs": ["friction_power"], "measures": ["first"]}}
+
+    def note(samples, seed, **extra):
+        parsed = parse_study(study | {"samples": samples, "seed": seed} | extra)
+        ds = parsed.design()
+        ds["friction_power"] = ("case", ds["axial_force"].values + ds["motor_force"].values)
+        ds.attrs = {"study": parsed.merged()}
+        found = analyse_dataset(ds)
+        assert float(found["first_order_sum"][0]) == pytest.approx(float(found["first"].clip(0).sum()))
+        return str(found["first_order_sum_note"].values[0])
+
+    small = [note(40, seed) for seed in range(12)]
+    assert any("the sum of so small a sample has a 95 % interval of ±" in text for text in small)
+    tied = note(400, 1, rank_correlations=[["axial_force", "motor_force", 0.8]])
+    assert re.match(
+        r"The first-order indices add up to 1[5-9]\d %, those of independent factors to 100 % at most: ", tied
+    )
+    assert "are correlated, and each index holds influence of the others." in tied
+    exact = [note(3000, seed, factors=dict(list(CARRIERS.items())[:2])) for seed in range(3)]
+    assert [text for text in exact if text and not re.search("10[1-4] %, .* ± [1-4] %", text)] == []

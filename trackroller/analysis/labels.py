@@ -73,6 +73,57 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
     return text
 
 
+def first_order_sums(result: xr.Dataset, drawn: bool) -> dict[str, Any]:
+    """Return the sums of the first-order indices, and why a sum exceeds 100 %.
+
+    Parameters
+    ----------
+    result : labelled indices with `used_share`; `correlated` marks correlated factors
+    drawn : whether the design draws the factors, so that nothing but stated correlations ties them
+
+    Returns
+    -------
+    Variables first_order_sum [1] and first_order_sum_note along `output`; the note is empty for a sum of up to 100 %.
+    Negative estimates count as 0. Empty without estimated first-order indices; those of a grid are exact.
+
+    Notes
+    -----
+    First-order indices of independent factors add up to 100 % at most. Estimates exceed it if factors are correlated,
+    by sampling errors (the root of the sum of squares of the half widths), or because rows are left out: the remaining
+    rows are no sample of independent factors.
+    """
+    name = "S1" if "S1" in result else "first"
+    if "main_share" in result or name not in result:
+        return {}
+    total = result[name].clip(min=0.0).sum("factor").values
+    error = np.sqrt((((result[f"{name}_high"] - result[f"{name}_low"]) / 2) ** 2).sum("factor").values)
+    tied = (
+        [str(n) for n in result["factor_name"].values[result["correlated"].values == 1]]
+        if "correlated" in result
+        else []
+    )
+    rows = zip(total, error, result["used_share"].values, strict=True)
+    notes = np.array([_excess(*row, tied, drawn) if row[0] > 1.005 else "" for row in rows], dtype=object)
+    return {
+        "first_order_sum": ("output", total, {"long_name": "sum of the first-order indices", "units": "1"}),
+        "first_order_sum_note": ("output", notes, {"long_name": "why the first-order indices exceed 100 % together"}),
+    }
+
+
+def _excess(total: float, error: float, used: float, tied: list[str], drawn: bool) -> str:
+    """Return the reason why first-order indices add up to more than 100 %, see `first_order_sums`."""
+    text = f"The first-order indices add up to {100 * total:.0f} %, those of independent factors to 100 % at most: "
+    if tied:
+        return text + f"{' and '.join(tied)} are correlated, and each index holds influence of the others."
+    if total - 1 > error and used < 1:
+        return text + f"{100 * (1 - used):.0f} % of the rows are left out, and in the others the factors are dependent."
+    if total - 1 > error and not drawn:
+        return (
+            text + f"the excess is above the sampling error of ± {100 * error:.0f} %, so the factors may be dependent."
+        )
+    return text + f"the sum of so small a sample has a 95 % interval of ± {100 * error:.0f} %."
+
+
 def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | None = None) -> str:
     """Return a sentence on the treatment of the regimes.
 

@@ -17,7 +17,15 @@ import xarray as xr
 
 from trackroller.analysis import convergence, indices
 from trackroller.analysis.givendata import MEASURES, firsts, given_data
-from trackroller.analysis.labels import RELIABLE, correlated, correlated_pairs, labelled, note, treatment
+from trackroller.analysis.labels import (
+    RELIABLE,
+    correlated,
+    correlated_pairs,
+    first_order_sums,
+    labelled,
+    note,
+    treatment,
+)
 from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.pairs import pairs
 from trackroller.analysis.parts import parts_of
@@ -156,7 +164,8 @@ def analyse_dataset(ds: xr.Dataset) -> xr.Dataset:
         surfaces); first, delta, pawn, prcc (given data). A random sample also has interaction_share by a polynomial
         that predicts `fit_share` of the variance. The keys `groups` and `conditional_on` add the variables of
         `trackroller.analysis.parts.parts_of`. Indices have _low, _high and their course with the sample size. For
-        each output: used_share, reliable, take_times, and `note`, which states the rows left out and why. An
+        each output: used_share, reliable, take_times, and `note`, which states the rows left out and why;
+        first_order_sum, and first_order_sum_note, which explains a sum above 100 %. An
         inner/outer array design gives the result of `trackroller.analysis.robustness.robustness`.
 
     Raises
@@ -187,6 +196,7 @@ def analyse_dataset(ds: xr.Dataset) -> xr.Dataset:
     if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
         told = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
         result["correlated"] = ("factor", np.array([name in tied for name in design.factors], np.int8), told)
+    result = result.assign(first_order_sums(result, design.method != "table"))
     result.attrs = {
         **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
         "method": design.method,

@@ -64,6 +64,8 @@ def caveat(sens: xr.Dataset, output: str) -> str:
     if "reliable" in part and not int(part["reliable"]):
         used = float(part["used_share"]) * 100
         said.append(f"Only {used:.0f} % of the design could be used: {part['note'].item()}.")
+    if headline(sens) in ("first", "S1") and "first_order_sum_note" in part:
+        said += [why] if (why := str(part["first_order_sum_note"].item())) else []
     if np.isfinite(more):
         said.append(advice(more))
     return " ".join(said)
