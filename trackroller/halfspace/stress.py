@@ -14,46 +14,15 @@ from scipy import fft
 
 from trackroller.errors import InputError
 from trackroller.halfspace import influence
+from trackroller.halfspace.arrays import check_depth, components, grid_axis, grid_tractions
 from trackroller.numerics.compiled import fast, inner
+from trackroller.numerics.numbers import number_in, read_array
 from trackroller.numerics.threads import share_rows
 
 Array = NDArray[np.float64]
-COMPONENTS = ("sigma_x", "sigma_y", "sigma_z", "tau_xy", "tau_yz", "tau_xz")
 INTERPOLATIONS = ("bilinear", "constant")
 FRICTION_SIGNS = (1.0, -1.0)  # of the shear on roller and guide, which is opposite on the two bodies
 _CHUNK = 16384  # points in a piece of work; this bounds the memory to a few MB for each thread
-
-
-def _axis(field: str, values: ArrayLike) -> Array:
-    a = np.asarray(values, dtype=float)
-    if a.ndim != 1 or a.size < 2 or not np.all(np.isfinite(a)):
-        raise InputError(field, a, "a grid axis is a 1-D array of at least two finite coordinates")
-    steps = np.diff(a)
-    if steps.min() <= 0 or np.ptp(steps) > 1e-6 * steps.mean():
-        raise InputError(field, a, "a grid axis increases in equal steps", "Resample the tractions.")
-    return a
-
-
-def _tractions(x: Array, y: Array, pressure: ArrayLike, lateral: ArrayLike, rolling: ArrayLike) -> Array:
-    fields = []
-    for name, values in (("shear_lateral", lateral), ("shear_rolling", rolling), ("pressure", pressure)):
-        a = np.asarray(values, dtype=float)
-        if a.ndim != 0 and a.shape != (y.size, x.size):
-            raise InputError(name, a.shape, f"tractions on this grid have shape (ny, nx) = {(y.size, x.size)}")
-        if not np.all(np.isfinite(a)):
-            raise InputError(name, "NaN or infinite", "tractions are finite everywhere", "Put 0 outside the patch.")
-        fields.append(np.broadcast_to(a, (y.size, x.size)))
-    return np.stack(fields, axis=-1)
-
-
-def _check_depth(field: str, depth: Array) -> None:
-    if not np.all(depth >= 0.0) or not np.all(np.isfinite(depth)):
-        raise InputError(field, float(np.min(depth)), "depths are finite and >= 0 (z points into the body)")
-
-
-def _check_poisson(poisson_ratio: float) -> None:
-    if not 0.0 <= poisson_ratio <= 0.5:
-        raise InputError("poisson_ratio", poisson_ratio, "0 <= poisson_ratio <= 0.5")
 
 
 def stress_from_tractions(
@@ -115,14 +84,14 @@ def stress_from_tractions(
     >>> round(float(middle[2]), 6)
     -200.0
     """
-    xa, ya = _axis("x", x), _axis("y", y)
-    q = _tractions(xa, ya, pressure, shear_lateral, shear_rolling)
-    at = np.asarray(points, dtype=float)
-    if at.shape[-1:] != (3,):
-        raise InputError("points", at.shape, "points have shape (..., 3)")
-    _check_depth("points", at[..., 2])
-    _check_poisson(poisson_ratio)
-    if interpolation not in INTERPOLATIONS:
+    xa, ya = grid_axis("x", x), grid_axis("y", y)
+    q = grid_tractions(xa, ya, pressure, shear_lateral, shear_rolling)
+    at = read_array(points, "points", "points have shape (..., 3)")
+    if at.shape[-1:] != (3,) or not np.all(np.isfinite(at)):
+        raise InputError("points", at if at.shape[-1:] == (3,) else at.shape, "finite points of shape (..., 3)")
+    check_depth("points", at[..., 2])
+    poisson_ratio = number_in(poisson_ratio, "poisson_ratio", "0 <= poisson_ratio <= 0.5", 0.0, 0.5)
+    if not isinstance(interpolation, str) or interpolation not in INTERPOLATIONS:
         raise InputError("interpolation", interpolation, "one of " + ", ".join(INTERPOLATIONS))
     loads = influence.corner_loads(xa, ya, q, interpolation == "bilinear")
     flat = np.ascontiguousarray(at.reshape(-1, 3))
@@ -186,11 +155,13 @@ def stress_on_grid(
     >>> stress.shape, round(float(stress[0, 1, 1, 2]), 6)
     ((2, 4, 3, 6), -200.0)
     """
-    xa, ya = _axis("x", x), _axis("y", y)
-    q = _tractions(xa, ya, pressure, shear_lateral, shear_rolling)
-    z = np.atleast_1d(np.asarray(depths, dtype=float))
-    _check_depth("depths", z)
-    _check_poisson(poisson_ratio)
+    xa, ya = grid_axis("x", x), grid_axis("y", y)
+    q = grid_tractions(xa, ya, pressure, shear_lateral, shear_rolling)
+    z = np.atleast_1d(read_array(depths, "depths", "depths are numbers >= 0 [mm]"))
+    if z.ndim != 1:
+        raise InputError("depths", z.shape, "depths have shape (nz,)")
+    check_depth("depths", z)
+    poisson_ratio = number_in(poisson_ratio, "poisson_ratio", "0 <= poisson_ratio <= 0.5", 0.0, 0.5)
     ny, nx = ya.size, xa.size
     shape = (fft.next_fast_len(3 * ny - 2, real=True), fft.next_fast_len(3 * nx - 2, real=True))
     loads = fft.rfft2(np.moveaxis(q, -1, 0), shape)
@@ -248,7 +219,8 @@ def von_mises(stress: ArrayLike) -> Array:
     >>> float(von_mises([-300.0, 0.0, 0.0, 0.0, 0.0, 0.0]))
     300.0
     """
-    return _equivalent.py_func(*np.moveaxis(np.asarray(stress, dtype=float), -1, 0))
+    with np.errstate(invalid="ignore"):  # infinite components
+        return _equivalent.py_func(*np.moveaxis(components(stress), -1, 0))
 
 
 @inner
@@ -282,16 +254,17 @@ def principal_stresses(stress: ArrayLike) -> Array:
     Returns
     -------
     numpy.ndarray, shape (..., 3)
-        Principal stresses in descending order [MPa].
+        Principal stresses in descending order [MPa]; NaN where a component is not finite.
 
     Examples
     --------
     >>> principal_stresses([-300.0, 0.0, 100.0, 0.0, 0.0, 0.0]).tolist()
     [100.0, 0.0, -300.0]
     """
-    s = np.asarray(stress, dtype=float)
-    tensor = s[..., [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
-    return np.linalg.eigvalsh(tensor)[..., ::-1]
+    s = components(stress)
+    known = np.all(np.isfinite(s), axis=-1, keepdims=True)
+    tensor = np.where(known, s, 0.0)[..., [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
+    return np.where(known, np.linalg.eigvalsh(tensor)[..., ::-1], np.nan)
 
 
 def max_shear(stress: ArrayLike) -> Array:

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
@@ -20,6 +21,7 @@ from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
+from trackroller.numerics.numbers import read_number
 from trackroller.yaml_file import needs_quotes
 
 HEADER = """\
@@ -63,7 +65,7 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     if not isinstance(name, str) or not name.strip():
         raise InputError("material name", name, "it must be a text that is not empty")
     check_names(f"material '{name}': field", values, FIELDS)
-    values = {key: value for key, value in values.items() if value is not None}
+    values = {key: _plain(f"material '{name}': {key}", value) for key, value in values.items() if value is not None}
     if not values:
         remedy = f"Give one of {', '.join(PROPERTIES)}."
         raise InputError(f"material '{name}'", None, "it must have at least one value", remedy)
@@ -84,21 +86,25 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
     for key, prop in NUMBERS.items():
         if key not in values:
             continue
-        given = values[key] if isinstance(values[key], Mapping) else {"value": _plain(values[key])}
+        given = values[key] if isinstance(values[key], Mapping) else {"value": values[key]}
         record = {"unit": prop.unit} | common | note | dict(given)
         known = [part for part in VALUE_KEYS if part in record]
         entry[key] = {part: record[part] for part in (*known, *(set(record) - set(known)))}
     return entry
 
 
-def _plain(value: Any) -> Any:
-    """Return a number in its shortest form; anything else unchanged, because the later check names the field."""
+def _plain(field: str, value: Any) -> Any:
+    """Return a number in its shortest form, NumPy's values as Python's, texts and mappings of them unchanged."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, Mapping):
+        return {key: _plain(f"{field}.{key}", part) for key, part in value.items()}
+    if isinstance(value, (bool, str)):
+        return value
     try:
-        number = float(value)
-    except (TypeError, ValueError):
-        return value
-    if isinstance(value, bool):
-        return value
+        number = read_number(value)
+    except ValueError:
+        raise InputError(field, value, "a number, a text or a mapping of them") from None
     return int(number) if number.is_integer() and abs(number) < 1e15 else number
 
 

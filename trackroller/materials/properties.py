@@ -38,11 +38,11 @@ def _number(
     )
 
 
-# No solid reaches the upper bounds of E and R_m. They detect a value that was given in Pa.
+# No solid reaches the bounds of E and R_m. The upper ones detect a value that was given in Pa.
 _PROPERTIES = (
-    _number("youngs_modulus", "E", "MPa", "Young's modulus", 0.0, 2e6),
+    _number("youngs_modulus", "E", "MPa", "Young's modulus", 1e-6, 2e6),
     _number("poisson_ratio", "nu", "-", "Poisson's ratio", 0.0, 0.5, closed=True),
-    _number("tensile_strength", "R_m", "MPa", "tensile strength", 0.0, 2e5),
+    _number("tensile_strength", "R_m", "MPa", "tensile strength", 1e-6, 2e5),
     _number("fatigue_strength_ratio", "sigma_D/R_m", "-", "fatigue limit over tensile strength", 0.0, 1.0),
     _number("cycles_at_tensile_strength", "N_Rm", "-", "cycles at the tensile strength", 0.0, math.inf),
     _number("cycles_at_fatigue_limit", "N_k", "-", "cycles at the fatigue limit", 0.0, math.inf),

@@ -32,8 +32,8 @@ def read_number(value: Any) -> float:
     ValueError
         If the value is no number, such as true, `3_0`, digits of other scripts, `nan` and texts over 400 characters.
     """
-    if isinstance(value, bool):
-        raise ValueError("true and false are not numbers")
+    if isinstance(value, (bool, np.bool_, bytes)) or value is np.ma.masked:
+        raise ValueError("true, false, bytes and masked values are not numbers")
     if isinstance(value, str):
         text = value.strip()
         if len(text) > MAX_LENGTH or not _TEXT.fullmatch(text):
@@ -45,8 +45,9 @@ def read_number(value: Any) -> float:
             raise ValueError(f"{text} is too {'large' if number else 'small'} for a number of the computer")
         return number
     try:
-        return float(value)
-    except (TypeError, OverflowError) as exc:
+        with np.errstate(over="raise"):
+            return float(value)
+    except (TypeError, ArithmeticError) as exc:
         raise ValueError(str(exc)) from None
 
 
@@ -95,6 +96,36 @@ def number_in(value: Any, field: str, allowed: str, lower: float = -math.inf, up
     if not lower <= number <= upper:
         raise InputError(field, value, allowed)
     return number
+
+
+def read_array(values: Any, field: str, allowed: str) -> np.ndarray:
+    """Return values as an array of floats; NaN and inf are kept.
+
+    Parameters
+    ----------
+    values : array_like
+        What the user gave.
+    field, allowed : str
+        Name of the field, and what is allowed, for the message.
+
+    Returns
+    -------
+    numpy.ndarray
+        The array.
+
+    Raises
+    ------
+    InputError
+        If a value is no real number, or if the lengths of nested lists differ.
+    """
+    try:
+        with np.errstate(over="raise"):
+            array = np.asarray(values)
+            if array.dtype.kind not in "fiuO":
+                raise TypeError(f"values of type {array.dtype}")
+            return array.astype(float, copy=False)
+    except (TypeError, ValueError, ArithmeticError):
+        raise InputError(field, values, allowed) from None
 
 
 def all_equal(values: np.ndarray) -> bool:

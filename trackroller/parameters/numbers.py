@@ -11,6 +11,8 @@ from trackroller.parameters.declared import declared
 if TYPE_CHECKING:
     import numpy as np
 
+SMALLEST = 1e-6  # least size of a number that must not be 0
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -27,7 +29,8 @@ class Parameter:
     lower, upper : float
         Bounds, which are allowed values themselves unless `open_lower` or `open_upper` is True.
     allow_infinite, allow_missing, nonzero : bool
-        Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is refused.
+        Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is refused, with all
+        numbers that are smaller than `SMALLEST`.
     label : str
         Name for figures and reports, if it differs from `name`.
     role : str
@@ -68,7 +71,7 @@ class Parameter:
         if math.isfinite(self.upper):
             parts.append(f"{'<' if self.open_upper else '<='} {self.upper:g}{unit}")
         if self.nonzero:
-            parts.append("not 0")
+            parts.append(f"not 0 (at least {SMALLEST:g}{unit} in size)")
         parts.append("finite or inf" if self.allow_infinite else "finite")
         return f"{self.long_name} [{self.unit}] must be a number, " + ", ".join(parts)
 
@@ -82,15 +85,19 @@ class Parameter:
             good &= (v > self.lower) if self.open_lower else (v >= self.lower)
             good &= (v < self.upper) if self.open_upper else (v <= self.upper)
             if self.nonzero:
-                good &= v != 0
+                good &= np.abs(v) >= SMALLEST
         return np.asarray(good | np.isnan(v) if self.allow_missing else good)
 
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
+# Bounds far outside of what is built. Beyond them the digits of a double do not carry the balance of forces.
+_LENGTH: dict[str, Any] = {"lower": 1e-6, "upper": 1e8}
+_RATE: dict[str, Any] = {"lower": 1e-9, "upper": 1e9}
+_FORCE: dict[str, Any] = {"lower": -1e12, "upper": 1e12}
 _USE: dict[str, Any] = {"role": "condition"}
 _ALL = (
-    Parameter("axis_distance", "A_T", "mm", 21.75, "roller axis to the centre of the guide contour", **POSITIVE),
-    Parameter("guide_profile_radius", "r_C,G", "mm", 6.0, "radius of the convex guide contour", **POSITIVE),
+    Parameter("axis_distance", "A_T", "mm", 21.75, "roller axis to the centre of the guide contour", **_LENGTH),
+    Parameter("guide_profile_radius", "r_C,G", "mm", 6.0, "radius of the convex guide contour", **_LENGTH),
     Parameter(
         "roller_profile_radius",
         "r_C,TR",
@@ -116,9 +123,9 @@ _ALL = (
         "deg",
         30.0,
         "inclination of the contact normals",
+        lower=1e-6,
         upper=90.0,
         open_upper=True,
-        **POSITIVE,
     ),
     Parameter(
         "radial_force",
@@ -126,12 +133,13 @@ _ALL = (
         "N",
         -200.0,
         "< 0 presses the roller on the guide",
+        lower=-1e12,
         upper=0.0,
         open_upper=True,
         **_USE,
     ),
-    Parameter("axial_force", "F_ax", "N", 30.0, "along +x_R", **_USE),
-    Parameter("motor_force", "F_Motor", "N", -30.0, "< 0 driving, 0 free rolling, > 0 braking", **_USE),
+    Parameter("axial_force", "F_ax", "N", 30.0, "along +x_R", **_FORCE, **_USE),
+    Parameter("motor_force", "F_Motor", "N", -30.0, "< 0 driving, 0 free rolling, > 0 braking", **_FORCE, **_USE),
     Parameter(
         "friction_coefficient",
         "mu",
@@ -151,7 +159,7 @@ _ALL = (
         60.0,
         "for friction power, life in hours and friction laws only",
         label="mean travel speed",
-        **POSITIVE,
+        **_RATE,
         **_USE,
     ),
     Parameter(
@@ -162,7 +170,7 @@ _ALL = (
         "decides the life of the guide in hours; not given: hours are NaN",
         allow_missing=True,
         label="overrollings of a guide point per hour",
-        **POSITIVE,
+        **_RATE,
         **_USE,
     ),
 )

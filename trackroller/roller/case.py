@@ -97,8 +97,8 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
     30.0
     >>> tr.Case(contact_angle=95)
     Traceback (most recent call last):
-    trackroller.errors.InputError: contact_angle = 95 is not usable: contact angle [deg] must be a number, > 0 deg, \
-< 90 deg, finite
+    trackroller.errors.InputError: contact_angle = 95 is not usable: contact angle [deg] must be a number, \
+>= 1e-06 deg, < 90 deg, finite
     """
 
     axis_distance: float = PARAMETERS["axis_distance"].default
@@ -156,7 +156,7 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
         """
         if not isinstance(values, Mapping):
             raise InputError("case", values, "a case is a mapping of parameter names to values")
-        check_names("case field", values, FIELDS)
+        check_names("case field", map(str, values), FIELDS)
         return cls(**{str(k): v for k, v in values.items()})
 
     def as_dict(self) -> dict[str, Any]:
@@ -170,7 +170,7 @@ def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
         return _columns_of_dataset(cases)
     if isinstance(cases, (Case, Mapping)):
         cases = [cases]
-    if not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)):
+    if not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)) or getattr(cases, "ndim", 1) == 0:
         raise InputError("cases", cases, "a Case, a mapping, a list of them or an xarray.Dataset")
     rows = [c if isinstance(c, Case) else Case.from_dict(c) for c in cases]
     columns = {}
@@ -204,9 +204,12 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
     numbers = {}
     for name, parameter in PARAMETERS.items():
         raw = columns[name]
-        try:
-            numbers[name] = raw.astype(float)  # None becomes NaN
-        except (TypeError, ValueError):
+        if raw.dtype.kind in "fiu" or set(map(type, raw)) <= {float, int, Default, type(None)}:
+            try:
+                numbers[name] = raw.astype(float)  # None becomes NaN
+            except OverflowError:  # an integer with hundreds of digits
+                numbers[name] = np.array([number(name, v) for v in raw], dtype=float)
+        else:
             words = FRICTION_LEVELS if name == "friction_coefficient" else ()
             numbers[name] = np.array(
                 [math.nan if isinstance(v, str) and v in words else number(name, v) for v in raw], dtype=float
@@ -238,6 +241,8 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
         For the first bad value, unknown name or contradicting geometry.
     """
     database = load_database() if database is None else database
+    if not isinstance(database, MaterialDatabase):
+        raise InputError("database", database, "a MaterialDatabase", "`tr.load_database(path)` reads one.")
     columns, n = _as_columns(cases)
     numbers = _checked_numbers(columns, n)
     problem = geometry_problem(numbers) if n else None

@@ -88,7 +88,7 @@ class Default(float):
 
 def own_friction(law: Any) -> float:
     """Return the friction at rest of a case without friction coefficient: that of its law's table, or the default."""
-    own = friction_laws.at_rest(law) if law else None
+    own = friction_laws.at_rest(law) if isinstance(law, (str, Mapping)) and law else None
     return PARAMETERS["friction_coefficient"].default if own is None else own
 
 

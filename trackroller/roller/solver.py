@@ -263,6 +263,7 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
         stages.tractions(results, options)
     if "subsurface" in wanted:
         stages_stress.subsurface(results, options)
+    stages.settle(results)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(len(table))], dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
 

@@ -26,6 +26,7 @@ SIGN_CONVENTIONS = (
     "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"
 )
 MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
+FINITE = {"normal_force", "lateral_force", "driving_force", "spin_moment", "max_pressure", "peak_stress"}
 
 
 def prepare(table: CaseTable, options: Options, across: int = 1) -> Scene:
@@ -226,6 +227,15 @@ def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) ->
     with np.errstate(divide="ignore", invalid="ignore"):
         residual = np.abs(local.sum(axis=1) - put_in) / np.abs(put_in)
     v["energy_residual"] = np.where(loads.friction > 0, residual, np.nan)
+
+
+def settle(results: Results) -> None:
+    """Take the mark of convergence from rolling rows with a force, a pressure or a peak that is no finite number."""
+    v, rolls = results.values, results.regime == eq.ROLLING
+    for name in FINITE & v.keys():
+        given = np.isfinite(v[name]).reshape(results.scene.n, -1).all(axis=1)
+        unsearched = results.stopped if name == "peak_stress" else False
+        results.converged = results.converged & (given | ~rolls | unsearched)
 
 
 def tractions(results: Results, options: Options) -> None:
