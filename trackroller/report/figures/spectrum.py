@@ -7,7 +7,7 @@ import xarray as xr
 
 from trackroller.report.figures import style
 from trackroller.report.numbers import chance, listing
-from trackroller.report.words.spectrum import track
+from trackroller.report.words.spectrum import known_damage
 from trackroller.study.spectrum.solve import BODIES
 
 MOST = 16  # blocks drawn one by one; the others stand together
@@ -24,15 +24,17 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     -------
     The figure and its caption, or None if no body has known damage.
     """
-    shares = {}
+    shares, unknown = {}, np.zeros(ds.sizes["block"], dtype=bool)
     for body in BODIES:
-        damage = ds["damage"].sel(body=body, contact=track(ds, body)).values
-        if np.isfinite(damage).all() and damage.sum() > 0:
-            shares[body] = damage / damage.sum()
+        _, damage = known_damage(ds, body)
+        if (whole := float(np.nansum(damage))) > 0:
+            shares[body] = np.nan_to_num(damage) / whole
+            unknown |= np.isnan(damage)
     if not shares:
         return None
     names = [str(name) for name in ds["block"].values]
     order = np.argsort(-sum(shares.values()), kind="stable")
+    order = order[~unknown[order]]
     shown, rest = order[:MOST], order[MOST:]
     words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
     figure = style.new_figure(24 + 6.0 * len(words))
@@ -51,4 +53,6 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     panels[0].invert_yaxis()
     style.head(figure, f"Damage by block: {ds.attrs['title']}")
     caption = "Share of each block in the damage of a shift, in the track of each body that fails first."
+    if unknown.any():
+        caption += f" Blocks without known damage are not counted: {listing(ds['block'].values[unknown].tolist())}."
     return figure, style.FigureInfo("damage_by_block", caption, f"{listing(told)}.")

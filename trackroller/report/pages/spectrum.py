@@ -28,7 +28,7 @@ from trackroller.report.numbers import chance, listing, long_name, unit_text, wi
 from trackroller.report.tables.inputs import Row
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.flags import flags_of
-from trackroller.report.words.spectrum import UNITS, _life, track
+from trackroller.report.words.spectrum import UNITS, _life, known_damage
 from trackroller.study.spectrum.file import LOAD_FIELDS
 
 if TYPE_CHECKING:
@@ -55,23 +55,24 @@ def block_table(ds: xr.Dataset) -> Table:
     heads = ["Block", "Distance [m]", "Duration [h]", *differ, "Regime"]
     for body in BODIES:
         heads += [f"{capital(body)} peak [MPa]", f"{capital(body)} damage [–]", "Share"]
-    rows = []
+    rows, shown = [], {body: known_damage(ds, body) for body in BODIES}
     for i, name in enumerate(ds["block"].values):
         cells = [str(name), *(cell(float(ds[n][i])) for n in ("distance", "duration", *loads))]
         cells.append(REGIME_LABELS[int(ds["regime"][i])])
-        for body in BODIES:
-            part = ds[["peak_stress", "damage", "damage_sum"]].sel(body=body, contact=track(ds, body))
-            done, whole = float(part["damage"][i]), float(part["damage_sum"])
-            of_all = chance(done / whole) if whole > 0 else "–"
-            cells += [cell(float(part["peak_stress"][i])), cell(done), of_all]
+        for body, (contact, damage) in shown.items():
+            whole, stress = float(np.nansum(damage)), float(ds["peak_stress"].sel(body=body, contact=contact)[i])
+            cells += [cell(stress), cell(damage[i]), chance(damage[i] / whole) if whole > 0 else "–"]
         rows.append(cells)
     sums = ["Sum of a shift", *(cell(float(ds[n].sum())) for n in ("distance", "duration")), *[""] * (len(loads) + 1)]
-    for body in BODIES:
-        sums += ["", cell(float(ds["damage_sum"].sel(body=body, contact=track(ds, body)))), ""]
+    for _, damage in shown.values():
+        sums += ["", f"{'≥ ' * bool(np.isnan(damage).any())}{cell(float(np.nansum(damage)))}", ""]
     rows.append(sums)
     same = [n for n in LOAD_FIELDS if n not in loads and np.isfinite(ds[n].values).all()]
     told = [f"{PARAMETERS[n].long_name} {cell(float(ds[n][0]))} {unit_text(PARAMETERS[n].unit)}" for n in same]
-    note = f"Stress and damage are those of the track that fails first. Same in all blocks: {'; '.join(told)}."
+    note = "Stress and damage are those of the track that fails first"
+    if any(np.isnan(damage).any() for _, damage in shown.values()):
+        note += " by the blocks with known damage; sums and shares hold these blocks alone"
+    note += f". Same in all blocks: {'; '.join(told)}."
     return Table("spectrum", "Blocks of a shift", heads, rows, note.replace(" –;", ";").replace(" –.", "."))
 
 

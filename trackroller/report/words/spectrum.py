@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.parameters import REGIMES
+from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import chance, life, listing
 from trackroller.report.words.sentence import Sentence
 from trackroller.study.spectrum.solve import BODIES
@@ -17,10 +17,14 @@ if TYPE_CHECKING:
 UNITS = (("shifts", "shifts"), ("km", "km"), ("hours", "h"))
 
 
-def track(ds: xr.Dataset, body: str) -> int:
-    """Return the contact whose track fails first; of unknown lives the other one."""
-    shifts = ds["life_shifts"].sel(body=body).values
-    return int(ds["contact"].values[int(np.argmin(np.where(np.isnan(shifts), np.inf, shifts)))])
+def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
+    """Return the contact whose track takes more damage in the blocks with known damage, and the damage of each block.
+
+    The damage has the shape (blocks,), NaN where it is not known.
+    """
+    damage = ds["damage"].sel(body=body).transpose("block", "contact").values
+    most = int(np.argmax(np.nansum(damage, axis=0)))
+    return int(ds["contact"].values[most]), damage[:, most]
 
 
 def sentences(ds: xr.Dataset) -> list[Sentence]:
@@ -35,8 +39,8 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
         return Sentence("spectrum_unknown", text, {"body": body})
     if bool(np.isinf(shifts).all()):
         return Sentence("spectrum_unlimited", f"The {body} takes no damage in this spectrum.", {"body": body})
-    contact = track(ds, body)
-    part = ds["damage"].sel(body=body, contact=contact).values / float(ds["damage_sum"].sel(body=body, contact=contact))
+    contact, damage = known_damage(ds, body)
+    part = damage / damage.sum()
     worst = int(np.argmax(part))
     lives = {name: float(ds[f"{body}_life_{name}"]) for name, _ in UNITS}
     told = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
@@ -50,19 +54,19 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
 
 def _at_most(ds: xr.Dataset, body: str) -> str:
     """Return an upper bound of the life from the known blocks; an empty text if these blocks do no damage."""
-    known = float(ds["damage"].sel(body=body).sum("block").max())  # skips the unknown ones
-    return f"; at most {_life(ds.attrs['critical_damage'] / known)} shifts by the other blocks" if known > 0 else ""
+    contact, damage = known_damage(ds, body)
+    known = float(np.nansum(damage))
+    life_at_most = _life(ds.attrs["critical_damage"] / known) if known > 0 else ""
+    return f"; at most {life_at_most} shifts by the other blocks (contact {contact})" if known > 0 else ""
 
 
 def _undefined_blocks(ds: xr.Dataset, body: str) -> str:
     unknown = ds["damage"].sel(body=body).isnull().any("contact").values
-    names = ds["block"].values
     if np.isnan(ds["overrollings"].sel(body=body).values[unknown]).all():
         return "give guide_overrollings_per_hour, or guide_overrollings of each block"
-    listed = ", ".join(
-        f"'{name}' ({REGIMES[int(r)]})" for name, r in zip(names[unknown], ds["regime"].values[unknown], strict=True)
-    )
-    return f"no stress in {listed}"
+    blocks = zip(ds["block"].values[unknown], ds["regime"].values[unknown], strict=True)
+    listed = [f"'{name}' ({REGIME_LABELS[int(code)]})" for name, code in blocks]
+    return f"no stress in {listing(listed)}"
 
 
 def _life(value: float) -> str:

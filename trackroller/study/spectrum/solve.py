@@ -16,7 +16,7 @@ import xarray as xr
 from trackroller.damage import fatigue, miner
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.materials import load_database
-from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import to_table
 from trackroller.roller.record import material_values, plain_inputs
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
@@ -49,8 +49,8 @@ def solve_spectrum(
     xarray.Dataset
         Dimensions block, contact and body, and probability where a material gives scatter. Overrollings per shift, peak
         stress [MPa], damage per shift [1], life in shifts of each track and to the first failure of each body. A block
-        that cannot be solved makes the lives that depend on it NaN; `regime` states why. A contact that lifts off takes
-        no damage in that block. The life of the guide is NaN where its overrollings are not known.
+        that cannot be solved, or in which a contact lifts off, makes the lives that depend on it NaN; `regime` states
+        why. The life of the guide is NaN where its overrollings are not known.
 
     Notes
     -----
@@ -66,23 +66,6 @@ def solve_spectrum(
     options = {key: value for key, value in spectrum.options.items() if key != "life_rule"}
     solved = solve_cases(cases, outputs=("forces", "peak_stress"), database=database, **options)
     return _damage(spectrum, solved, database)
-
-
-def running_cycles(overrollings: np.ndarray, stress: np.ndarray, regime: np.ndarray) -> np.ndarray:
-    """Return the cycles of each track, (block, contact, body) [1]; 0 for a contact that has lifted off.
-
-    Parameters
-    ----------
-    overrollings : numpy.ndarray, shape (block, body)
-        Overrollings per shift [1].
-    stress : numpy.ndarray, shape (block, contact, body)
-        Peak stress [MPa]; NaN where there is none.
-    regime : numpy.ndarray of int, shape (block,)
-        Index into `REGIMES`.
-    """
-    unknown = np.isnan(stress)
-    lifted = (regime == REGIMES.index("lift_off"))[:, None, None] & unknown & ~unknown[:, ::-1, :]
-    return np.where(lifted, 0.0, overrollings[:, None, :])
 
 
 def damage_per_shift(
@@ -113,7 +96,7 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
     """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
     stress = solved["peak_stress"].transpose("case", "contact", "body").values
     overrollings = overrollings_per_shift(spectrum)
-    cycles = running_cycles(overrollings, stress, solved["regime"].values)
+    cycles = overrollings[:, None, :]
     case = spectrum.blocks[0].case
     bodies = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
     rule = spectrum.options.get("life_rule", "elementary")
