@@ -19,10 +19,12 @@ from typer.testing import CliRunner
 import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.errors import InputError
+from trackroller.materials import builtin_database
 from trackroller.report.pages.sheet import render
 from trackroller.report.pages.sheet_facts import collect
 from trackroller.report.pages.sheet_text import as_json
 from trackroller.report.words.flags import flags_of
+from trackroller.roller.dataset import validity_bit
 from trackroller.roller.limits import limits
 
 SCATTER = {"like": "PA6", "name": "PA6 with scatter", "scatter_in_cycles": 4.0}
@@ -114,6 +116,21 @@ def test_flags_name_the_body_they_hold_for(facts):
     assert "fatigue limit of the guide" in plastic["deep_life"]  # a steel guide under a plastic roller
     assert "static" in {flag.name for flag in facts["overloaded"].flags}
     assert all(flag.remedy for fact in facts.values() for flag in fact.flags)
+
+
+def test_deep_life_is_flagged_where_the_worse_contact_stays_below_the_fatigue_limit():
+    """The life of a body is that of its worse contact, so a case with one contact above the limit has no deep life."""
+    found = set()
+    for radial, axial in ((-60, 0), (-20, 2), (-200, 30), (-200, 60)):
+        case = tr.Case(radial_force=radial, axial_force=axial, motor_force=0)
+        ds = solve_sliding(case, ("forces", "peak_stress", "life"))
+        for body in ("roller", "guide"):
+            limit = builtin_database().material("1.7225-normalised").fatigue_limit
+            stress = ds.peak_stress.sel(body=body).values
+            flagged = bool(int(ds.validity_body.sel(body=body)) & validity_bit("deep_life"))
+            assert flagged == (stress.max() < limit)
+            found.add((flagged, bool((stress < limit).any())))
+    assert found >= {(True, True), (False, True)}
 
 
 def test_friction_energy_of_full_sliding_is_flagged_and_that_of_the_exact_theory_is_not():

@@ -125,7 +125,7 @@ VALIDITY_BITS = {
     "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, or, after lift-off, without "
     "the axial force: the wedge may lock, and the slightest axial force lifts a contact",
     "large_slip": "longitudinal creepage above 10 %: friction heat and wear decide",
-    "deep_life": "peak stress below the fatigue limit: the life depends on life_rule",
+    "deep_life": "peak stress of the worse contact below the fatigue limit: the life depends on life_rule",
     "split_pole": "the slip of the sliding model vanishes away from its spin pole, or twice in a patch: there the "
     "stress of the model grows without bound, as a logarithm; use kalker",
     "steep_friction": "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip speed "

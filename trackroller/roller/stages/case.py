@@ -116,6 +116,6 @@ def validity(table: CaseTable, block: Block) -> None:
         if "peak_stress" in v:
             knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)
             warn("static", np.any(v["peak_stress"] > strength[:, None, :], axis=1))
-            warn("deep_life", np.any(v["peak_stress"] < knee[:, None, :], axis=1))
+            warn("deep_life", np.all(v["peak_stress"] < knee[:, None, :], axis=1))  # the worse contact sets the life
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]
