@@ -125,6 +125,10 @@ def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
     assert "of 2,000 cases are shown" in content["sampled"]
     front = np.flatnonzero(pareto_rows(ds, 2_000))
     assert len(front) and set(front) <= set(rows)
+    for name in ("axial_force", "roller_life_hours"):
+        values = ds[name].values[np.isfinite(ds[name].values) & (ds["regime"].values == 0)]
+        shown = ds[name].values[rows.astype(int)]
+        assert {values.min(), values.max()} <= set(shown.tolist())
     assert explorer(StudyView.of(sampled_study(40)))["sampled"] == ""
 
 

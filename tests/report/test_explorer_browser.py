@@ -504,16 +504,16 @@ def test_a_hundred_thousand_rows_are_all_there(browser, place):
 
 @pytest.mark.long
 def test_a_larger_study_shows_a_stated_sample_with_its_own_pareto_set(browser, place):
-    """Of 210,000 cases at most 200,000 are shown: rare states, and the sets that `pareto` finds for its goals."""
-    ds = as_table(sampled_study(210_000))
+    """Of 60,000 cases at most 50,000 are shown: rare states, and the sets that `pareto` finds for its goals."""
+    ds = as_table(sampled_study(60_000))
     goals = {"roller_life_hours": "max", "roller_peak_stress": "min"}
     told = yaml.safe_load(ds.attrs["study"]) | {"pareto": goals}
     ds = ds.assign_attrs(study=yaml.safe_dump(told))
     page = browser.open(written(ds, place, "sampled"))
     said = page.run("document.querySelector('#explore p').textContent")
     view, rows = StudyView.of(ds), page.run("trackroller.selected()")
-    assert said.startswith(f"{len(rows):,} of 210,000 cases are shown: a sample by regime and validity")
-    assert 199_900 < len(rows) <= 200_000 and len(rows) == shown(page)[0] == len(set(rows)) and max(rows) < 210_000
+    assert said.startswith(f"{len(rows):,} of 60,000 cases are shown: a sample by regime and validity")
+    assert 49_900 < len(rows) <= 50_000 and len(rows) == shown(page)[0] == len(set(rows)) and max(rows) < 60_000
     assert shown(page)[1] == view.valid[rows].sum()
     for regime in np.unique(view.regime):
         share = (view.regime == regime).mean()

@@ -22,7 +22,7 @@ from trackroller.errors import InputError
 from trackroller.files import write_text
 from trackroller.report.explorer.pack import pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
-from trackroller.report.explorer.sample import sample_rows
+from trackroller.report.explorer.sample import extreme_rows, sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count
 from trackroller.report.words.pareto import goal_heading
@@ -49,7 +49,9 @@ def explorer(view: StudyView) -> dict[str, Any]:
     settings, more = solve_inputs(ds, view, {c.name: c for c in columns})
     columns += more
     state = next(c for c in columns if c.name == "state").values
-    rows, cases = sample_rows(state, pareto_rows(ds, len(state))), len(state)
+    cases = len(state)
+    kept = pareto_rows(ds, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
+    rows = sample_rows(state, kept)
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
         columns.append(Column("row", "Row", "", "row", rows.astype(float)))
@@ -70,13 +72,17 @@ def explorer(view: StudyView) -> dict[str, Any]:
         "points": design_points(ds, view.analysis),
         "columns": packed,
     }
-    said = f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, all cases of rare"
+    said = (
+        f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, with all cases of "
+        "rare states, the smallest and the largest value of every quantity in every state, and the Pareto set of the "
+        "study's goals. Counts and shares are those of the sample."
+    )
     return {
         "header": _json(header),
         "rows": markupsafe.Markup(block),
         "script": markupsafe.Markup(asset("explorer.js")),
         "style": markupsafe.Markup(asset("explorer.css")),
-        "sampled": f"{said} states, and the Pareto set of the study's goals." if len(rows) < cases else "",
+        "sampled": said if len(rows) < cases else "",
     }
 
 

@@ -1,10 +1,12 @@
-"""A sample of a very large study that keeps every regime and the Pareto set of the study's own goals."""
+"""A sample of a large study that keeps every state, every extreme and the Pareto set of the study's own goals."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
-MOST_ROWS = 200_000  # cases that a page shows
+MOST_ROWS = 50_000  # cases that a page shows: 4 to 5 MB, which can be sent by mail and open in three seconds
 RARE = 1_000  # states with at most so many cases keep all of them
 
 
@@ -38,3 +40,25 @@ def sample_rows(state: np.ndarray, keep: np.ndarray, most: int = MOST_ROWS, seed
             share = min(cases, max(RARE, left * cases // rest))
             chosen[rng.choice(rows, int(share), replace=False)] = True
     return np.flatnonzero(chosen)
+
+
+def extreme_rows(state: np.ndarray, columns: Iterable[np.ndarray]) -> np.ndarray:
+    """Mark the cases with the smallest and the largest value of each column in each state.
+
+    Parameters
+    ----------
+    state : state of each case, shape (n,)
+    columns : numbers, shape (n,) each; values that are not finite do not count
+
+    Returns
+    -------
+    Shape (n,) bool.
+    """
+    marked = np.zeros(len(state), dtype=bool)
+    groups = [np.flatnonzero(state == one) for one in np.unique(state)]
+    for values in columns:
+        for rows in groups:
+            known = rows[np.isfinite(values[rows])]
+            if known.size:
+                marked[[known[np.argmin(values[known])], known[np.argmax(values[known])]]] = True
+    return marked
