@@ -283,3 +283,20 @@ def test_the_sentences_of_a_solved_study_say_where_sliding_is_good_enough(own):
     with xr.open_dataset(own[0]) as ds:
         words = comparison.sentences(ladder.pairs(StudyView.of(ds)))
     assert any(w.startswith("The sliding model, free rolling: good enough") for w in words)
+
+
+def test_the_table_of_the_exact_theory_is_compared_like_any_other_model(tmp_path):
+    """Its section stands in the report; full sliding is not judged by an adhesion area that it does not have."""
+    factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "axial_force": {"values": [0, 10, 200]}}
+    ds = xr.load_dataset(study(tmp_path, factors, {"motor_force": 0}, ["sliding", "kalker_table", "kalker"]))
+    paired = ladder.pairs(StudyView.of(ds))
+    rolls = int(((ds["regime"] == 0).all("contact_model")).sum())
+    said = " ".join(comparison.sentences(paired))
+    assert f"{rolls} with sliding and {rolls} with kalker_table" in said and 0 < rolls < paired.sizes["design"]
+    assert "The table of the exact theory is within 5 % of kalker" in said
+    stick = ladder.errors(paired)["stick"]
+    assert stick.sel(contact_model="sliding").isnull().all() and stick.sel(contact_model="kalker_table").notnull().any()
+    rows = [row[0] for row in comparison.report_section(StudyView.of(ds))["tables"][0].rows]
+    assert any("kalker_table: adhesion" in row for row in rows) and not any("sliding: adhesion" in row for row in rows)
+    with style.look():
+        assert {drawn[1].name for draw in drawers(StudyView.of(ds)) if (drawn := draw())} >= FIGURES

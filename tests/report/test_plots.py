@@ -30,7 +30,7 @@ from trackroller.report.figures.loads import forces_against_axial, stress_agains
 from trackroller.report.figures.maps import regime_map
 from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.study import OF_CASES, draw_all
-from trackroller.report.numbers import level_text, number
+from trackroller.report.numbers import level_text, number, rounded
 from trackroller.report.words.levels import held_words
 
 ALL = {
@@ -336,3 +336,19 @@ def test_figures_rank_factors_by_the_indices_of_the_tables_else_by_the_study_fil
     with style.look():
         plain, coloured = (by_factor(StudyView.of(ds, s))[1].caption for s in (sens, None))
     assert "each level of axial force" in plain and "each level of material pair" in coloured
+
+
+def test_numbers_are_rounded_once():
+    """Rounding 288,549 to four figures and then to three gives 288,000; the nearest is 289,000."""
+    assert (rounded(288_549), number(288_549), rounded(288_549, 4)) == ("289,000", "289,000", "288,500")
+    for value in np.random.default_rng(1).uniform(0, 1, 2000) * 10.0 ** np.arange(-6, 14).repeat(100):
+        for figures in (2, 3, 4):
+            text = rounded(value, figures).translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")).replace(",", "")
+            mantissa, _, power = text.partition("·10")
+            assert float(f"{mantissa}e{power or 0}") == pytest.approx(float(f"{value:.{figures}g}"), rel=1e-12)
+    assert (rounded(9999.6), rounded(-0.0), rounded(0.0009999), rounded(99999, 2)) == (
+        "10,000",
+        "0",
+        "0.001",
+        "100,000",
+    )

@@ -17,36 +17,36 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 BEYOND = "beyond the S-N data"
 
 
-def number(value: float) -> str:
-    """Write a number in at most four figures.
-
-    Thousands are written as 12,300 and large numbers as 1.2·10⁹.
+def number(value: float, figures: int = 0) -> str:
+    """Write a number, rounded once: 12,300 for thousands, 1.2·10⁹ for large numbers.
 
     Parameters
     ----------
     value : any float; NaN becomes a dash and infinity its sign
+    figures : significant figures; 0 for four, but three from 10,000 on and below 0.001
 
     Examples
     --------
-    >>> number(12345.0), number(0.25), number(-7.0)
-    ('12,300', '0.25', '−7')
+    >>> number(12345.0), number(0.25), number(-7.0), number(288549.0, 4)
+    ('12,300', '0.25', '−7', '288,500')
     """
     if math.isnan(value):
         return "–"
     if math.isinf(value):
         return "∞" if value > 0 else "−∞"
+    small = 1e-3 <= abs(value) < 1e4 or value == 0
+    figures = figures or (4 if small else 3)
+    value = float(f"{value:.{figures}g}") + 0.0  # -0 is 0
     size = abs(value)
     if size >= 1e7 or (0 < size < 1e-3):
-        mantissa, exponent = f"{value:.2e}".split("e")
+        mantissa, exponent = f"{value:e}".split("e")
         return f"{float(mantissa):g}·10{str(int(exponent)).translate(_RAISED)}".replace("-", "−")
-    if size >= 1e4:
-        return f"{float(f'{value:.3g}'):,.0f}".replace("-", "−")
-    return f"{value:.4g}".replace("-", "−")
+    return (f"{value:,.0f}" if size >= 1e4 else f"{value:.10g}").replace("-", "−")
 
 
 def rounded(value: float, figures: int = 3) -> str:
     """Return a number as text, rounded to `figures` significant figures."""
-    return number(float(f"{value:.{figures}g}"))
+    return number(value, figures)
 
 
 def near(value: float, span: float) -> str:

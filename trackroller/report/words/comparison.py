@@ -11,13 +11,13 @@ import xarray as xr
 from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
 from trackroller.analysis.groups import DRIVE, Groups, drives, groups
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import capital, long_name, percent
+from trackroller.report.numbers import capital, listing, long_name, percent
 from trackroller.report.tables.table import Table
 from trackroller.report.words.levels import group_texts, span
 
 FRICTION = "friction_coefficient"
 DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # quantities that `pairs` computes from the inputs
-NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM"}
+NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM", "kalker_table": "The table of the exact theory"}
 MOST = 0.9  # a level is good enough if this share of its designs is
 FLAT = 0.1  # a factor whose levels differ less in the share of good designs is not worth a sentence
 FEWEST = 3  # smallest number of designs, rolling in both models, for a sentence
@@ -44,10 +44,13 @@ def overview(paired: xr.Dataset) -> str:
             f"The contact models cannot be compared: no design was solved with {reference} and another model. "
             "A grid, an inner/outer array or a table has such pairs; a sample that draws the model has none."
         )
+    rolls = paired["regime"] == 0
+    both = [(str(m), int((rolls.sel(contact_model=m) & rolls[-1]).sum())) for m in paired["contact_model"].values[:-1]]
+    told = listing([f"{count} with {model}" for model, count in both])
     return (
         f"Each cheaper model is compared with {_exact(reference)} in {_designs(number)} that differ in nothing but the "
-        f"model, where both roll. A model is good enough at a level of a factor if 9 of 10 designs there err by "
-        f"{percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
+        f"model. Errors count where both models roll: {told}. A model is good enough at a level of a factor if 9 of 10 "
+        f"designs there err by {percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
     )
 
 
@@ -60,8 +63,8 @@ def short(paired: xr.Dataset) -> list[str]:
     for model in map(str, found["contact_model"].values):
         one = found.sel(contact_model=model)
         if _compared(one) < FEWEST:
-            rolls = f"{_compared(one) or 'none'} of {_designs(paired.sizes['design'])} rolls"
-            said.append(f"{NAMES[model]}: too little to compare, for {rolls}.")
+            rolls = f"{_compared(one) or 'no'} design{'s' * (_compared(one) != 1)} of {paired.sizes['design']}"
+            said.append(f"{NAMES[model]}: too little to compare, because both models roll in {rolls}.")
             continue
         parts = [
             f"{q.words.split(' (')[0]} in {percent(_share(one[q.name].values))}"
@@ -141,7 +144,7 @@ def _sentence(one: xr.Dataset, along: Groups, who: str) -> str:
         told = f"{q.words} {where} ({_range(_rolling(one[q.name]))})".replace("  ", " ")
         clauses["good enough for" if where else "not good enough for"].append(told)
     said = "; ".join(f"{head} {', '.join(told)}" for head, told in clauses.items() if told)
-    return f"{who}: {said or 'nothing to compare, for no case rolls'}."
+    return f"{who}: {said or 'nothing to compare, because no design rolls'}."
 
 
 def _range(e: np.ndarray) -> str:
