@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from trackroller.damage import bearing, catalogue, fatigue, rating, static, verdict
-from trackroller.damage.limit import Limit, declarations
+from trackroller.damage import bearing, catalogue, fatigue, rating, shakedown, static, verdict
+from trackroller.damage.limit import TRACTIONS, Limit, declarations
 
-_FILES = (static, fatigue, rating, bearing, catalogue)
+_FILES = (static, fatigue, rating, bearing, catalogue, shakedown)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 
@@ -15,6 +15,11 @@ def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
     """Return the limits that groups of outputs ask for; the group `limits` without another one asks for all."""
     named = tuple(limit for limit in LIMITS.values() if limit.group in outputs)
     return tuple(LIMITS.values()) if verdict.GROUP in outputs and not named else named
+
+
+def of_patches(outputs: Collection[str]) -> tuple[Limit, ...]:
+    """Return the limits asked for that need the tractions of each case."""
+    return tuple(limit for limit in asked(outputs) if TRACTIONS in limit.needs)
 
 
 def declared() -> str:

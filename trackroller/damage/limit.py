@@ -15,12 +15,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trackroller.damage.histories import Tractions
 from trackroller.damage.mapping import MappingField
 from trackroller.parameters import MAPPING_FIELDS, Parameter
 from trackroller.parameters.variables import Variable
 
 BODIES = ("roller", "guide")
-SN_SCATTER = "S-N scatter"
+SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
 Results = dict[str, np.ndarray]
 
 
@@ -42,6 +43,10 @@ def roller_overrollings(velocity: ArrayLike, rolling_radius: ArrayLike) -> np.nd
     return np.asarray(velocity) * 60e3 / (2 * np.pi * np.asarray(rolling_radius))
 
 
+def _no_tractions() -> Tractions:
+    raise LookupError("a limit without the need 'tractions' asks for them")
+
+
 @dataclass(frozen=True)
 class Solved:
     """Solved rollers as a limit receives them; every array has the case as first axis.
@@ -59,6 +64,8 @@ class Solved:
         r_A, (n,) [mm].
     options : mapping
         Options of the solution by name, such as `life_rule` and `failure_probability`.
+    tractions : callable
+        Function that returns the tractions of the patches; limits that need "tractions" may call it.
     """
 
     cases: Mapping[str, np.ndarray]
@@ -66,6 +73,7 @@ class Solved:
     values: Mapping[str, np.ndarray]
     rolling_radius: np.ndarray
     options: Mapping[str, Any] = field(default_factory=dict)
+    tractions: Callable[[], Tractions] = _no_tractions
 
     @property
     def overrollings_per_hour(self) -> np.ndarray:
@@ -106,7 +114,7 @@ class Limit:
     verdict : callable
         Function of a `Solved` and of the results that returns a `Verdict`.
     needs : tuple of str
-        Groups of the solver that have to be computed first: "peak_stress", "friction_work", "tractions".
+        What has to be computed first: the groups "peak_stress" and "friction_work" of the solver, and `TRACTIONS`.
     results : tuple of Variable
         What `evaluate` returns.
     parameters : tuple of Parameter

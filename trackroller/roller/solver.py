@@ -11,7 +11,7 @@ from numba.core.registry import cpu_target
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.settings import converged_up_to
-from trackroller.damage import asked, verdict
+from trackroller.damage import asked, of_patches, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS
@@ -210,7 +210,8 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
 def _solve_window(table: CaseTable, options: Options) -> Block:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
     rows = number = np.arange(len(table))
-    if options.shortcuts and len(table) > 1:
+    # limits of patches depend on the speed and on all values of the materials
+    if options.shortcuts and len(table) > 1 and not of_patches(options.outputs):
         rows, number = requirements.distinct_mechanics(table)
     distinct = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
     block = distinct.take(number)
@@ -259,11 +260,12 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     stages_stress.stop(results, options)
     if wanted & {"peak_stress", "subsurface"}:
         stages_stress.peak_stress(results, options)
-    if "tractions" in wanted:
+    if "tractions" in options.outputs:
         stages.tractions(results, options)
     if "subsurface" in wanted:
         stages_stress.subsurface(results, options)
     stages.settle(results)
+    stages_case.patch_limits(results, options)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(len(table))], dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
 

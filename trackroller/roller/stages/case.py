@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+import dataclasses
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, verdict
-from trackroller.damage.limit import Solved, lacks
+from trackroller.damage import LIMITS, asked, of_patches, verdict
+from trackroller.damage.histories import Tractions
+from trackroller.damage.limit import TRACTIONS, Solved, lacks
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
 from trackroller.roller.geometry import rolling_radius
+from trackroller.roller.stages.scene import Results, surface_tractions
 
 if TYPE_CHECKING:
     from trackroller.roller.blocks import Block
@@ -37,7 +39,7 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 
 def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> Solved:
     """Return cases, materials and results as the limits receive them."""
-    names = [field.name for field in fields(table.roller) if field.name not in ("name", "guesses")]
+    names = [field.name for field in dataclasses.fields(table.roller) if field.name not in ("name", "guesses")]
     return Solved(
         {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
         {name: np.stack([getattr(body, name) for body in (table.roller, table.guide)], axis=1) for name in names},
@@ -51,10 +53,25 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None
     """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
     wanted, solved = asked(options.outputs), solved_of(table, v, options)
     for limit in wanted:
-        v |= limit.evaluate(solved)
+        if TRACTIONS not in limit.needs:  # the others are there: `patch_limits`
+            v |= limit.evaluate(solved)
     if verdict.GROUP in options.outputs:
         names = list(LIMITS)
         v |= verdict.verdict(solved, wanted, [names.index(limit.name) for limit in wanted], len(names))
+
+
+def patch_limits(results: Results, options: Options) -> None:
+    """Add the results of the limits that need the tractions of the patches."""
+    scene = results.scene
+
+    def fields() -> Tractions:
+        t = surface_tractions(results)
+        names = [field.name for field in dataclasses.fields(Tractions) if field.name != "mirrored"]
+        return Tractions(**{name: results.full(getattr(t, name)) for name in names}, mirrored=scene.mirror.symmetric)
+
+    solved = dataclasses.replace(solved_of(scene.table, results.values, options), tractions=fields)
+    for limit in of_patches(options.outputs):
+        results.values |= limit.evaluate(solved)
 
 
 def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
