@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy import fft
@@ -14,9 +15,13 @@ from scipy import fft
 from trackroller.halfspace import influence
 from trackroller.halfspace.stress import FRICTION_SIGNS
 
-PADDING = 0.5  # nodes beyond the patch along y over those of the patch, on each side
+PADDING = 0.25  # nodes beyond the patch along y over those of the patch, on each side
 # over the smaller semi-axis; the stresses that decide lie at 0.3 to 0.8, or under high friction at the surface
 DEPTHS = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.38, 0.45, 0.52, 0.6, 0.7, 0.85, 1.05, 1.3])
+
+# Parities of the stresses of loads q_x, q_y, p along x and y, in the order of `halfspace.stress.COMPONENTS`.
+_ODD_X = np.array([[-1, -1, -1, 1, -1, 1], [1, 1, 1, -1, 1, -1], [1, 1, 1, -1, 1, -1]])[:, :, None, None]
+_ODD_Y = np.array([[1, 1, 1, -1, -1, 1], [-1, -1, -1, 1, 1, -1], [1, 1, 1, -1, -1, 1]])[:, :, None, None]
 
 
 @dataclass(frozen=True)
@@ -56,11 +61,48 @@ class Tractions:
         return values
 
 
-def _padded(axis: np.ndarray, field: np.ndarray, more: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return an axis of y with `more` nodes on both sides, and the tractions (3, ny, nx) with zeros there."""
-    step = (axis[-1] - axis[0]) / (axis.size - 1)
-    longer = axis[0] + step * np.arange(-more, axis.size + more)
-    return longer, np.pad(field, [(0, 0), (more, more), (0, 0)])
+def _grown(quarter: np.ndarray) -> np.ndarray:
+    """Return kernels at all offsets from those at offsets >= 0, (load, component, y, x), by their parities."""
+    left = np.concatenate([(_ODD_X * quarter)[..., :0:-1], quarter], axis=-1)
+    return np.concatenate([(_ODD_Y * left)[..., :0:-1, :], left], axis=-2)
+
+
+@lru_cache(maxsize=4)
+def _spectra(sides: tuple[float, float], nodes: tuple[int, int], poisson_ratio: float) -> np.ndarray:
+    """Return the Fourier transforms of the stresses of hat loads on the planes `DEPTHS`.
+
+    Patches of equal shape share them: they depend on ratios of lengths alone.
+
+    Parameters
+    ----------
+    sides : tuple of float
+        Grid spacings along x and y over the larger of the two [1].
+    nodes : tuple of int
+        Loaded nodes along x and y.
+    poisson_ratio : float
+        nu [1].
+
+    Returns
+    -------
+    numpy.ndarray
+        (depth, load, component, y, x), complex.
+    """
+    (gx, gy), (nx, ny) = sides, nodes
+    size = nx, ny + int(PADDING * ny)
+    small = 0.5 * min(nx * gx, ny * gy)
+    at_x, at_y = (side * np.arange(-1, n + 1) for side, n in zip(sides, size, strict=True))
+    out = []
+    for depth in DEPTHS * small:
+        table = influence.corner_table(at_x, at_y, depth, poisson_ratio).reshape(3, 6, at_y.size, at_x.size)
+        kernels = _grown(np.diff(np.diff(table, n=2, axis=2), n=2, axis=3) / (gx * gy))
+        out.append(fft.rfft2(kernels, _lengths(nodes)))
+    return np.array(out)
+
+
+def _lengths(nodes: tuple[int, int]) -> tuple[int, int]:
+    """Return lengths along y and x for a convolution whose wrapped ends are cut off."""
+    nx, ny = nodes
+    return fft.next_fast_len(2 * (ny + int(PADDING * ny)) - 1, real=True), fft.next_fast_len(2 * nx - 1, real=True)
 
 
 def planes(tractions: Tractions, case: int, contact: int, poisson_ratio: np.ndarray) -> np.ndarray:
@@ -78,32 +120,28 @@ def planes(tractions: Tractions, case: int, contact: int, poisson_ratio: np.ndar
     Returns
     -------
     numpy.ndarray
-        Stresses (body, depth, y, x, component) in the order of `halfspace.stress.COMPONENTS` [MPa].
+        Stresses (body, depth, component, y, x) in the order of `halfspace.stress.COMPONENTS` [MPa]. Along y the planes
+        have `PADDING` times the nodes of the patch more on each side.
 
     Notes
     -----
-    As `halfspace.stress.stress_on_grid`, but pressure and shear share the kernels, and bodies of equal nu, too.
+    The stresses are those of `halfspace.stress.stress_on_grid`. Patches of equal shape share the kernels, bodies of
+    equal nu the stresses of pressure and shear.
     """
     t, at = tractions, (case, contact)
-    x, y = t.x[at], t.y[at]
-    field = np.stack([t.shear_lateral[at], t.shear_rolling[at], t.pressure[at]])
-    y, field = _padded(y, field, int(PADDING * y.size))
-    shape = (fft.next_fast_len(3 * y.size - 2, real=True), fft.next_fast_len(3 * x.size - 2, real=True))
-    loads = fft.rfft2(field, shape)
-    steps = (x[-1] - x[0]) / (x.size - 1), (y[-1] - y[0]) / (y.size - 1)
-    small = min(0.5 * (x.size * steps[0]), 0.5 * (t.y.shape[-1] * steps[1]))
-    out = np.empty((2, DEPTHS.size, y.size, x.size, 6))
+    nodes = t.x.shape[-1], t.y.shape[-1]
+    steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]
+    sides = tuple(float(round(step / max(steps), 12)) for step in steps)
+    lengths, more = _lengths(nodes), int(PADDING * nodes[1])
+    loads = fft.rfft2(np.stack([t.shear_lateral[at], t.shear_rolling[at], t.pressure[at]]), lengths)
+    rows, columns = slice(nodes[1] - 1, 2 * (nodes[1] + more) - 1), slice(nodes[0] - 1, 2 * nodes[0] - 1)
+    bodies: list[np.ndarray] = []
     known: dict[float, tuple[np.ndarray, ...]] = {}
-    for i, depth in enumerate(DEPTHS * small):
-        known.clear()
-        for body, sign in enumerate(FRICTION_SIGNS):
-            nu = float(poisson_ratio[body])
-            if nu not in known:
-                kernels = influence.hat_influence(*steps, x.size, y.size, float(depth), nu)
-                spectra = [load * fft.rfft2(kernel, shape) for load, kernel in zip(loads, kernels, strict=True)]
-                sides = (slice(None), slice(y.size - 1, 2 * y.size - 1), slice(x.size - 1, 2 * x.size - 1))
-                both = (spectra[0] + spectra[1], spectra[2])
-                known[nu] = tuple(fft.irfft2(part, shape)[sides] for part in both)
-            sheared, pressed = known[nu]
-            out[body, i] = np.moveaxis(pressed + sign * sheared, 0, -1)
-    return out
+    for sign, nu in zip(FRICTION_SIGNS, map(float, poisson_ratio), strict=True):
+        if nu not in known:
+            spectra = _spectra((sides[0], sides[1]), nodes, nu)
+            sheared = np.einsum("lyx,dlcyx->dcyx", loads[:2], spectra[:, :2])
+            pressed = loads[2] * spectra[:, 2]
+            known[nu] = tuple(fft.irfft2(part, lengths)[..., rows, columns] for part in (sheared, pressed))
+        bodies.append(known[nu][1] + sign * known[nu][0])
+    return np.stack(bodies)

@@ -25,59 +25,66 @@ def relieved(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Parameters
     ----------
     stress : numpy.ndarray
-        Stresses in the order of `halfspace.stress.COMPONENTS`, (..., 6) [MPa].
+        Stresses in the order of `halfspace.stress.COMPONENTS`, (6, ...) [MPa].
 
     Returns
     -------
     tuple of numpy.ndarray
-        Coordinates u, (..., 3), and h, (...), with J2 = |u|^2 + h; a residual stress shifts u by any vector.
+        Coordinates u, (3, ...), and h, (...), with J2 = |u|^2 + h; a residual stress shifts u by any vector.
     """
-    x, y, z, xy, yz, zx = np.moveaxis(stress, -1, 0)
-    u = np.stack([(x - y) / 2.0, (2.0 * z - x - y) / np.sqrt(12.0), xy], axis=-1)
-    return u, yz**2 + zx**2
+    x, y, z, xy, yz, zx = stress
+    return np.stack([(x - y) / 2.0, (2.0 * z - x - y) / np.sqrt(12.0), xy]), yz**2 + zx**2
 
 
-def smallest_ball(points: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """Return the smallest possible largest |u - c|^2 + h over the centres c, for several sets of points at once.
+def smallest_ball(points: np.ndarray, height: np.ndarray) -> float:
+    """Return the smallest possible largest |u - c|^2 + h over the centres c.
 
     Parameters
     ----------
     points : numpy.ndarray
-        u, (m, p, d).
+        u, (d, p).
     height : numpy.ndarray
-        h >= 0, (m, p).
+        h >= 0, (p,).
 
     Returns
     -------
-    numpy.ndarray
-        The smallest maximum, (m,); at most `GAP` above the exact one.
+    float
+        The smallest maximum; at most `GAP` above the exact one.
 
     Notes
     -----
-    Frank and Wolfe's method with pairwise steps on the dual problem. The dual value is a lower bound, which ends it.
+    The ball of a few points grows by the farthest of all points until it holds them all. Its centre comes from Frank
+    and Wolfe's method with pairwise steps on the dual problem, whose value is a lower bound.
     """
-    rows, base = np.arange(len(points)), np.einsum("mpd,mpd->mp", points, points) + height
-    weights = np.zeros_like(height)
-    first = np.argmax(base, axis=1)
-    weights[rows, first] = 1.0
-    centre, best = points[rows, first].copy(), np.full(len(points), np.inf)
+    base = np.einsum("dp,dp->p", points, points) + height
+    used = [int(np.argmax(base))]
+    weights = np.ones(1)
+    while True:
+        centre, weights, dual = _centre(points[:, used], base[used], weights)
+        distance = base - 2.0 * (centre @ points) + centre @ centre
+        far = int(np.argmax(distance))
+        if distance[far] <= (1.0 + GAP) * dual or far in used:
+            return float(distance[far])
+        used.append(far)
+        weights = np.append(weights, 0.0)
+
+
+def _centre(points: np.ndarray, base: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return centre (d,), weights (p,) and dual value of the smallest ball of a few points (d, p)."""
+    between = points.T @ points
     for _ in range(STEPS):
-        distance = base - 2.0 * np.einsum("mpd,md->mp", points, centre)
-        far, near = np.argmax(distance, axis=1), np.argmin(np.where(weights > 0, distance, np.inf), axis=1)
-        own = np.einsum("md,md->m", centre, centre)
-        best = np.minimum(best, distance[rows, far] + own)
-        dual = np.einsum("mp,mp->m", weights, distance) + own
-        if np.all(best - dual <= GAP * best):
+        pull = between @ weights
+        distance, own = base - 2.0 * pull, float(weights @ pull)
+        far, near = int(np.argmax(distance)), int(np.argmin(np.where(weights > 0, distance, np.inf)))
+        dual = float(weights @ base) - own
+        if far == near or distance[far] + own <= (1.0 + 0.1 * GAP) * dual:
             break
-        step = points[rows, far] - points[rows, near]
-        length = np.einsum("md,md->m", step, step)
-        gain = distance[rows, far] - distance[rows, near]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.fmin(weights[rows, near], np.where(length > 0, gain / (2.0 * length), np.inf))
-        weights[rows, far] += share
-        weights[rows, near] -= share
-        centre += share[:, None] * step
-    return best
+        length = between[far, far] + between[near, near] - 2.0 * between[far, near]
+        share = min(weights[near], (distance[far] - distance[near]) / (2.0 * length))
+        weights = weights.copy()
+        weights[far] += share
+        weights[near] = 0.0 if share == weights[near] else weights[near] - share
+    return points @ weights, weights, dual
 
 
 def shakedown_shear(stress: np.ndarray) -> float:
@@ -86,18 +93,22 @@ def shakedown_shear(stress: np.ndarray) -> float:
     Parameters
     ----------
     stress : numpy.ndarray
-        Stresses on planes of constant depth, the surface first, (depth, y, x, 6) [MPa].
+        Stresses on planes of constant depth, the surface first, (depth, 6, y, x) [MPa].
 
     Returns
     -------
     float
         k [MPa]; the unloaded state counts as a point of every plane.
     """
-    u, height = relieved(stress.reshape(len(stress), -1, 6))
-    u[0] = 0.0
-    u = np.concatenate([u, np.zeros((len(u), 1, 3))], axis=1)
-    height = np.concatenate([height, np.zeros((len(u), 1))], axis=1)
-    return float(np.sqrt(np.max(smallest_ball(u, height))))
+    largest = float(np.max(stress[0, 4] ** 2 + stress[0, 5] ** 2))
+    parts = [relieved(np.append(plane.reshape(6, -1), np.zeros((6, 1)), axis=1)) for plane in stress[1:]]
+    # No ball is larger than the one around the middle of its points, so most planes need no ball.
+    middles = [0.5 * (u.max(axis=1, keepdims=True) + u.min(axis=1, keepdims=True)) for u, _ in parts]
+    bounds = [float(np.max(np.sum((u - c) ** 2, axis=0) + h)) for (u, h), c in zip(parts, middles, strict=True)]
+    for i in np.argsort(bounds)[::-1]:
+        if bounds[i] > largest:
+            largest = max(largest, smallest_ball(*parts[i]))
+    return float(np.sqrt(largest))
 
 
 def shears(tractions: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
