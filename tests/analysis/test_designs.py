@@ -11,10 +11,12 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.analysis.designs import Designs, lift_off_margin, slip_margin
+from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.designs import best_table
 from trackroller.report.words.designs import best_design
+from trackroller.report.words.pareto import pareto_sentence
 from trackroller.roller.limits import limits
 from trackroller.study.file.load import parse_study
 
@@ -82,6 +84,7 @@ def solved(**changes):
 
 
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")
+LIFE = "pair_life_hours"
 CHOICES = ["roller_profile_radius", "roller_material"]
 
 
@@ -229,3 +232,65 @@ def test_a_study_without_choices_has_one_design():
     assert said[0].text.startswith("The study has one design: roller and guide last") and "Next" not in said[-1].text
     assert said[0].values["worst"] == frame["pair_life_hours"].min()
     assert isinstance(ds, xr.Dataset) and best_table(StudyView.of(ds)).heads == ["", "All conditions"]
+
+
+def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
+    """Goals by a group-by on raw rows, the set by brute force; the number of valid conditions is a goal, too."""
+    ds, frame = solved()
+    frame["pressure"] = ds["max_pressure"].max("contact").values
+    valid = frame[frame["valid"]].groupby(CHOICES)
+    expected = valid.agg(life=("pair_life_hours", "min"), pressure=("pressure", "max"), valid=("valid", "sum"))
+    view = StudyView.of(ds)
+    front = study_pareto(view)
+    assert front.attrs["objectives"] == "pair_life_hours max, max_pressure min"
+    materials = [pair.split(" / ")[0] for pair in front["material_pair"].values]
+    found = pd.DataFrame(
+        {
+            "life": front["pair_life_hours"].values,
+            "pressure": front["max_pressure"].values,
+            "valid": front["valid_in"].values,
+        },
+        index=pd.MultiIndex.from_arrays([front["roller_profile_radius"].values, materials]),
+    )
+    for name in expected:
+        np.testing.assert_allclose(found[name].sort_index(), expected[name].sort_index(), err_msg=name)
+    costs = found.to_numpy() * [-1, 1, -1]
+    beaten = [any((o <= c).all() and (o < c).any() for o in costs) for c in costs]
+    assert front["optimal"].values.tolist() == [int(not b) for b in beaten]
+    text = pareto_sentence(front, view).text
+    assert 1 < sum(front["optimal"].values) and len(expected) > 2
+    assert text.startswith(f"{sum(front['optimal'].values)} of {len(expected)} allowed designs are Pareto-optimal")
+    assert "each goal at the worst of the conditions" in text
+    ds, _ = solved(base={})
+    view = StudyView.of(ds)
+    assert "give `guide_overrollings_per_hour`" in pareto_sentence(study_pareto(view), view).text
+
+
+def test_a_condition_that_is_a_goal_is_no_condition():
+    ds, frame = solved(pareto={"pair_life_hours": "max", "axial_force": "max"})
+    front = study_pareto(StudyView.of(ds))
+    worst = frame[frame["valid"]].groupby([*CHOICES, "axial_force"]).pair_life_hours.min()
+    assert sorted(front["pair_life_hours"].values) == pytest.approx(sorted(worst))
+
+
+def test_a_sample_of_cases_has_no_pareto_set_of_designs():
+    factors = SAMPLE["factors"] | {"roller_profile_radius": {"uniform": [-8, -6.5]}}
+    ds, _ = solved(design="lhs", samples=40, factors=factors)
+    assert study_pareto(StudyView.of(ds)) is None
+    ds, _ = solved(design="lhs", samples=40, factors=factors, pareto={"pair_life_hours": "max", "max_pressure": "min"})
+    view = StudyView.of(ds)
+    text = pareto_sentence(study_pareto(view), view).text
+    assert "allowed cases" in text and "`design: inner_outer` compares designs" in text
+
+
+def test_equal_designs_tie_and_one_design_is_no_set():
+    light = {"guide_overrollings_per_hour": 600, "radial_force": -1, "motor_force": 0, "axial_force": 0}
+    same = {"axis_distance": {"values": [20, 22]}, "friction_coefficient": {"values": [0.0, 0.2]}}
+    goals = {"pair_life_hours": "max", "radial_force": "min"}
+    ds, _ = solved(base=light, factors=same, pareto=goals, life_rule="unlimited")
+    view = StudyView.of(ds)
+    text = pareto_sentence(study_pareto(view), view).text
+    assert text.startswith("2 of 2 allowed designs tie") and "no failure (beyond the S-N data)" in text
+    ds, _ = solved(factors={"friction_coefficient": {"values": [0.1, 0.2]}})
+    view = StudyView.of(ds)
+    assert pareto_sentence(study_pareto(view), view).text.startswith("One design is left, so there is no Pareto set")

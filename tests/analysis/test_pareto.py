@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from trackroller.analysis.pareto import pareto, pareto_mask, study_pareto
+from trackroller.analysis.pareto import pareto, pareto_mask
+from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.sensitivity import analyse_dataset
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
@@ -149,7 +150,7 @@ def test_design_points_are_compared_by_their_statistics():
     ds["friction_power"] = ("case", v**2 * (1 + a**2) * np.where(angle > 33, 0.8, 1.0), {"units": "W"})
     ds.attrs = {"study": study.merged()}
     sens = analyse_dataset(ds)
-    front = study_pareto(ds, sens)
+    front = study_pareto(StudyView.of(ds, sens))
     life, power = (ds[n].values.reshape(8, 50) for n in ("roller_life_hours", "friction_power"))
     table = [np.sort(life)[:, 4], power.mean(axis=1), (life >= 150).mean(axis=1), v.reshape(8, 50)[:, 0]]
     for name, values in zip(data["pareto"], table, strict=True):
@@ -161,7 +162,7 @@ def test_design_points_are_compared_by_their_statistics():
     told = {t.name: t for t in contents(StudyView.of(ds, sens))["decide"]}
     assert told["pareto"].heads[:3] == ["Design point", "B10 of life of the roller [h] ↑", told["pareto"].heads[2]]
     assert len(told["pareto"].rows) == optimal.sum() and "percentiles_friction_power" in told
-    assert study_pareto(ds) is None  # without an analysis there are no statistics
+    assert study_pareto(StudyView.of(ds)) is None  # without an analysis there are no statistics
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,8 @@ import yaml
 from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, sampled_study
 
-from trackroller.analysis.pareto import pareto, study_pareto
+from trackroller.analysis.pareto import pareto
+from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.page import write_explorer
@@ -222,7 +223,7 @@ def test_goals_that_are_statistics_compare_design_points(browser, place):
     assert page.run("trackroller.points()") == [] and page.complaints == []
     page.close()
     analyse(place / "robust" / "study.nc", place / "robust" / "sensitivity.nc")
-    front = study_pareto(ds, xr.load_dataset(place / "robust" / "sensitivity.nc"))
+    front = study_pareto(StudyView.of(ds, xr.load_dataset(place / "robust" / "sensitivity.nc")))
     best = np.flatnonzero(front["optimal"].values == 1)
     assert 1 < len(best) < front.sizes["row"] == 6
     page = browser.open(write_explorer(place / "robust"))

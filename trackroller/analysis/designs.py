@@ -209,6 +209,16 @@ class Designs:
         rows: np.ndarray = self.place == design
         return rows
 
+    def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
+        """Return the case of each design with the worst value among its valid cases, -1 without one.
+
+        Parameters
+        ----------
+        values : of the cases, shape (n,)
+        way : `max` if more is better, otherwise `min`
+        """
+        return self._least(values if way == "max" else -values, self.usable)
+
     @cached_property
     def _first(self) -> np.ndarray:
         """Return the row of the first case of each design."""

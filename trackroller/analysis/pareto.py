@@ -15,7 +15,7 @@ from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import names_in, statistic
-from trackroller.study.outputs import case_dims, read_study, regimes
+from trackroller.study.outputs import case_dims, regimes
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.ndarray | None = None) -> np.ndarray:
@@ -165,28 +165,6 @@ def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:
     return (named == found[0], found[0]) if len(found) > 1 else (np.ones(design.size, bool), "")
 
 
-def study_pareto(ds: xr.Dataset, sens: xr.Dataset | None = None) -> xr.Dataset | None:
-    """Find the Pareto set for the keys `pareto` and `constraints` of a study.
-
-    Parameters
-    ----------
-    ds : gathered study with its study file as attribute
-    sens : its analysis; only needed for the design points of an inner/outer design
-
-    Returns
-    -------
-    As `pareto`. Without the key `pareto`, the goals are those of `default_objectives`. None if the study has no
-    such goals. Of an inner/outer design as `pareto_of_points`, None without the key `pareto`.
-    """
-    study = read_study(ds)
-    if study.get("design", ds.attrs.get("design")) == "inner_outer":
-        return pareto_of_points(sens, study["pareto"]) if sens is not None and study.get("pareto") else None
-    goals = study.get("pareto") or default_objectives(ds)
-    if not goals:
-        return None
-    return pareto(ds, goals, study.get("constraints") or ())
-
-
 def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dataset:
     """Find the Pareto set of the design points of an inner/outer design.
 
@@ -243,7 +221,7 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
 
 
 def default_objectives(ds: xr.Dataset) -> dict[str, str]:
-    """Return the usual goals: longest life, and lowest friction power, friction energy or contact pressure.
+    """Return the usual goals: longest life of the pair, and lowest friction power, friction energy or contact pressure.
 
     Parameters
     ----------
@@ -254,8 +232,9 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
     Output -> `max` or `min`; empty if the study lacks one of the two goals.
     """
     found: dict[str, str] = {}
-    if "roller_life_hours" in ds and np.isfinite(ds["roller_life_hours"]).any():
-        found["roller_life_hours"] = "max"
+    lives = [n for n in ("pair_life_hours", "roller_life_hours") if n in ds and np.isfinite(ds[n]).any()]
+    if lives:
+        found[lives[0]] = "max"
     elif "life_cycles" in ds:
         found["roller_life_cycles"] = "max"
     for name, variable in (

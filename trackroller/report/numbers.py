@@ -15,6 +15,9 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 BEYOND = "beyond the S-N data"
+GUIDE_UNKNOWN = (
+    "the roller stands for the pair, because the guide's hours are unknown: give `guide_overrollings_per_hour`"
+)
 
 
 def number(value: float, figures: int = 0) -> str:

@@ -16,7 +16,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.columns import study_dims
-from trackroller.analysis.pareto import default_objectives, study_pareto
+from trackroller.analysis.pareto import default_objectives, pareto
+from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.files import write_text
@@ -69,7 +70,7 @@ def explorer(view: StudyView) -> dict[str, Any]:
         "goals": view.study.get("pareto") or default_objectives(ds),
         "constraints": list(view.study.get("constraints") or ()),
         "compared": view.held_level(MODEL) if MODEL in view.factors else "",
-        "points": design_points(ds, view.analysis),
+        "points": design_points(view),
         "columns": packed,
     }
     said = (
@@ -95,18 +96,20 @@ def _numbers(ds: xr.Dataset, view: StudyView) -> np.ndarray | None:
 
 
 def pareto_rows(ds: xr.Dataset, cases: int) -> np.ndarray:
-    """Mark the Pareto set of the study's own goals, shape (n,) bool; all False if the study has no goals."""
-    marked = np.zeros(cases, dtype=bool)
+    """Mark the cases that no other case beats in the study's goals, shape (n,) bool; all False without goals."""
+    marked, study = np.zeros(cases, dtype=bool), read_study(ds)
+    goals = study.get("pareto") or default_objectives(ds)
+    if not goals or study.get("design") == "inner_outer":
+        return marked
     try:
-        front = study_pareto(ds)
+        front = pareto(ds, goals, study.get("constraints") or ())
     except InputError:  # a result without the study file that its goals need
         return marked
-    if front is not None:
-        marked[front["row"].values[front["optimal"].values == 1]] = True
+    marked[front["row"].values[front["optimal"].values == 1]] = True
     return marked
 
 
-def design_points(ds: xr.Dataset, sens: xr.Dataset | None) -> dict[str, Any] | None:
+def design_points(view: StudyView) -> dict[str, Any] | None:
     """Return the design points of an inner/outer design by the study's own goals, which are statistics over scatter.
 
     Returns
@@ -114,11 +117,11 @@ def design_points(ds: xr.Dataset, sens: xr.Dataset | None) -> dict[str, Any] | N
     `goals` as in the study file; with an analysis also `factors`, and `labels` and `values` by name. None if the goals
     of the study are those of single cases.
     """
-    goals = read_study(ds).get("pareto") or {}
+    goals = view.study.get("pareto") or {}
     if not any(statistic(name)[0] for name in goals):
         return None
     try:
-        front = study_pareto(ds, sens)
+        front = study_pareto(view)
     except InputError:  # the analysis was made for other goals
         front = None
     if front is None:

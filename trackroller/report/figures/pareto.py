@@ -21,6 +21,10 @@ from trackroller.study.design.entries import OPTION_FACTORS
 _WAYS = {"max": "up", "min": "down"}
 
 
+def _judged(front: xr.Dataset) -> str:
+    return f" {capital(front.attrs['judged'])}." if front.attrs.get("judged") else ""
+
+
 def _given(front: xr.Dataset) -> str:
     """Warn where conditions of use are among the factors: a designer cannot choose their best value."""
     names = front.attrs["factors"].split(", ")
@@ -42,7 +46,7 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
     view : the study, for the validity and the deciding factor of the designs
     """
     goals = goals_of(front)
-    if not (front["optimal"].values == 1).any():
+    if not (front["optimal"].values == 1).any() or front.sizes["row"] < 2:
         return None
     others = goals[1:4]
     figure = style.new_figure(78)
@@ -57,14 +61,14 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
     limits = f" where {front.attrs['constraints']}" if front.attrs.get("constraints") else ""
     caption = (
         f"Pareto set for {wanted}; {front.sizes['row']:,} allowed {kind}s of {front.attrs['rows']:,}{limits}. Left "
-        f"out: {front.attrs['excluded']}.{_given(front)}"
+        f"out: {front.attrs['excluded']}.{_judged(front)}{_given(front)}"
     )
     return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, view).text)
 
 
 def _groups(front: xr.Dataset, view: StudyView | None, goal: str) -> list[tuple[str, np.ndarray]]:
     """Return the rows of the front by the factor that decides the goal; without one all stand together."""
-    if view is None or not view.factors or front.attrs.get("kind", "design") != "design":
+    if view is None or not view.factors or front.attrs.get("kind", "design") == "design point":
         return []
     allowed, rows = np.zeros(len(view.table), dtype=bool), front["row"].values
     allowed[rows] = True

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from trackroller.analysis.pareto import study_pareto
+from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
@@ -67,7 +67,7 @@ def _jobs(view: StudyView) -> Iterator[Draw]:
     """Yield the drawings of the cases: contact models side by side, the study's own figures, the Pareto front."""
     yield from drawers(view)
     yield from (partial(draw, view) for draw in OF_CASES)
-    if (front := study_pareto(view.data, view.analysis)) is not None:
+    if (front := study_pareto(view)) is not None:
         yield partial(pareto_front, front, view)
 
 

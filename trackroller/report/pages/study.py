@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller import parameters
-from trackroller.analysis.pareto import study_pareto
+from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import headline, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.files import write_text
@@ -104,7 +104,7 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     """Return the tables of the sections "decide", "why", "where the study ends" and "contact models"."""
     sens, error = view.analysis, friction_error(view)
     decide: list[Table | None] = [best_table(view)]
-    front = study_pareto(view.data, sens)
+    front = study_pareto(view)
     said = []
     if front is not None:
         said.append(pareto_sentence(front, view).text)

@@ -10,9 +10,9 @@ import pandas as pd
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import FIRST_TO_FAIL
-from trackroller.report.numbers import Life, capital, count, percent, rounded
+from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, percent, rounded
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import BEYOND_MEANS, UNKNOWN, alone, condition_words
+from trackroller.report.words.designs import BEYOND_MEANS, alone, condition_words
 
 BEST = 5  # designs in the table of the best
 
@@ -102,7 +102,7 @@ def _note(designs: Designs) -> str:
     if not designs.conditions:
         told = f"Designs by {designs.goal[1]}."
     if alone(designs):
-        told += f" {capital(UNKNOWN)}."
+        told += f" {capital(GUIDE_UNKNOWN)}."
     told += f" {BEYOND_MEANS}" if designs.rising else ""
     told += " Margin to slip: share of the transmissible force that the drive leaves. Margin to lift-off: load of the "
     told += "lighter over that of the heavier contact. Bold: differs from the best."

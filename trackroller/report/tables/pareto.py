@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import capital
+from trackroller.report.numbers import Life, capital
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.pareto import goal_heading, goal_words, goals_of
@@ -22,25 +22,33 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     """List Pareto-optimal designs along the first goal, with a column that says which lie outside the model."""
     goals = goals_of(front)
     best = np.flatnonzero(front["optimal"].values == 1)
-    if not len(best):
+    if not len(best) or front.sizes["row"] < 2:
         return None
     first, way = goals[0]
     best = best[np.argsort(front[first].values[best] * (-1 if way == "max" else 1), kind="stable")]
     shown = best[np.unique(np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int))]
-    names = [n for n, _ in goals] + [str(n) for n in front.data_vars if n not in (*dict(goals), "optimal")]
+    names = [n for n, _ in goals] + [str(n) for n in front.data_vars if n not in (*dict(goals), "optimal", "beyond")]
     arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
-    cells = [[v if isinstance(v, str) else float(v) + 0.0 for v in front[n].values[shown]] for n in names]  # -0 is 0
-    columns = [[factor_cell(n, v) for v in values] for n, values in zip(names, cells, strict=True)]
+    columns = [_column(front, name, shown) for name in names]
     rows: list[list[Any]] = [list(row) for row in zip(front["row"].values[shown].tolist(), *columns, strict=True)]
     kind = str(front.attrs.get("kind", "design"))
     heads = [capital(kind), *(goal_heading(front, n) + arrows.get(n, "") for n in names)]
-    if kind == "design":
-        heads = ["Case", *heads[1:], "Model"]
+    if kind != "design point":
+        heads = ["Worst case" if front.attrs.get("judged") else "Case", *heads[1:], "Model"]
         rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
     told = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
     note = f"{capital('; '.join(told))}."
+    note += f" {capital(front.attrs['judged'])}." if front.attrs.get("judged") else ""
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
     if len(best) > len(rows):
         note += f" The table shows {len(rows)} of the {len(best)} {kind}s, spread evenly along the first goal."
     note += f" {error.text}" if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
     return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
+
+
+def _column(front: xr.Dataset, name: str, shown: np.ndarray) -> list[Any]:
+    """Return the cells of a goal or factor; lives beyond the S-N data are marked."""
+    values = front[name].values[shown].tolist()
+    if "life" in name and "beyond" in front:
+        return [Life(v, b) for v, b in zip(values, front["beyond"].values[shown], strict=True)]
+    return [factor_cell(name, v if isinstance(v, str) else float(v) + 0.0) for v in values]  # -0 is 0

@@ -12,6 +12,7 @@ from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.numbers import (
     BEYOND,
+    GUIDE_UNKNOWN,
     capital,
     count,
     lasting,
@@ -26,7 +27,6 @@ from trackroller.report.numbers import (
 from trackroller.report.words.sentence import Sentence
 
 BEYOND_MEANS = "Beyond the S-N data: below the fatigue limit, or above 10⁸ overrollings."
-UNKNOWN = "the roller stands for the pair, because the guide's hours are unknown: give `guide_overrollings_per_hour`"
 MOST_TIES = 3  # designs with equal lives that are named
 
 
@@ -109,7 +109,7 @@ def _lives(row: pd.Series, unit: str, *which: str) -> tuple[list[str], str]:
 
 
 def _alone(designs: Designs) -> str:
-    return f"; {UNKNOWN}" if alone(designs) else ""
+    return f"; {GUIDE_UNKNOWN}" if alone(designs) else ""
 
 
 def _stress(designs: Designs, row: pd.Series) -> str:

@@ -8,8 +8,10 @@ import xarray as xr
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
+    GUIDE_UNKNOWN,
     capital,
     count,
+    lasting,
     listing,
     long_name,
     quantity,
@@ -43,9 +45,14 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
         table = front[name].values[best].astype(float)
         at = int(best[np.argmax(table) if way == "max" else np.argmin(table)])
         ends.append((name, int(front["row"][at]), {g: float(front[g].values[at]) for g, _ in goals}))
-    if len(best) == 1:
-        told = [f"{goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
+    told = [f"{goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
+    alike = all(end[2] == ends[0][2] for end in ends) and len(np.unique(_goal_table(front)[best], axis=0)) == 1
+    if front.sizes["row"] == 1:
+        text = f"One {kind} is left, so there is no Pareto set: {listing(told)}."
+    elif len(best) == 1:
         text = f"One of {allowed} allowed {kind}s is best in everything: {listing(told)}."
+    elif alike:
+        text = f"{count(len(best))} of {allowed} allowed {kind}s tie, none other is better in a goal: {listing(told)}."
     else:
         one, two = ends[0], ends[1]
         first = listing([f"{_goal_value(front, g, one[2][g])} {goal_words(front, g)}" for g, _ in goals])
@@ -56,7 +63,18 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
         outside = int((~view.valid[front["row"].values[best]]).sum())
         values["outside"] = outside
         text += f" {count(outside)} of the set lie outside the model." if outside else ""
+    text += f" The set takes {front.attrs['judged']}." if front.attrs.get("judged") else ""
+    if kind == "case":
+        text += (
+            " Each case is one design at one condition; `design: inner_outer` compares designs over their conditions."
+        )
+    if any(name == "pair_life_hours" for name, _ in goals) and view is not None and not view.has("guide_life_hours"):
+        text += f" {capital(GUIDE_UNKNOWN)}."
     return Sentence("pareto", f"{text} {left}{model}", values | {"ends": ends})
+
+
+def _goal_table(front: xr.Dataset) -> np.ndarray:
+    return np.stack([front[name].values.astype(float) for name, _ in goals_of(front)], axis=1)
 
 
 def goal_words(front: xr.Dataset, name: str) -> str:
@@ -72,4 +90,8 @@ def goal_heading(front: xr.Dataset, name: str) -> str:
 
 
 def _goal_value(front: xr.Dataset, name: str, value: float) -> str:
-    return quantity(value, str(front[name].attrs.get("units", "1") or "1"))
+    """Write a goal's value with its unit; a life beyond the S-N data says so."""
+    unit = str(front[name].attrs.get("units", "1") or "1")
+    if "life" in name and "beyond" in front:
+        return lasting(value, unit, bool(front["beyond"].values[front[name].values == value].any()))
+    return quantity(value, unit)

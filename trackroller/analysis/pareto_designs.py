@@ -1,0 +1,94 @@
+"""Pareto set of designs, each judged at the worst of the conditions in which it is valid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.analysis.designs import Designs, pair_beyond_data
+from trackroller.analysis.limits import column
+from trackroller.analysis.pareto import default_objectives, pareto, pareto_mask, pareto_of_points
+from trackroller.analysis.table import StudyView
+from trackroller.study.outputs import case_dims
+
+
+def study_pareto(view: StudyView) -> xr.Dataset | None:
+    """Find the Pareto set for the keys `pareto` and `constraints` of a study.
+
+    Parameters
+    ----------
+    view : StudyView
+        The study. The design points of an inner/outer design need its analysis.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        Without the key `pareto` the goals are those of `default_objectives`. Designs that share their conditions:
+        see `pareto_of_designs`. An inner/outer design with the key: see `pareto_of_points`, and without it None.
+        Otherwise see `pareto`; rows that differ in conditions have the attribute `kind` = `case`, and there is no set
+        without the key, because the conditions cannot be chosen.
+    """
+    given = view.study.get("pareto")
+    if view.study.get("design", view.attrs.get("design")) == "inner_outer":
+        return pareto_of_points(view.analysis, given) if view.analysis is not None and given else None
+    goals = given or default_objectives(view.data)
+    if not goals:
+        return None
+    designs = Designs.of(view, tuple(name for name in goals if name in view.factors))
+    if designs is not None and designs.conditions and designs.comparable:
+        return pareto_of_designs(designs, goals)
+    mixed = designs is not None and bool(designs.conditions)
+    if mixed and not given:
+        return None
+    front = pareto(view.data, goals, view.study.get("constraints") or ())
+    front["beyond"] = ("row", pair_beyond_data(view)[front["row"].values].astype(np.int8))
+    return front.assign_attrs(kind="case" if mixed else "design")
+
+
+def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dataset:
+    """Find the designs that no other design beats in every goal and in the number of conditions that it holds.
+
+    Parameters
+    ----------
+    designs : Designs
+        The designs of a study. A condition that is a goal counts as a choice.
+    objectives : mapping of str to str
+        Output, numeric factor or parameter, and `min` or `max` for each.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimension `row`, the case with the worst first goal of each design that is valid in a condition. Variables: the
+        choices; each goal at the worst of the design's valid cases; `valid_in`, the number of these cases; `optimal`;
+        `beyond`, 1 where the life of that case lies beyond the S-N data.
+    """
+    view = designs.view
+    dims = case_dims(view.data, view.factors)
+    columns = {name: column(view.data, dims, name, view.factors) for name in objectives}
+    worst = {name: designs.worst_cases(columns[name][0].astype(float), way) for name, way in objectives.items()}
+    held = designs.table["valid"].sort_index().to_numpy()
+    kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))
+    row = next(iter(worst.values()))[kept]
+    data: dict[str, Any] = {name: ("row", view.table[name].to_numpy()[row]) for name in designs.choices}
+    for name, (values, units, long_name) in columns.items():
+        data[name] = ("row", values[worst[name][kept]], {"units": units, "long_name": long_name})
+    data["valid_in"] = ("row", held[kept].astype(float), {"units": "1", "long_name": "conditions in which it is valid"})
+    goals = np.stack([np.asarray(data[name][1], dtype=float) for name in (*objectives, "valid_in")], axis=1)
+    optimal = pareto_mask(goals, [*objectives.values(), "max"])
+    data["optimal"] = ("row", optimal.astype(np.int8), {"long_name": "in the Pareto set"})
+    data["beyond"] = ("row", pair_beyond_data(view)[row].astype(np.int8))
+    left = len(held) - len(kept)
+    attrs = {
+        "objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()),
+        "constraints": "; ".join(view.study.get("constraints") or ()),
+        "factors": ", ".join(designs.choices),
+        "rows": len(held),
+        "model": str(view.held_level("contact_model")) if "contact_model" in view.factors else "",
+        "excluded": f"{left} that are valid in no condition" if left else "nothing",
+        "judged": "each goal at the worst of the conditions in which the design is valid",
+        "study": view.attrs.get("study", ""),
+    }
+    return xr.Dataset(data, {"row": row}, attrs)
