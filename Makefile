@@ -16,7 +16,7 @@ env: $(STAMP)
 # pins every package with its hashes; needs uv (pip install uv) and a network
 COMPILE := uv pip compile --python-version 3.11 --universal --generate-hashes --no-annotate --no-header -q
 lock:
-	$(COMPILE) pyproject.toml requirements.in -o requirements.lock
+	$(COMPILE) --all-extras pyproject.toml requirements.in -o requirements.lock
 	$(COMPILE) requirements-ci.in -c requirements.lock -o requirements-ci.lock
 	$(BIN)/python -m validation.licences --write
 

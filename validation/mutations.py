@@ -1,9 +1,10 @@
-"""Break formulas one at a time in a copy of the tree and say which test catches each.
+"""Break formulas and decisions one at a time in a copy of the tree and say which test catches each.
 
     python -m validation.mutations [NAME ...]
 
-Each mutation changes a sign, a factor or an index of one formula. The quick tests beside the formula must then fail.
-Prints formula, change and the test that caught it; ends with 1 if a mutation survives.
+Each mutation changes a sign, a factor or an index of one formula, or a border outside formulas (`decisions.py`). The
+quick tests beside it must then fail. Prints formula, change and the test that caught it; ends with 1 if a mutation
+survives.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trackroller.study.store.sources import source_files
+from validation.decisions import DECISIONS
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("trackroller", "tests", "validation", "workflow", "config", "docs", "pyproject.toml", "README.md", "Makefile")
@@ -152,7 +154,7 @@ MUTATIONS = {
         '"min" else 1.0',
         ("analysis/test_pareto.py",),
     ),
-}
+} | {name: Mutation(name, *entry) for name, entry in DECISIONS.items()}
 
 
 def copied(place: Path) -> Path:
