@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from trackroller.damage import bearing, catalogue, fatigue, rating, shakedown, static, verdict
+from trackroller.damage import bearing, catalogue, fatigue, heat, rating, shakedown, static, verdict
 from trackroller.damage.limit import TRACTIONS, Limit, declarations
 
-_FILES = (static, fatigue, rating, bearing, catalogue, shakedown)
+_FILES = (static, fatigue, heat, rating, bearing, catalogue, shakedown, heat)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 

@@ -1,0 +1,110 @@
+"""Flash and bulk temperatures, hysteresis."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.signal import fftconvolve
+
+import trackroller as tr
+from trackroller.damage.heat import cell_temperature, hysteresis_moments
+
+STEEL = {"like": "1.7225-normalised", "thermal_conductivity": 42, "heat_capacity": 460, "density": 7850}
+STEEL |= {"loss_fraction": 0.01, "temperature_limit": 150}
+COOLED = {"heat_transfer_coefficient": 20, "cooled_area": 8000}
+
+
+def surface(density, kernel):
+    ny, nx = density.shape
+    return fftconvolve(density, kernel)[ny - 1 : 2 * ny - 1, nx - 1 : 2 * nx - 1]
+
+
+def semi_ellipsoid(a, b, nx, ny):
+    x, y = ((2 * np.arange(n) + 1) / n - 1 for n in (nx, ny))
+    return np.sqrt(np.maximum(1 - x[None, :] ** 2 - y[:, None] ** 2, 0)), (2 * a / nx, 2 * b / ny)
+
+
+@pytest.mark.parametrize(("nodes", "error"), [(20, 0.01), (40, 0.004)])
+def test_stationary_semi_ellipsoid_on_a_circle(nodes, error):
+    """The hottest place is the centre, pi q_0 a/(4 K)."""
+    q, steps = semi_ellipsoid(1.5, 1.5, nodes, nodes)
+    rise = surface(q, cell_temperature(steps, (nodes, nodes), 0.0))
+    assert rise.max() == pytest.approx(math.pi * 1.5 / 4, rel=error)
+
+
+@pytest.mark.parametrize("decay", [0.0, 0.3, 5.0])
+def test_far_field_is_the_moving_point_source(decay):
+    """exp(-V (r + y)/(2 kappa))/(2 pi K r), at low and high Peclet number; this source conserves energy."""
+    kernel = cell_temperature((0.01, 0.01), (40, 40), decay)
+    for i, j in ((39 + 20, 39), (39 - 20, 39), (39, 39 + 25), (39 - 30, 39 + 6)):
+        y, x = 0.01 * (i - 39), 0.01 * (j - 39)
+        r = math.hypot(x, y)
+        expected = 1e-4 * math.exp(-2 * decay * (r + y)) / (2 * math.pi * r)
+        assert kernel[i, j] == pytest.approx(expected, rel=3e-3)  # the cell is no point
+
+
+def test_high_speed_is_one_dimensional_conduction():
+    """Blok and Jaeger: a long strip with elliptic heat density, int q(s)/sqrt(s - y) ds / sqrt(pi V/kappa)."""
+    n, b, decay = 200, 1.0, 200.0
+    y = (2 * np.arange(n) + 1) / n - 1
+    q = np.repeat(np.sqrt(1 - y**2)[:, None], 5, axis=1)
+    rise = surface(q, cell_temperature((160.0, 2 * b / n), (5, n), decay))[:, 2]
+    for i in (15, 70, 130, 180):
+        whole, _ = quad(lambda u, y=y[i]: 2 * math.sqrt(max(1 - (y + u * u) ** 2, 0)), 0, math.sqrt(b - y[i]))
+        assert rise[i] == pytest.approx(whole / math.sqrt(4 * math.pi * decay), rel=0.005)
+
+
+def test_rise_converges_with_the_elements():
+    rises = []
+    for n in (14, 28, 56):
+        q, steps = semi_ellipsoid(1.0, 0.5, n, n)
+        rises.append(surface(q, cell_temperature(steps, (n, n), 8.0)).max())
+    first, second = np.abs(np.diff(rises))
+    assert second < 0.5 * first and rises[1] == pytest.approx(rises[2], rel=5e-3)
+
+
+def test_hysteresis_of_equal_and_unlike_bodies():
+    loss, soft = np.array([[0.02, 0.02], [0.1, 0.0]]), np.array([[1.0, 1.0], [9.0, 1.0]])
+    moments = hysteresis_moments(np.full((2, 2), 100.0), np.full((2, 2), 0.4), loss, soft).sum(axis=2)
+    assert moments[0] == pytest.approx(3 * 0.02 * 100 * 0.4 / 16) and moments[1] == pytest.approx(
+        3 * 0.09 * 100 * 0.4 / 16
+    )
+
+
+def solved(**case):
+    materials = {"roller_material": STEEL, "guide_material": STEEL}
+    outputs = ("heat", "friction_work", "forces", "contact", "limits")
+    return tr.solve(tr.Case(**(materials | COOLED | case)), outputs, contact_model="sliding")
+
+
+def test_equal_bodies_share_the_heat_of_friction():
+    ds = solved(motor_force=0)
+    assert ds.heat_partition.values == pytest.approx([0.5, 0.5], rel=1e-9)
+    flash = ds.flash_temperature_rise
+    assert flash.sel(body="roller").values == pytest.approx(flash.sel(body="guide").values, rel=1e-12)
+    lost = (ds.hysteresis_moment / 2 / (21.75 - 6 * math.cos(math.radians(30)))).sum() * 1.0
+    power = 0.5 * float(ds.friction_power.sum()) + float(lost)
+    bulk = ds.bulk_temperature_rise.sel(body="roller").values
+    assert bulk == pytest.approx(np.full(2, power / (20 * 8000e-6)), rel=0.01)
+    used = (flash + ds.bulk_temperature_rise).max("contact") / 130
+    assert ds.utilisation.sel(limit="heat").values == pytest.approx(used.values, rel=1e-12)
+    mean = 0.3 * ds.pressure_velocity * ds.patch_area
+    assert mean.values == pytest.approx(ds.friction_power.values, rel=0.01)
+
+
+def test_speed_and_conductivity():
+    slow, fast = solved(motor_force=0, velocity=10), solved(motor_force=0, velocity=160)
+    assert (fast.flash_temperature_rise > 3.9 * slow.flash_temperature_rise).all()  # sqrt(16) at least
+    assert (fast.flash_temperature_rise < 16 * slow.flash_temperature_rise).all()
+    poor = STEEL | {"thermal_conductivity": 0.3, "heat_capacity": 1500, "density": 1400}
+    ds = solved(motor_force=0, guide_material=poor)
+    assert (ds.heat_partition > 0.85).all()  # the conductor takes the heat
+
+
+def test_no_friction_no_flash_and_missing_values_are_named():
+    ds = solved(motor_force=0, friction_coefficient=0)
+    assert (ds.flash_temperature_rise == 0).all() and (ds.hysteresis_moment > 0).all()
+    ds = solved(motor_force=0, cooled_area=None)
+    assert np.isnan(ds.bulk_temperature_rise.sel(body="roller")).all() and (ds.flash_temperature_rise > 0).all()
+    assert "heat: the case gives no cooled_area" in ds.attrs["limits_notes"]

@@ -1,0 +1,195 @@
+"""Heat of friction and hysteresis: flash and bulk temperatures of roller and guide.
+
+Each body sees a heat source that moves over it with the travel speed (Carslaw and Jaeger), at any Péclet number.
+
+ASSUME: one factor parts the heat of a contact between the bodies, such that their largest temperatures agree.
+ASSUME: the guide stays at ambient temperature but for the flash; the roller loses its heat from `cooled_area` alone.
+ASSUME: friction, stresses and material values do not depend on temperature, and hysteresis does not change the balance.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.signal import fftconvolve
+from scipy.special import erf
+
+from trackroller.damage.histories import Tractions
+from trackroller.damage.limit import TRACTIONS, Limit, Results, Solved, Verdict, optional, variables, worst
+from trackroller.parameters import Parameter
+
+STEP, REACH = 0.01, 1e4  # step of the logarithm of the diffusion length, and its ends over the sides of grid and cell
+
+
+def cell_temperature(steps: tuple[float, float], nodes: tuple[int, int], decay: float) -> np.ndarray:
+    """Return the surface temperature beside a cell that is heated uniformly while the surface moves towards -y.
+
+    Parameters
+    ----------
+    steps : tuple of float
+        Sides of the cell along x and y [mm].
+    nodes : tuple of int
+        Numbers of nodes along x and y.
+    decay : float
+        V/(4 kappa), travel speed over four times the diffusivity [1/mm].
+
+    Returns
+    -------
+    numpy.ndarray
+        Temperature times conductivity over heat density, at node offsets from -(n - 1) to n - 1,
+        (2 ny - 1, 2 nx - 1) [mm].
+
+    Notes
+    -----
+    The mean over the cell of exp(-V (r + y)/(2 kappa))/(2 pi r), written as an integral over the diffusion length
+    w = sqrt(4 kappa t) of the time t since the heat was released; it holds for V = 0 and under the cell itself.
+    """
+    (hx, hy), (nx, ny) = steps, nodes
+    low, high = math.log(min(hx, hy) / REACH), math.log(REACH * max(nx * hx, ny * hy))
+    w = np.exp(np.arange(low, high, STEP))[:, None]
+    x, y = hx * np.arange(nx), hy * np.arange(1 - ny, ny) + decay * w**2
+    across = erf((x + 0.5 * hx) / w) - erf((x - 0.5 * hx) / w)
+    along = erf((y + 0.5 * hy) / w) - erf((y - 0.5 * hy) / w)
+    half = (along * w).T @ across * (0.25 * STEP / math.sqrt(math.pi))
+    return np.concatenate([half[:, :0:-1], half], axis=1)
+
+
+def heat_density(t: Tractions, speed: np.ndarray) -> np.ndarray:
+    """Return the heat of friction |tau . s| v of each element, (n, contact, y, x) [W/mm2], for v, (n,) [mm/s]."""
+    work = np.abs(t.shear_lateral * t.slip_lateral + t.shear_rolling * t.slip_rolling)
+    return np.asarray(1e-3 * work * speed[:, None, None, None])
+
+
+def flash(
+    t: Tractions, heat: np.ndarray, speed: np.ndarray, conductivity: np.ndarray, diffusivity: np.ndarray
+) -> np.ndarray:
+    """Return the largest temperature rise of each body if it took all heat of the contact.
+
+    Parameters
+    ----------
+    t, heat : Tractions and numpy.ndarray
+        The patches, and their heat density, (n, contact, y, x) [W/mm2].
+    speed : numpy.ndarray
+        v, (n,) [mm/s].
+    conductivity, diffusivity : numpy.ndarray
+        K [W/(mm K)] and kappa [mm2/s] of roller and guide, (n, 2).
+
+    Returns
+    -------
+    numpy.ndarray
+        Rise, (n, contact, body) [K].
+    """
+    out = np.full((*t.x.shape[:2], 2), np.nan)
+    for case, contact in t.patches():
+        at = case, contact
+        if not np.isfinite(heat[at]).all() or not np.isfinite(diffusivity[case]).all():
+            continue
+        steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]
+        kernels = {}
+        for body, kappa in enumerate(diffusivity[case].tolist()):
+            if kappa not in kernels:
+                kernel = cell_temperature((steps[0], steps[1]), heat[at].shape[::-1], speed[case] / (4.0 * kappa))
+                kernels[kappa] = float(np.max(fftconvolve(heat[at], kernel)[_middle(heat)].clip(0.0)))
+            out[case, contact, body] = kernels[kappa] / conductivity[case, body]
+    return t.spread(out)
+
+
+def _middle(heat: np.ndarray) -> tuple[slice, slice]:
+    """Return the part of a complete convolution with a kernel of all offsets that lies on the patch."""
+    ny, nx = heat.shape[2:]
+    return slice(ny - 1, 2 * ny - 1), slice(nx - 1, 2 * nx - 1)
+
+
+def hysteresis_moments(force: np.ndarray, length: np.ndarray, loss: np.ndarray, compliance: np.ndarray) -> np.ndarray:
+    """Return the moment that the loss of strain energy takes in each body, 3 alpha P b/16 (Johnson 1985, ch. 9).
+
+    Parameters
+    ----------
+    force, length : numpy.ndarray
+        Normal force [N] and semi-axis b along the rolling direction [mm], (n, contact).
+    loss, compliance : numpy.ndarray
+        Share alpha of the strain energy that a body loses in a cycle [1], and (1 - nu^2)/E, (n, body).
+
+    Returns
+    -------
+    numpy.ndarray
+        Moments, (n, contact, body) [N mm]. The bodies store energy in proportion to their compliance.
+    """
+    share = compliance / compliance.sum(axis=1, keepdims=True)
+    return np.asarray(3.0 / 16.0 * (force * length)[:, :, None] * (loss * share)[:, None, :])
+
+
+def evaluate(solved: Solved) -> Results:
+    """Return temperature rises [K], (n, contact, body), partition, hysteresis and pressure-velocity, (n, contact)."""
+    m, v, c, t = solved.materials, solved.values, solved.cases, solved.tractions()
+    speed = c["velocity"] * 1e3 / 60.0
+    conductivity = 1e-3 * m["thermal_conductivity"]
+    diffusivity = 1e6 * m["thermal_conductivity"] / (m["density"] * m["heat_capacity"])
+    heat = heat_density(t, speed)
+    whole = flash(t, heat, speed, conductivity, diffusivity)
+    total = whole.sum(axis=2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        partition = np.where(total > 0, whole[:, :, 1] / total, 0.5 + 0.0 * total)
+    cell = (t.x[:, :, 1] - t.x[:, :, 0]) * (t.y[:, :, 1] - t.y[:, :, 0])
+    slides = np.hypot(t.slip_lateral, t.slip_rolling) * t.pressure
+    soft = (1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"]
+    moments = hysteresis_moments(v["normal_force"], v["semi_axis_rolling"], m["loss_fraction"], soft)
+    lost = 1e-3 * moments[:, :, 0] * (speed / solved.rolling_radius)[:, None]
+    power = (partition * heat.sum(axis=(2, 3)) * cell + lost).sum(axis=1)
+    bulk = power / (1e-6 * c["heat_transfer_coefficient"] * c["cooled_area"])
+    flashes = whole * np.stack([partition, 1.0 - partition], axis=2)
+    bulks = np.stack([bulk[:, None] + 0.0 * partition, 0.0 * partition], axis=2)
+    room = m["temperature_limit"] - c["ambient_temperature"][:, None]
+    with np.errstate(divide="ignore"):
+        used = (flashes + bulks) / np.maximum(room, 0.0)[:, None, :]
+    return {
+        "flash_temperature_rise": flashes,
+        "bulk_temperature_rise": bulks,
+        "heat_utilisation": used,
+        "heat_partition": partition,
+        "hysteresis_moment": moments.sum(axis=2),
+        "pressure_velocity": 1e-3 * speed[:, None] * slides.sum(axis=(2, 3)) * cell / v["patch_area"],
+    }
+
+
+_CB, _C = ("contact", "body"), ("contact",)
+LIMIT = Limit(
+    name="heat",
+    title="heat (temperature limit of the material)",
+    group="heat",
+    meaning="flash and bulk temperature of roller and guide, hysteresis, pressure times velocity",
+    evaluate=evaluate,
+    verdict=lambda solved, found: Verdict(worst(found["heat_utilisation"]), None),
+    needs=(TRACTIONS,),
+    results=variables(
+        "heat",
+        ("flash_temperature_rise", _CB, "K", "theta_f", "largest rise of the surface temperature in the patch"),
+        ("bulk_temperature_rise", _CB, "K", "theta_b", "mean temperature rise of the body by friction and hysteresis"),
+        ("heat_utilisation", _CB, "1", "", "temperature rise over what the material's limit leaves"),
+        ("heat_partition", _C, "1", "beta", "share of the heat that flows into the roller"),
+        ("hysteresis_moment", _C, "N mm", "M_h", "rolling resistance by the loss of strain energy in both bodies"),
+        ("pressure_velocity", _C, "MPa m s-1", "p v", "mean of pressure times slip speed over the patch"),
+    ),
+    parameters=(
+        optional("heat_transfer_coefficient", "h", "W/(m2 K)", "heat transfer coefficient of the roller", 0.0),
+        optional("cooled_area", "A_c", "mm2", "surface from which the roller loses heat", 0.0),
+        Parameter("ambient_temperature", "theta_0", "degC", 20.0, "temperature of the surroundings", -100.0, 1000.0),
+    ),
+    materials=(
+        optional("loss_fraction", "alpha", "-", "share of the strain energy lost in a cycle", 0.0, 1.0, closed=True),
+        optional("thermal_conductivity", "K", "W/(m K)", "thermal conductivity", 0.0, 5e3),
+        optional("heat_capacity", "c", "J/(kg K)", "heat capacity", 0.0, 2e4),
+        optional("density", "rho", "kg/m3", "density", 0.0, 3e4),
+        optional("temperature_limit", "theta_max", "degC", "highest temperature in use", -100.0, 4e3),
+    ),
+    requires=(
+        "thermal_conductivity",
+        "heat_capacity",
+        "density",
+        "loss_fraction",
+        "temperature_limit",
+        "heat_transfer_coefficient",
+        "cooled_area",
+    ),
+)
