@@ -2,7 +2,7 @@
 
     python -m validation.mutations [NAME ...]
 
-Each mutation changes a sign, a factor or an index of one formula, or a border outside formulas (`decisions.py`). The
+Each mutation changes a sign, a factor or an index of one formula, or a border outside formulas (`mutants.py`). The
 quick tests beside it must then fail. Prints formula, change and the test that caught it; ends with 1 if a mutation
 survives.
 """
@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trackroller.study.store.sources import source_files
-from validation.decisions import DECISIONS
+from validation.mutants import DECISIONS, FORMULAS
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("trackroller", "tests", "validation", "workflow", "config", "docs", "pyproject.toml", "README.md", "Makefile")
@@ -28,133 +28,16 @@ HANGS = 1200  # [s]
 
 @dataclass(frozen=True)
 class Mutation:
-    """A formula, the file of the package that holds it, the text before and after, and the tests that may catch it."""
+    """A formula or a decision, the file of the package that holds it, the text before and after, and its tests."""
 
-    formula: str
+    what: str
     path: str
     before: str
     after: str
     tests: tuple[str, ...]
 
 
-SLIP, SLIP_TESTS = (
-    "halfspace/rigid_slip.py",
-    ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py"),
-)
-GEOMETRY, GEOMETRY_TESTS = (
-    "roller/geometry.py",
-    ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py"),
-)
-SOBOL_TESTS = ("analysis/test_sensitivity.py",)
-TABLE, TABLE_TESTS = "contact/table/coordinates.py", ("contact/test_kalker_table.py",)
-MUTATIONS = {
-    "profile-slip": Mutation(
-        "eq. (20), slip of the guide's profile", SLIP, "return -np.minimum(deep", "return np.minimum(deep", SLIP_TESTS
-    ),
-    "rolling-slip": Mutation(
-        "eq. (21), rolling slip",
-        SLIP,
-        "return shift + profile_slip(x",
-        "return shift - profile_slip(x",
-        SLIP_TESTS,
-    ),
-    "rolling-slip-kernel": Mutation(
-        "eq. (21) without a division",
-        SLIP,
-        "np.sqrt(flat * flat - deep)",
-        "np.sqrt(flat * flat + deep)",
-        (*SLIP_TESTS, "halfspace/test_peak.py"),
-    ),
-    "pole-rolling": Mutation(
-        "eq. (22), spin pole on the trailing edge", SLIP, "(x_spin / a) ** 2", "(x_spin / b) ** 2", SLIP_TESTS
-    ),
-    "pole-lateral": Mutation(
-        "eq. (23), lateral place of the spin pole", SLIP, "return shift / sine", "return shift * sine", SLIP_TESTS
-    ),
-    "lateral-slip": Mutation("eq. (24), lateral slip", SLIP, "sine * (y - offset)", "sine * (y + offset)", SLIP_TESTS),
-    "pole-offset": Mutation("eq. (25), skewed pole line", SLIP, "k0 + np.maximum(k1", "k0 + np.minimum(k1", SLIP_TESTS),
-    "contact-modulus": Mutation(
-        "Hertz, contact modulus E*",
-        "contact/hertz.py",
-        "(1 - nu_2**2) / e_2",
-        "(1 - nu_1**2) / e_2",
-        ("contact/test_hertz.py", "contact/test_contact_models.py"),
-    ),
-    "axis-ratio": Mutation(
-        "Hertz, ratio of the semi-axes",
-        "contact/hertz.py",
-        "return 2 * x + np.log(d)",
-        "return x + np.log(d)",
-        ("contact/test_hertz.py",),
-    ),
-    "curvature": Mutation(
-        "curvature in the rolling plane, which the paper does not number",
-        GEOMETRY,
-        "1.0 / np.asarray(rolling_radius) + 1.0",
-        "1.0 / np.asarray(rolling_radius) - 1.0",
-        GEOMETRY_TESTS,
-    ),
-    "lever-arm": Mutation(
-        "eq. (14), lever arm of the lateral force",
-        GEOMETRY,
-        "np.cos(contact_angle) - guide_profile_radius)\n    return h_normal",
-        "np.cos(contact_angle) + guide_profile_radius)\n    return h_normal",
-        GEOMETRY_TESTS,
-    ),
-    "point-load": Mutation(
-        "stresses below a point load",
-        "halfspace/kernels.py",
-        "t11 = 3.0 * t4",
-        "t11 = 2.0 * t4",
-        ("halfspace/test_halfspace_kernels.py",),
-    ),
-    "exponent": Mutation(
-        "S-N curve, exponent k",
-        "materials/sn_curve.py",
-        "np.log(cycles) / np.log(stresses)",
-        "np.log(cycles) * np.log(stresses)",
-        ("materials/test_sn_curve.py", "damage/test_fatigue.py"),
-    ),
-    "creepage-index": Mutation(
-        "Kalker's coefficients, order of C22 and C23",
-        "contact/linear.py",
-        "c22: np.ndarray\n    c23: np.ndarray",
-        "c23: np.ndarray\n    c22: np.ndarray",
-        ("contact/test_kalker_linear.py",),
-    ),
-    "spin-arm": Mutation(
-        "table of exact solutions, arm L of the spin", TABLE, "g / 4.0) / 3.0", "g / 2.0) / 3.0", TABLE_TESTS
-    ),
-    "coupling": Mutation(
-        "table of exact solutions, creepage Z of unlike materials",
-        TABLE,
-        "0.5 / (1.0 + g)",
-        "0.5 / (1.0 - g)",
-        TABLE_TESTS,
-    ),
-    "total-index": Mutation("Sobol, total index", "analysis/sobol.py", '("ST", 1 - rest)', '("ST", rest)', SOBOL_TESTS),
-    "second-order": Mutation(
-        "Sobol, second-order index",
-        "analysis/sobol.py",
-        "first[:, i] - first[:, j]",
-        "first[:, i] + first[:, j]",
-        SOBOL_TESTS,
-    ),
-    "dominated": Mutation(
-        "Pareto, a design beats another",
-        "analysis/pareto.py",
-        "(held < costs[row]).any",
-        "(held < costs[row]).all",
-        ("analysis/test_pareto.py",),
-    ),
-    "direction": Mutation(
-        "Pareto, sign of a goal",
-        "analysis/pareto.py",
-        '"min" else -1.0',
-        '"min" else 1.0',
-        ("analysis/test_pareto.py",),
-    ),
-} | {name: Mutation(name, *entry) for name, entry in DECISIONS.items()}
+MUTATIONS = {name: Mutation(name, *entry) for name, entry in (FORMULAS | DECISIONS).items()}
 
 
 def copied(place: Path) -> Path:
@@ -221,7 +104,7 @@ def main(names: list[str]) -> int:
             caught = catching_test(place, mutation)
             survived += not caught
             before, after = (" ".join(text.split()) for text in (mutation.before, mutation.after))
-            print(f"| {mutation.formula} | `{before}` → `{after}` | {caught or 'SURVIVED'} |", flush=True)
+            print(f"| {mutation.what} | `{before}` → `{after}` | {caught or 'SURVIVED'} |", flush=True)
     return int(survived > 0)
 
 

@@ -1,4 +1,4 @@
-"""Borders that decide: classes, targets met, words for signs. `validation/decisions.py` turns each of them round."""
+"""Borders that decide: classes, targets met, words for signs. `validation/mutants.py` turns each of them round."""
 
 from __future__ import annotations
 

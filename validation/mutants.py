@@ -1,0 +1,133 @@
+"""The mutations that `validation.mutations` tries, in formulas and outside them.
+
+Each entry is a file of the package, the text before and after, and the tests that may catch the change.
+"""
+
+from __future__ import annotations
+
+SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py")
+GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
+SOBOL = ("analysis/test_sensitivity.py",)
+TABLE = ("contact/test_kalker_table.py",)
+CONVERGENCE = ("analysis/test_sensitivity.py", "analysis/test_enough.py", "analysis/test_given_data.py")
+BORDERS = "analysis/test_decisions.py"
+WORDS = (
+    BORDERS,
+    "report/test_sentences.py",
+    "report/test_truth.py",
+    "report/test_truth_analysis.py",
+    "report/test_report.py",
+)
+DESIGNS = (BORDERS, "analysis/test_designs.py", "report/test_sentences.py", "report/test_truth.py")
+TARGETS = (BORDERS, "analysis/test_targets.py", "analysis/test_robustness.py", "report/test_truth_targets.py")
+PACKED = ("report/test_explorer.py",)
+STORE = ("study/test_resume.py", "study/test_two_runs.py", "cli/test_cli.py")
+ANALYSED = ("analysis/test_sensitivity.py", "analysis/test_robustness.py", "report/test_report.py")
+PLANNED = ("study/test_levels.py", "study/test_resume.py", "cli/test_cli.py")
+SAMPLED = ("study/test_sampling.py",)
+FORMULAS = {
+    "profile-slip eq. (20)": ("halfspace/rigid_slip.py", "return -np.minimum(deep", "return np.minimum(deep", SLIP),
+    "rolling-slip eq. (21)": (
+        "halfspace/rigid_slip.py",
+        "return shift + profile_slip(x",
+        "return shift - profile_slip(x",
+        SLIP,
+    ),
+    "rolling-slip-kernel eq. (21)": (
+        "halfspace/rigid_slip.py",
+        "np.sqrt(flat * flat - deep)",
+        "np.sqrt(flat * flat + deep)",
+        (*SLIP, "halfspace/test_peak.py"),
+    ),
+    "pole-rolling eq. (22)": ("halfspace/rigid_slip.py", "(x_spin / a) ** 2", "(x_spin / b) ** 2", SLIP),
+    "pole-lateral eq. (23)": ("halfspace/rigid_slip.py", "return shift / sine", "return shift * sine", SLIP),
+    "lateral-slip eq. (24)": ("halfspace/rigid_slip.py", "sine * (y - offset)", "sine * (y + offset)", SLIP),
+    "pole-offset eq. (25)": ("halfspace/rigid_slip.py", "k0 + np.maximum(k1", "k0 + np.minimum(k1", SLIP),
+    "contact-modulus": (
+        "contact/hertz.py",
+        "(1 - nu_2**2) / e_2",
+        "(1 - nu_1**2) / e_2",
+        ("contact/test_hertz.py", "contact/test_contact_models.py"),
+    ),
+    "axis-ratio": ("contact/hertz.py", "return 2 * x + np.log(d)", "return x + np.log(d)", ("contact/test_hertz.py",)),
+    "curvature": (
+        "roller/geometry.py",
+        "1.0 / np.asarray(rolling_radius) + 1.0",
+        "1.0 / np.asarray(rolling_radius) - 1.0",
+        GEOMETRY,
+    ),
+    "lever-arm eq. (14)": (
+        "roller/geometry.py",
+        "np.cos(contact_angle) - guide_profile_radius)\n    return h_normal",
+        "np.cos(contact_angle) + guide_profile_radius)\n    return h_normal",
+        GEOMETRY,
+    ),
+    "point-load": (
+        "halfspace/kernels.py",
+        "t11 = 3.0 * t4",
+        "t11 = 2.0 * t4",
+        ("halfspace/test_halfspace_kernels.py",),
+    ),
+    "exponent": (
+        "materials/sn_curve.py",
+        "np.log(cycles) / np.log(stresses)",
+        "np.log(cycles) * np.log(stresses)",
+        ("materials/test_sn_curve.py", "damage/test_fatigue.py"),
+    ),
+    "creepage-index": (
+        "contact/linear.py",
+        "c22: np.ndarray\n    c23: np.ndarray",
+        "c23: np.ndarray\n    c22: np.ndarray",
+        ("contact/test_kalker_linear.py",),
+    ),
+    "spin-arm": ("contact/table/coordinates.py", "g / 4.0) / 3.0", "g / 2.0) / 3.0", TABLE),
+    "coupling": ("contact/table/coordinates.py", "0.5 / (1.0 + g)", "0.5 / (1.0 - g)", TABLE),
+    "total-index": ("analysis/sobol.py", '("ST", 1 - rest)', '("ST", rest)', SOBOL),
+    "second-order": ("analysis/sobol.py", "first[:, i] - first[:, j]", "first[:, i] + first[:, j]", SOBOL),
+    "dominated": (
+        "analysis/pareto.py",
+        "(held < costs[row]).any",
+        "(held < costs[row]).all",
+        ("analysis/test_pareto.py",),
+    ),
+    "direction": ("analysis/pareto.py", '"min" else -1.0', '"min" else 1.0', ("analysis/test_pareto.py",)),
+}
+# borders, signs and orders in study, analysis, report and command line
+DECISIONS = {
+    "needed-samples": ("analysis/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
+    "converged": ("analysis/convergence.py", 'converged." if times <= 1', 'converged." if times <= 4', CONVERGENCE),
+    "interval-of-a-step": ("analysis/effects.py", "a - low_a))", "high_a - a))", WORDS),
+    "rising": ("analysis/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
+    "fewest-conditions": ("analysis/designs.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
+    "unequal-loads": ("analysis/designs.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
+    "median-case": ("analysis/designs.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
+    "beyond-data": ("analysis/designs.py", "> limit) | np.isposinf", "> limit) & np.isposinf", DESIGNS),
+    "class-of-a-value": ("analysis/groups.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
+    "target-met": ("analysis/targets.py", "(values >= low) &", "(values > low) &", TARGETS),
+    "all-targets": ("analysis/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
+    "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
+    "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
+    "fold": ("report/words/factors.py", "times(max(effect.ratio, 1", "times(min(effect.ratio, 1", WORDS),
+    "rounded-outwards": ("report/words/regimes.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
+    "bent": ("report/words/indices.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
+    "pareto-end": (
+        "report/words/pareto.py",
+        'np.argmax(table) if way == "max"',
+        'np.argmax(table) if way == "min"',
+        WORDS,
+    ),
+    "same-share": ("report/words/targets.py", "- share[worst] < SAME", "- share[worst] > SAME", TARGETS),
+    "rate-of-models": ("study/cost.py", "len(several) / sum(1.0 / each", "len(several) / sum(each / 1e6", PLANNED),
+    "solved-again": ("study/store/inventory.py", "!= chunks.FAILED).values)", "== chunks.FAILED).values)", STORE),
+    "missing-case": ("study/store/gather.py", "(place < 0).sum()", "(place < -1).sum()", STORE),
+    "not-positive": ("study/outputs.py", "int((values <= 0).sum())", "int((values < -1e300).sum())", ANALYSED),
+    "share-of-rolling": ("study/outputs.py", "if i and (regime == i)", "if (regime == i)", ANALYSED),
+    "strata": ("study/design/grown_lhs.py", "permutation(empty)[:new]", "permutation(size)[:new]", SAMPLED),
+    "level-codes": (
+        "report/explorer/pack.py",
+        "len(column.levels) < np.iinfo",
+        "len(column.levels) <= 1 + np.iinfo",
+        PACKED,
+    ),
+    "rare-states": ("report/explorer/sample.py", "counts <= RARE", "counts < RARE", PACKED),
+}
