@@ -34,6 +34,7 @@ MOST = 100  # values kept of one variable, evenly spaced: a wrong field is wrong
 FORCES = ["forces", "contact", "friction_work"]
 COMPLETE = [*FORCES, "peak_stress", "life"]
 FIELDS = ["tractions", "subsurface"]
+LIMITS = ["rating", "bearing", "shakedown", "limits"]
 STEEL, HARD, ALUMINIUM = "1.7225-normalised", "1.7225-quenched-tempered", "EN AW-7075"
 Cases = list[dict[str, Any]]
 Arrays = dict[str, np.ndarray]
@@ -83,6 +84,8 @@ CURVED: Cases = [
     {"guide_curve_radius": 60.0, "roller_profile_radius": -6.4, "motor_force": -20.0},
     {"guide_curve_radius": -60.0, "roller_profile_radius": -6.4, "motor_force": 0.0},
 ]
+BEARING = {"rows": 2, "row_distance": 8, "kind": "ball", "dynamic_rating": 3000, "static_rating": 1500}
+BEARING |= {"e": 0.3, "X": 0.56, "Y": 1.5, "X0": 0.6, "Y0": 0.5}
 _X = np.linspace(-5.4, 5.4, 61)
 PROFILES: Cases = [
     {"guide_profile": {"parabola": 6.0}, "roller_profile": {"parabola": -7.0}},
@@ -111,6 +114,7 @@ def groups() -> dict[str, tuple[Cases, dict[str, Any]]]:
         "slip_profile": (CURVED, preview | {"slip_terms": ["profile"]}),
         "no_shortcuts": (REGIMES[:4], preview | {"shortcuts": False}),
         "stop": ([*ORDINARY, *REGIMES[3:5]], preview | {"stop_if": stop}),
+        "limits": ([case | {"bearing": BEARING} for case in ORDINARY[:3]], preview | {"outputs": LIMITS}),
         "fields": ([ORDINARY[2]], preview | {"outputs": FIELDS}),
         "halfspace": ([*ORDINARY[1:4], REGIMES[4]], preview | {"normal": "halfspace"}),
         "halfspace_profiles": (PROFILES, preview | {"normal": "halfspace"}),
