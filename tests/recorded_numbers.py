@@ -28,13 +28,14 @@ import yaml
 import trackroller as tr
 from trackroller.analysis.sensitivity import analyse
 from trackroller.cli.main import app, run_app
+from trackroller.parameters import OPTIONS
 
 FILE = Path(__file__).parent / "data" / "recorded_numbers.npz"
 MOST = 100  # values kept of one variable, evenly spaced: a wrong field is wrong at more than one point
 FORCES = ["forces", "contact", "friction_work"]
 COMPLETE = [*FORCES, "peak_stress", "life"]
 FIELDS = ["tractions", "subsurface"]
-LIMITS = ["rating", "bearing", "shakedown", "limits"]
+LIMITS = [name for name in OPTIONS["outputs"].values if name not in (*COMPLETE, *FIELDS)]
 STEEL, HARD, ALUMINIUM = "1.7225-normalised", "1.7225-quenched-tempered", "EN AW-7075"
 Cases = list[dict[str, Any]]
 Arrays = dict[str, np.ndarray]
