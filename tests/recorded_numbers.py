@@ -26,7 +26,6 @@ import xarray as xr
 import yaml
 
 import trackroller as tr
-from trackroller.analysis.sensitivity import analyse
 from trackroller.cli.main import app, run_app
 from trackroller.parameters import OPTIONS
 
@@ -208,7 +207,7 @@ def _study(name: str) -> Arrays:
         gathered = Path("results") / study["name"] / "study.nc"
         with xr.open_dataset(gathered) as results:
             found |= _arrays(results.load(), f"{name}/results")
-        return found | _arrays(analyse(gathered, Path("indices.nc")), f"{name}/indices")
+        return found | _arrays(tr.open_study(gathered).indices(), f"{name}/indices")
 
 
 def _user_tractions() -> Arrays:

@@ -6,10 +6,20 @@ The formulas only have the right tendencies (Hertz exponents, S-N curves, Coulom
 from __future__ import annotations
 
 import itertools
+import json
 
 import numpy as np
 import xarray as xr
 import yaml
+
+from trackroller.analysis.stored_study import read_results
+from trackroller.analysis.table import StudyResults, StudyView
+from trackroller.study.design.factors import parse
+from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.file.config import StudyFile
+from trackroller.study.file.goals import Analysis
+from trackroller.study.file.study import Study
+from trackroller.study.outputs import case_dims, flat
 
 PAIRS = (
     "1.7225-normalised / 1.7225-normalised",
@@ -25,6 +35,7 @@ STRENGTH = {
     "PA6": (5e3, 60, 0.3),
     "POM": (3e3, 80, 0.4),
 }
+MADE_UP = "abcdef0"  # commit of made-up results
 BASE = {
     "roller_profile_radius": -7.0,
     "guide_profile_radius": 6.0,
@@ -143,7 +154,9 @@ def _finish(ds: xr.Dataset, factors: dict, design: str) -> xr.Dataset:
     ds.attrs |= {
         "study": yaml.safe_dump(study, sort_keys=False),  # factors in the order of the dimensions, as `gather` has them
         "trackroller_version": "0.1.0",
-        "commit": "abcdef0",
+        "commit": MADE_UP,
+        "design": design,
+        "design_meta": json.dumps({"columns": list(factors), "size": ds["regime"].size, "shape": ds["regime"].shape}),
         "seed": 1,
         "accuracy": "standard",
         "date": "2026-01-02T03:04:05+00:00",
@@ -192,3 +205,33 @@ def sampled_study(n: int = 400, seed: int = 3, **options) -> xr.Dataset:
         "material_pair": {"values": [p.split(" / ") for p in PAIRS[:3]]},
     }
     return _finish(ds, factors, "lhs")
+
+
+def results_of(ds) -> StudyResults:
+    """Return a solved study from its data set; made-up data may have an unchecked study file, and have no design."""
+    if isinstance(ds, StudyResults):
+        return ds
+    ds = ds if isinstance(ds, xr.Dataset) else xr.load_dataset(ds)
+    if "design_meta" in ds.attrs and ds.attrs.get("commit") != MADE_UP:
+        return read_results(ds)
+    told = yaml.safe_load(ds.attrs.get("study", "")) or {}
+    told = {key: tuple(value) if isinstance(value, list) else value for key, value in told.items()}
+    told["analysis"] = Analysis.model_validate(told.get("analysis", {}))
+    given = told.get("factors", {})
+    names = [str(n) for n in ds.dims if n in ds.coords and n not in ("contact", "body", "case")] if not given else given
+    free = [str(n) for n, v in ds.variables.items() if v.dims == ("case",) and n in ds.coords and n != "case"]
+    specs = {n: given.get(n) or {"values": np.unique(ds[n].values).tolist()} for n in names or free}
+    study = Study(
+        StudyFile.model_construct(**{"name": "made-up"} | told | {"factors": {n: given.get(n) or {} for n in specs}})
+    )
+    dims = case_dims(ds, specs)
+    columns = {n: flat(ds, n, dims) for n in specs if n in ds.variables}
+    factors = {n: factor for n in columns if (factor := parse(n, specs[n])).varies}
+    unit = [np.unique(columns[n], return_inverse=True)[1] for n in factors]
+    method, meta = told.get("design", "grid"), {"shape": tuple(ds.sizes[d] for d in dims), "rank_correlations": ()}
+    return StudyResults(study, SampledDesign(columns, factors, method, np.array(unit, float).T, meta), ds)
+
+
+def view_of(ds, analysis: xr.Dataset | None = None) -> StudyView:
+    """Return the table of cases of a data set, see `results_of`."""
+    return results_of(ds).view.analysed(analysis)

@@ -16,6 +16,8 @@ _WHERE = {
     "InputError": "trackroller.errors",
     "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.file.load",
+    "open_study": "trackroller.solved",
+    "run": "trackroller.solved",
     "load_database": "trackroller.materials",
     "stress_from_tractions": "trackroller.halfspace.stress",
     "stress_on_grid": "trackroller.halfspace.stress",
@@ -30,8 +32,10 @@ __all__ = [
     "load_database",
     "load_study",
     "max_shear",
+    "open_study",
     "principal_stresses",
     "report",
+    "run",
     "solve",
     "stress_from_tractions",
     "stress_on_grid",
@@ -51,6 +55,7 @@ if TYPE_CHECKING:
     from trackroller.materials import load_database
     from trackroller.roller.case import Case
     from trackroller.roller.solver import solve
+    from trackroller.solved import open_study, run
     from trackroller.study.file.load import load_study
 
 

@@ -32,6 +32,7 @@ ORDER = (
     "study",
     "analysis",
     "report",
+    "solved",
     "cli",
     "__init__",
 )

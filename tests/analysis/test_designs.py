@@ -8,11 +8,11 @@ import pandas as pd
 import pytest
 import xarray as xr
 from reference_cases import solve_sliding
+from synthetic_results import view_of
 
 import trackroller as tr
 from trackroller.analysis.designs import Designs, lift_off_margin, slip_margin
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.table import StudyView
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.designs import best_table
 from trackroller.report.words.designs import best_design
@@ -105,7 +105,7 @@ def compared(frame, choices, life):
 def test_designs_of_a_grid_against_a_group_by(rate):
     """Counts, lives, bodies that fail first and lives beyond the data; the sentence names the best design."""
     ds, frame = solved(base={"guide_overrollings_per_hour": rate} if rate else {})
-    view = StudyView.of(ds)
+    view = view_of(ds)
     designs = Designs.of(view)
     assert designs.matched and designs.comparable and not designs.drawn
     assert designs.conditions == ("friction_coefficient", "motor_force", "axial_force")
@@ -138,7 +138,7 @@ def test_the_worst_condition_is_named_and_the_pair_fails_with_its_first_body():
     np.testing.assert_array_equal(
         frame["pair_life_hours"], np.minimum(frame["roller_life_hours"], frame["guide_life_hours"])
     )
-    said = best_design(StudyView.of(ds))[0]
+    said = best_design(view_of(ds))[0]
     worst = frame.iloc[said.values["worst_case"]]
     assert worst["valid"] and worst["pair_life_hours"] == said.values["worst"]
     drive = "free rolling" if worst["motor_force"] == 0 else "driven −30 N"
@@ -149,13 +149,13 @@ def test_the_worst_condition_is_named_and_the_pair_fails_with_its_first_body():
 def test_an_inner_outer_design_is_compared_by_the_life_that_nine_of_ten_reach():
     """The order statistic of raw rows, with cases that are not valid as life 0."""
     ds, frame = solved(**SAMPLE)
-    designs = Designs.of(StudyView.of(ds))
+    designs = Designs.of(view_of(ds))
     assert designs.choices == ("roller_profile_radius", "contact_angle") and designs.drawn and designs.comparable
     lives = frame["pair_life_hours"].where(frame["valid"], 0.0)
     groups = lives.groupby([frame["roller_profile_radius"], frame["contact_angle"]])
     expected = groups.apply(lambda own: np.sort(own)[math.ceil(0.1 * len(own)) - 1]).sort_values(ascending=False)
     np.testing.assert_allclose(designs.table["b10"], expected)
-    text = best_design(StudyView.of(ds))[0].text
+    text = best_design(view_of(ds))[0].text
     assert "nine of ten of its 32 sampled conditions reach" in text and "95 % interval" in text
 
 
@@ -163,25 +163,25 @@ def test_designs_that_hold_in_fewer_than_nine_of_ten_conditions_come_last():
     """There the life of nine of ten is 0: the number of valid conditions ranks them, not a tie at 0."""
     factors = SAMPLE["factors"] | {"axial_force": {"uniform": [0, 250]}}
     ds, frame = solved(**SAMPLE | {"factors": factors})
-    found = Designs.of(StudyView.of(ds)).table
+    found = Designs.of(view_of(ds)).table
     held = frame.groupby(["roller_profile_radius", "contact_angle"]).valid.sum()
     assert (found["b10"] == 0).all() and found["valid"].tolist() == sorted(held, reverse=True)
     assert found["rank"].max() > 1
-    assert "no life holds in nine of ten sampled conditions" in best_design(StudyView.of(ds))[0].text
+    assert "no life holds in nine of ten sampled conditions" in best_design(view_of(ds))[0].text
 
 
 def test_a_sample_in_which_no_design_repeats_names_the_design_of_experiments_that_can_answer():
     factors = SAMPLE["factors"] | {"roller_profile_radius": {"uniform": [-8, -6.5]}}
     ds, frame = solved(design="lhs", samples=40, factors=factors)
-    said = best_design(StudyView.of(ds))
+    said = best_design(view_of(ds))
     assert [s.kind for s in said] == ["unanswered"] and frame["valid"].any()
     assert said[0].text.startswith("Each of the 40 cases is a design of its own at one condition, so this lhs study")
     assert "give roller profile radius and contact angle as lists" in said[0].text
     assert "friction coefficient and axial force as distributions with `design: inner_outer`" in said[0].text
-    page = contents(StudyView.of(ds))
+    page = contents(view_of(ds))
     assert "best_designs" not in {t.name for t in page["decide"]}
     ds, _ = solved(design="lhs", samples=40, factors={"roller_profile_radius": {"uniform": [-8, -6.5]}})
-    said = best_design(StudyView.of(ds))[0]  # no condition varies: each row is a design under the one condition
+    said = best_design(view_of(ds))[0]  # no condition varies: each row is a design under the one condition
     assert said.kind == "best" and "worst condition" not in said.text
 
 
@@ -191,13 +191,13 @@ def test_lives_beyond_the_data_are_never_bare():
     factors = {"roller_profile_radius": {"values": [-6.5, -8]}, "friction_coefficient": {"values": [0.0, 0.2]}}
     ds, frame = solved(base=light | {"axial_force": 0}, factors=factors)
     assert frame["beyond"].all()
-    said = best_design(StudyView.of(ds))
+    said = best_design(view_of(ds))
     assert "all beyond the S-N data" in said[0].text and "both beyond the S-N data" in said[-1].text
     ds, _ = solved(base=light | {"axial_force": 0}, factors=factors, life_rule="unlimited")
-    said = best_design(StudyView.of(ds))
+    said = best_design(view_of(ds))
     assert "last no failure" not in said[0].text and "no failure" in said[0].text and "unlimited" not in said[0].text
     assert said[0].values["ties"] == 2 and said[1].kind == "ties" and said[1].text.startswith("2 designs tie")
-    assert best_table(StudyView.of(ds)).heads[1:] == ["Best 1 (tie)", "Best 1 (tie)"]
+    assert best_table(view_of(ds)).heads[1:] == ["Best 1 (tie)", "Best 1 (tie)"]
 
 
 def test_margins_against_the_searched_limits():
@@ -208,7 +208,7 @@ def test_margins_against_the_searched_limits():
         n: ("case", np.array([getattr(c, n) for c in cases]))
         for n in ("friction_coefficient", "motor_force", "axial_force")
     }
-    view = StudyView.of(ds.assign_coords(data))
+    view = view_of(ds.assign_coords(data))
     edges = [limits(c, "sliding").motor_force[0] for c in cases[:2]]
     expected = [1 - c.motor_force / edge for c, edge in zip(cases, edges, strict=False)]
     np.testing.assert_allclose(slip_margin(view)[:2], expected, atol=1e-5)
@@ -219,7 +219,7 @@ def test_margins_against_the_searched_limits():
 
 def test_roles_of_the_study_file_decide_what_a_design_is():
     ds, frame = solved(roles={"friction_coefficient": "choice", "roller_profile_radius": "condition"})
-    designs = Designs.of(StudyView.of(ds))
+    designs = Designs.of(view_of(ds))
     assert set(designs.choices) == {"friction_coefficient", "material_pair"} and len(designs.size) == 6
     expected = compared(frame, ["friction_coefficient", "roller_material"], "pair_life_hours")
     np.testing.assert_allclose(designs.table["worst"].dropna(), expected["worst"].dropna())
@@ -228,10 +228,10 @@ def test_roles_of_the_study_file_decide_what_a_design_is():
 def test_a_study_without_choices_has_one_design():
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "axial_force": {"values": [0, 30]}}
     ds, frame = solved(factors=factors)
-    said = best_design(StudyView.of(ds))
+    said = best_design(view_of(ds))
     assert said[0].text.startswith("The study has one design: roller and guide last") and "Next" not in said[-1].text
     assert said[0].values["worst"] == frame["pair_life_hours"].min()
-    assert isinstance(ds, xr.Dataset) and best_table(StudyView.of(ds)).heads == ["", "All conditions"]
+    assert isinstance(ds, xr.Dataset) and best_table(view_of(ds)).heads == ["", "All conditions"]
 
 
 def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
@@ -240,7 +240,7 @@ def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
     frame["pressure"] = ds["max_pressure"].max("contact").values
     valid = frame[frame["valid"]].groupby(CHOICES)
     expected = valid.agg(life=("pair_life_hours", "min"), pressure=("pressure", "max"), valid=("valid", "sum"))
-    view = StudyView.of(ds)
+    view = view_of(ds)
     front = study_pareto(view)
     assert front.attrs["objectives"] == "pair_life_hours max, max_pressure min"
     materials = [pair.split(" / ")[0] for pair in front["material_pair"].values]
@@ -262,13 +262,13 @@ def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
     assert text.startswith(f"{sum(front['optimal'].values)} of {len(expected)} allowed designs are Pareto-optimal")
     assert "each goal at the worst of the conditions" in text
     ds, _ = solved(base={})
-    view = StudyView.of(ds)
+    view = view_of(ds)
     assert "give `guide_overrollings_per_hour`" in pareto_sentence(study_pareto(view), view).text
 
 
 def test_a_condition_that_is_a_goal_is_no_condition():
     ds, frame = solved(pareto={"pair_life_hours": "max", "axial_force": "max"})
-    front = study_pareto(StudyView.of(ds))
+    front = study_pareto(view_of(ds))
     worst = frame[frame["valid"]].groupby([*CHOICES, "axial_force"]).pair_life_hours.min()
     assert sorted(front["pair_life_hours"].values) == pytest.approx(sorted(worst))
 
@@ -276,9 +276,9 @@ def test_a_condition_that_is_a_goal_is_no_condition():
 def test_a_sample_of_cases_has_no_pareto_set_of_designs():
     factors = SAMPLE["factors"] | {"roller_profile_radius": {"uniform": [-8, -6.5]}}
     ds, _ = solved(design="lhs", samples=40, factors=factors)
-    assert study_pareto(StudyView.of(ds)) is None
+    assert study_pareto(view_of(ds)) is None
     ds, _ = solved(design="lhs", samples=40, factors=factors, pareto={"pair_life_hours": "max", "max_pressure": "min"})
-    view = StudyView.of(ds)
+    view = view_of(ds)
     text = pareto_sentence(study_pareto(view), view).text
     assert "allowed cases" in text and "`design: inner_outer` compares designs" in text
 
@@ -288,9 +288,9 @@ def test_equal_designs_tie_and_one_design_is_no_set():
     same = {"axis_distance": {"values": [20, 22]}, "friction_coefficient": {"values": [0.0, 0.2]}}
     goals = {"pair_life_hours": "max", "radial_force": "min"}
     ds, _ = solved(base=light, factors=same, pareto=goals, life_rule="unlimited")
-    view = StudyView.of(ds)
+    view = view_of(ds)
     text = pareto_sentence(study_pareto(view), view).text
     assert text.startswith("2 of 2 allowed designs tie") and "no failure (beyond the S-N data)" in text
     ds, _ = solved(factors={"friction_coefficient": {"values": [0.1, 0.2]}})
-    view = StudyView.of(ds)
+    view = view_of(ds)
     assert pareto_sentence(study_pareto(view), view).text.startswith("One design is left, so there is no Pareto set")

@@ -5,8 +5,9 @@ import re
 import numpy as np
 import pytest
 from scipy import stats
+from synthetic_results import results_of
 
-from trackroller.analysis.sensitivity import analyse_dataset
+from trackroller.analysis.sensitivity import analyse
 from trackroller.report.words.samples import samples
 from trackroller.study.file.load import parse_study
 
@@ -29,8 +30,7 @@ def analysed(design, count, seed):
     ds = study.design()
     x1, x2, x3 = ds["axial_force"].values, ds["motor_force"].values, ds["velocity"].values - 1 - PI
     ds["friction_power"] = ("case", np.sin(x1) + 7 * np.sin(x2) ** 2 + 0.1 * x3**4 * np.sin(x1))
-    ds.attrs = {"study": study.merged()}
-    return analyse_dataset(ds)
+    return analyse(results_of(ds))
 
 
 @pytest.mark.parametrize(
@@ -62,8 +62,7 @@ def lives(count, seed, spread=0.2):
     ds = study.design()
     logs = 3 + spread * ds["axial_force"].values - 0.1 * (ds["velocity"].values > 45)
     ds["roller_life_hours"] = ("case", 10**logs, {"units": "h"})
-    ds.attrs = {"study": study.merged()}
-    return analyse_dataset(ds)
+    return analyse(results_of(ds))
 
 
 def test_design_points_need_samples_for_b10_and_probabilities():
@@ -97,8 +96,7 @@ def test_first_order_indices_above_100_percent_say_why():
         parsed = parse_study(study | {"samples": samples, "seed": seed} | extra)
         ds = parsed.design()
         ds["friction_power"] = ("case", ds["axial_force"].values + ds["motor_force"].values)
-        ds.attrs = {"study": parsed.merged()}
-        found = analyse_dataset(ds)
+        found = analyse(results_of(ds))
         assert float(found["first_order_sum"][0]) == pytest.approx(float(found["first"].clip(0).sum()))
         return str(found["first_order_sum_note"].values[0])
 

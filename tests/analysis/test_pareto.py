@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from synthetic_results import results_of, view_of
 
 from trackroller.analysis.pareto import pareto, pareto_mask
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
 from trackroller.report.numbers import quantity
 from trackroller.report.pages.study import contents
@@ -51,7 +51,6 @@ def trade(x, y, slip=None):
     ds["roller_life_hours"] = ("case", x(a, b), {"units": "h"})
     ds["friction_power"] = ("case", y(a, b), {"units": "W"})
     ds["regime"] = ("case", np.zeros(a.size, dtype=np.int8) if slip is None else slip(a, b).astype(np.int8))
-    ds.attrs = {"study": study.merged()}
     return ds
 
 
@@ -59,9 +58,9 @@ def test_study_set_respects_regimes_and_constraints():
     """Life grows with velocity, so does power: without limits all on the line; slip and the limit cut it."""
     ds = trade(lambda a, b: 100 * a, lambda a, b: 10 * a, lambda a, b: a > 1.9)
     goals = {"roller_life_hours": "max", "friction_power": "min"}
-    free = pareto(ds, goals)
+    free = pareto(results_of(ds), goals)
     assert free.sizes["row"] == int((ds["velocity"] <= 1.9).sum()) and bool((free["optimal"] == 1).all())
-    tight = pareto(ds, goals, ["friction_power < 15", "velocity >= 1.2"])
+    tight = pareto(results_of(ds), goals, ["friction_power < 15", "velocity >= 1.2"])
     assert float(tight["friction_power"].max()) < 15 and float(tight["velocity"].min()) >= 1.2
     assert "friction_power < 15" in tight.attrs["excluded"] and "regime" in tight.attrs["excluded"]
     np.testing.assert_allclose(tight["roller_life_hours"], 100 * ds["velocity"].values[tight["row"].values])
@@ -70,7 +69,8 @@ def test_study_set_respects_regimes_and_constraints():
 def test_sentence_tells_the_size_and_the_ends():
     """Counts and ends come from the data."""
     front = pareto(
-        trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b), {"roller_life_hours": "max", "friction_power": "min"}
+        results_of(trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b)),
+        {"roller_life_hours": "max", "friction_power": "min"},
     )
     text = pareto_sentence(front).text
     assert text.startswith(
@@ -84,7 +84,8 @@ def test_sentence_tells_the_size_and_the_ends():
 
 def test_a_single_best_design_is_called_so():
     """The Pareto set is one design if this design is best in every goal."""
-    front = pareto(trade(lambda a, b: 100 - a, lambda a, b: a), {"roller_life_hours": "max", "friction_power": "min"})
+    ds = trade(lambda a, b: 100 - a, lambda a, b: a)
+    front = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})
     assert pareto_sentence(front).text.startswith(
         "One of 400 allowed designs is best in everything: life of the roller 99"
     )
@@ -107,7 +108,7 @@ def test_a_single_best_design_is_called_so():
 def test_wrong_goals_are_refused(objectives, constraints, says):
     """Names, directions and limits are checked, with what is allowed."""
     with pytest.raises(InputError, match=says):
-        pareto(trade(lambda a, b: a, lambda a, b: b + 1), objectives, constraints)
+        pareto(results_of(trade(lambda a, b: a, lambda a, b: b + 1)), objectives, constraints)
 
 
 def test_figures_of_the_set_are_drawn_in_words():
@@ -116,7 +117,7 @@ def test_figures_of_the_set_are_drawn_in_words():
     from trackroller.report.figures.pareto import pareto_front
 
     ds = trade(lambda a, b: 100 * a * (1.01 - b), lambda a, b: 10 * a * (1 + b))
-    front = pareto(ds, {"roller_life_hours": "max", "friction_power": "min"})
+    front = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})
     with style.look():
         _, first = pareto_front(front)
     assert "a designer cannot choose: " in first.caption
@@ -148,21 +149,20 @@ def test_design_points_are_compared_by_their_statistics():
     v, a, angle = (ds[n].values for n in ("velocity", "axial_force", "contact_angle"))
     ds["roller_life_hours"] = ("case", 100 * v * (1 + a) * np.where(angle > 33, 0.7, 1.0), {"units": "h"})
     ds["friction_power"] = ("case", v**2 * (1 + a**2) * np.where(angle > 33, 0.8, 1.0), {"units": "W"})
-    ds.attrs = {"study": study.merged()}
-    sens = analyse_dataset(ds)
-    front = study_pareto(StudyView.of(ds, sens))
+    sens = analyse(results_of(ds))
+    front = study_pareto(view_of(ds, sens))
     life, power = (ds[n].values.reshape(8, 50) for n in ("roller_life_hours", "friction_power"))
     table = [np.sort(life)[:, 4], power.mean(axis=1), (life >= 150).mean(axis=1), v.reshape(8, 50)[:, 0]]
     for name, values in zip(data["pareto"], table, strict=True):
         np.testing.assert_allclose(front[name], values)
     optimal = brute(np.stack(table, axis=1) * np.array([-1.0, 1.0, -1.0, 1.0]))
     np.testing.assert_array_equal(front["optimal"], optimal)
-    text = pareto_sentence(front, StudyView.of(ds)).text
+    text = pareto_sentence(front, view_of(ds)).text
     assert text.startswith(f"{optimal.sum()} of 8 allowed design points are Pareto-optimal: from ")
-    told = {t.name: t for t in contents(StudyView.of(ds, sens))["decide"]}
+    told = {t.name: t for t in contents(view_of(ds, sens))["decide"]}
     assert told["pareto"].heads[:3] == ["Design point", "B10 of life of the roller [h] ↑", told["pareto"].heads[2]]
     assert len(told["pareto"].rows) == optimal.sum() and "percentiles_friction_power" in told
-    assert study_pareto(StudyView.of(ds)) is None  # without an analysis there are no statistics
+    assert study_pareto(view_of(ds)) is None  # without an analysis there are no statistics
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from synthetic_results import results_of, view_of
 
 from trackroller.analysis.parts import of_groups, within_levels
-from trackroller.analysis.sensitivity import analyse_dataset
+from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.sobol import sobol
-from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.report.tables.indices import part_tables
 from trackroller.report.words.in_short import in_short
@@ -186,13 +186,13 @@ def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
     analysis = {"groups": {"load": ["axial_force", "radial_force"]}, "outputs": ["roller_life_hours"], "resamples": 60}
     ds = solved(FILE | {"exchange": exchange, "analysis": analysis})
     assert ds.sizes["case"] == 64 * (10 if exchange == "factors" else 8)
-    sens = analyse_dataset(ds)
+    sens = analyse(results_of(ds))
     sens.to_netcdf(tmp_path / "sensitivity.nc")
     assert sens["group"].values.tolist() == ["load", "friction_coefficient", "roller_material"]
     assert ("ST" in sens) == (exchange == "factors") and np.isfinite(sens["take_times"]).all()
     table = part_tables(sens)[0]
     assert [row[1] for row in table.rows] == ["Load", "Friction coefficient", "Roller material"]
-    text = " ".join(s.text for head, said in in_short(StudyView.of(ds, sens), []) for s in said)
+    text = " ".join(s.text for head, said in in_short(view_of(ds, sens), []) for s in said)
     assert "By groups, roller material accounts for" in text and "load" in text
     assert (text.index("By groups") < text.index("explains")) if exchange == "groups" else "(total index)" in text
 
@@ -201,7 +201,7 @@ def test_levels_reach_analysis_table_and_summary():
     analysis = {"conditional_on": "roller_material", "outputs": ["roller_life_hours"], "resamples": 60}
     for design in ("saltelli", "lhs"):
         ds = solved(FILE | {"design": design, "samples": 256, "analysis": analysis})
-        sens = analyse_dataset(ds)
+        sens = analyse(results_of(ds))
         assert sens["conditional_S1"].sel(level="POM", factor="friction_coefficient").item() > 0.7
         said = level_indices(sens, "roller_life_hours")
         assert said.values["lead"]["POM"] == "friction_coefficient"
@@ -218,7 +218,7 @@ def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):
     ds = study.design()
     ds["roller_life_hours"] = ("case", np.exp(ds["axial_force"].values), {"units": "h"})
     ds.attrs["study"] = json.dumps(data | {"analysis": {"conditional_on": "roller_material", "measures": ["first"]}})
-    sens = analyse_dataset(ds)
+    sens = analyse(results_of(ds))
     assert (sens["conditional_S1"].sel(output="roller_life_hours", factor="axial_force") > 0.8).all()
     with pytest.raises(InputError, match="Did you mean 'roller_material'"):
         parse_study(data | {"analysis": {"conditional_on": "roler_material"}})

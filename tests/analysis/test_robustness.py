@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-import xarray as xr
 from scipy import stats
+from synthetic_results import results_of
 
-from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
@@ -29,7 +28,6 @@ def solved(fake, path=None, data=INNER_OUTER):
     ds = study.design()
     for name, values in fake(ds).items():
         ds[name] = ("case", values, {"units": "h"} if "life" in name else {})
-    ds.attrs = {"study": study.merged()}
     if path is not None:
         ds.to_netcdf(path)
     return ds
@@ -45,8 +43,7 @@ def lognormal(ds):
 def test_percentiles_b10_and_probabilities_match_the_closed_forms(tmp_path):
     """Lognormal life through files: B10 = 10**(3 - 1.2816 * 0.2), median, and a slip probability of 10 %."""
     solved(lognormal, tmp_path / "study.nc")
-    analyse(tmp_path / "study.nc", tmp_path / "out.nc")
-    out = xr.load_dataset(tmp_path / "out.nc")
+    out = analyse(results_of(tmp_path / "study.nc"))
     np.testing.assert_array_equal(out["velocity"], [30, 60])
     life = out.sel(output="roller_life_hours")
     exact = 10 ** (3 - stats.norm.ppf(0.9) * 0.2) * np.array([1, 10])
@@ -63,7 +60,7 @@ def test_percentiles_b10_and_probabilities_match_the_closed_forms(tmp_path):
 def test_sentence_names_the_best_design_point():
     """The point with ten times the life is named with its B10 and its slip."""
     ds = solved(lognormal)
-    text = best_point(robustness(ds, design_of(ds), {}), "roller_life_hours").text
+    text = best_point(robustness(results_of(ds), {}), "roller_life_hours").text
     assert text.startswith(
         "Best B10 of the life of the roller: at mean travel speed 60 m/min nine of ten rolling cases reach"
     )
@@ -78,7 +75,7 @@ def test_unlimited_lives_are_ranked_and_not_dropped():
         return {"roller_life_hours": np.where(ds["axial_force"].values > 0, np.inf, life)}
 
     ds = solved(fake)
-    life = robustness(ds, design_of(ds), {}).sel(output="roller_life_hours")
+    life = robustness(results_of(ds), {}).sel(output="roller_life_hours")
     np.testing.assert_allclose(life["b10"], 10 ** (3 - stats.norm.ppf(0.9) * 0.2), rtol=0.02)
     assert np.isposinf(life["percentile_value"].sel(percentile=90)).all()
     np.testing.assert_allclose(life["used_share"], 1.0)
@@ -93,7 +90,7 @@ def test_failed_rows_never_lengthen_the_safe_life():
         return {"roller_life_hours": np.where(regime == 3, np.nan, life), "regime": regime}
 
     ds = solved(fake)
-    out = robustness(ds, design_of(ds), {})
+    out = robustness(results_of(ds), {})
     life = out.sel(output="roller_life_hours")
     assert (life["b10_safe"] == 0).all() and (life["b10"] > 400).all()
     np.testing.assert_allclose(out["probability"].sel(regime="failed"), 0.25, atol=1e-3)
@@ -121,7 +118,7 @@ def test_robustness_refuses_another_design():
     data = {"name": "flat", "design": "lhs", "samples": 50, "factors": INNER_OUTER["factors"]}
     ds = solved(lognormal, data=data)
     with pytest.raises(InputError, match="inner_outer"):
-        robustness(ds, design_of(ds), {})
+        robustness(results_of(ds), {})
 
 
 def test_figure_of_design_points_is_drawn():
@@ -131,5 +128,5 @@ def test_figure_of_design_points_is_drawn():
 
     ds = solved(lognormal)
     with style.look():
-        figure, info = robust_points(robustness(ds, design_of(ds), {}), "roller_life_hours")
+        figure, info = robust_points(robustness(results_of(ds), {}), "roller_life_hours")
     assert len(figure.axes) == 2 and "B10" in info.caption

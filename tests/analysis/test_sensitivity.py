@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from synthetic_results import results_of
 
 from trackroller.analysis import convergence, indices
 from trackroller.analysis.givendata import first_order, given_data, prcc
 from trackroller.analysis.pawn import pawn
-from trackroller.analysis.sensitivity import analyse, analyse_dataset
+from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.sobol import sobol
-from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.report.words.indices import caveat
 from trackroller.study.design.sampling import sample
@@ -41,7 +41,6 @@ def solved(data, fake, path=None):
     ds = design.copy()
     for name, values in fake(design).items():
         ds[name] = ("case", values)
-    ds.attrs = {"study": study.merged()}
     if path is not None:
         ds.to_netcdf(path)
     return ds
@@ -62,8 +61,7 @@ def carried(design):
 def test_ishigami_indices_come_right_through_the_whole_chain(tmp_path):
     """Study file to design, netCDF, Saltelli analysis, netCDF: indices within their intervals and within 0.03."""
     solved({"name": "ishigami", "design": "saltelli", "samples": 1024, "factors": CARRIERS}, carried, tmp_path / "s.nc")
-    analyse(tmp_path / "s.nc", tmp_path / "sensitivity.nc")
-    result = xr.load_dataset(tmp_path / "sensitivity.nc")
+    result = analyse(results_of(tmp_path / "s.nc"))
     first, total, pair = ishigami_indices()
     for output in ("friction_power", "life"):  # log10 of the life is the function itself
         part = result.sel(output=output)
@@ -132,7 +130,7 @@ def run_chain(data, folder, function):
         )
 
     run_study(parse_study(data), folder, solver=solver)
-    return analyse(folder / data["name"] / "study.nc", folder / "sensitivity.nc")
+    return analyse(results_of(folder / data["name"] / "study.nc"))
 
 
 def test_ishigami_through_the_study_runner_with_a_case_that_raises(tmp_path):
@@ -260,7 +258,7 @@ def test_unstacked_grid_file_gives_the_same_shares(tmp_path):
     coords = {"velocity": [10.0, 20.0, 40.0], "material_pair": ["PA6 / PA6", "POM / PA6"]}
     grid = xr.Dataset({"y": (("material_pair", "velocity"), y.T)}, coords, ds.attrs)
     grid.to_netcdf(tmp_path / "study.nc")
-    result = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
+    result = analyse(results_of(tmp_path / "study.nc"))
     v = np.var([10, 20, 40.0])
     np.testing.assert_allclose(result["main_share"].sel(output="y"), np.array([v, 2500]) / (v + 2500))
 
@@ -268,12 +266,12 @@ def test_unstacked_grid_file_gives_the_same_shares(tmp_path):
 def test_one_failed_row_costs_a_block_and_no_index_goes_to_zero():
     """Where a NaN would make S1 = ST = 0 in silence, its block goes and the note says so."""
     ds = solved({"name": "i", "design": "saltelli", "samples": 256, "factors": CARRIERS}, carried)
-    whole = analyse_dataset(ds)
+    whole = analyse(results_of(ds))
     regime = np.zeros(ds.sizes["case"], dtype=np.int8)
     regime[[5, 100]] = 3
     broken = ds.assign(regime=("case", regime))
     broken["friction_power"] = broken["friction_power"].where(broken["regime"] == 0)
-    part = analyse_dataset(broken)
+    part = analyse(results_of(broken))
     note = str(part["note"].sel(output="friction_power").item())
     assert note == "254 of 256 blocks used; rows left out: 2 failed"
     np.testing.assert_allclose(part["ST"].sel(output="life"), whole["ST"].sel(output="life"), atol=0.02)
@@ -289,11 +287,11 @@ def test_full_slip_rows_are_left_out_counted_and_analysed_on_their_own():
         return {"friction_power": np.where(slip, 1e6, x), "regime": slip.astype(np.int8)}
 
     data = {"name": "i", "design": "lhs", "samples": 600, "factors": CARRIERS}
-    result = analyse_dataset(solved(data, fake))
+    result = analyse(results_of(solved(data, fake)))
     assert float(result["first"].sel(output="friction_power", factor="axial_force")) > 0.97
     assert float(result["first"].sel(output="full_slip", factor="velocity")) > 0.8  # binned: the step is smeared
     assert "full slip" in str(result["note"].sel(output="friction_power").item())
-    kept = analyse_dataset(solved(data | {"analysis": {"keep": ["rolling", "full_slip"]}}, fake))
+    kept = analyse(results_of(solved(data | {"analysis": {"keep": ["rolling", "full_slip"]}}, fake)))
     assert float(kept["first"].sel(output="friction_power", factor="axial_force")) < 0.1
 
 
@@ -305,7 +303,7 @@ def test_mostly_unusable_saltelli_design_is_marked_and_given_data_still_stand():
         y = design["axial_force"].values + 0.1 * design["velocity"].values
         return {"friction_power": np.where(rng.random(y.size) < 0.3, np.nan, y)}
 
-    result = analyse_dataset(solved({"name": "i", "design": "saltelli", "samples": 512, "factors": CARRIERS}, fake))
+    result = analyse(results_of(solved({"name": "i", "design": "saltelli", "samples": 512, "factors": CARRIERS}, fake)))
     part = result.sel(output="friction_power")
     assert int(part["reliable"]) == 0 and "not the whole range" in str(part["note"].item())
     assert float(part["first"].sel(factor="axial_force")) == pytest.approx(0.99, abs=0.03)
@@ -330,7 +328,7 @@ def test_note_of_a_grid_counts_the_cells_left_out_because_one_failed():
         y = design["axial_force"].values + design["velocity"].values
         return {"friction_power": np.where(y == 130, np.nan, y)}
 
-    result = analyse_dataset(solved({"name": "g", "factors": factors}, fake))
+    result = analyse(results_of(solved({"name": "g", "factors": factors}, fake)))
     told = str(result["note"].sel(output="friction_power").item())
     assert told.startswith("16 of 20 cells used; rows left out: 1 ")
     assert "; 3 further cells of their levels" in told
@@ -414,9 +412,9 @@ def test_rows_of_another_study_are_refused():
     """Rows and study file that do not belong together give no indices."""
     ds = solved({"name": "i", "design": "lhs", "samples": 100, "factors": CARRIERS}, carried)
     with pytest.raises(InputError, match="rows"):
-        analyse_dataset(ds.isel(case=slice(0, 50)))
+        analyse(results_of(ds.isel(case=slice(0, 50))))
     with pytest.raises(InputError, match="belong together"):
-        analyse_dataset(ds.assign(velocity=ds["velocity"] * 1.01))
+        analyse(results_of(ds.assign(velocity=ds["velocity"] * 1.01)))
 
 
 def test_outputs_of_a_solved_case_join_contacts_and_bodies():
@@ -453,8 +451,8 @@ def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
         return {"roller_life_hours": 10 ** (1 - y / 10), "friction_power": 20 + y * 0.5}
 
     solved({"name": "i", "design": "saltelli", "samples": 128, "factors": CARRIERS}, fake, tmp_path / "study.nc")
-    analyse(tmp_path / "study.nc", tmp_path / "sensitivity.nc")
-    infos = draw_all(StudyView.read(tmp_path / "study.nc", tmp_path / "sensitivity.nc"), tmp_path / "figures")
+    results = results_of(tmp_path / "study.nc")
+    infos = draw_all(results.view.analysed(analyse(results)), tmp_path / "figures")
     said = {i.name: i.sentence for i in infos}
     assert {
         "tornado-roller_life_hours",
@@ -482,7 +480,7 @@ def test_morris_figures_and_words_name_what_matters(tmp_path):
         x, m = design["axial_force"].values, design["motor_force"].values
         return {"friction_power": 5 * x + m * (design["velocity"].values - 4) * 2}
 
-    sens = analyse_dataset(solved({"name": "i", "design": "morris", "samples": 40, "factors": CARRIERS}, fake))
+    sens = analyse(results_of(solved({"name": "i", "design": "morris", "samples": 40, "factors": CARRIERS}, fake)))
     with style.look():
         _, plane = morris_plane(sens, "friction_power")
         _, bars = tornado(sens, "friction_power")

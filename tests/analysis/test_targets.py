@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from scipy import stats
+from synthetic_results import results_of
 
 from trackroller.analysis.probability import bounds, probabilities
-from trackroller.analysis.sensitivity import analyse, analyse_dataset
+from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
 from trackroller.report.words.design_points import best_point
 from trackroller.study.design.grown_lhs import grown_lhs
@@ -35,7 +36,6 @@ def solved(data, path=None):
     ds["roller_life_hours"] = ("case", 500 * 10 ** (0.2 * (ds["axial_force"].values + shift)), {"units": "h"})
     ds["friction_power"] = ("case", 32 * ds["friction_coefficient"].values, {"units": "W"})
     ds["regime"] = ("case", (ds["friction_coefficient"].values > 0.28).astype("i1"))
-    ds.attrs = {"study": study.merged()}
     if path is not None:
         ds.to_netcdf(path)
     return ds
@@ -44,7 +44,7 @@ def solved(data, path=None):
 def test_probabilities_of_points_and_levels_match_the_closed_forms(tmp_path):
     """Through files: P(z > -shift) times 0.9 that roll; power below 8 W in three of four; the mean at each level."""
     solved(POINTS, tmp_path / "study.nc")
-    out = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
+    out = analyse(results_of(tmp_path / "study.nc"))
     life = stats.norm.cdf(np.array([[0, 1, 2], [-1, 0, 1]])) * 0.9
     found = out["target_probability"].sel(target=out["target"] == "roller_life_hours").values.ravel()
     np.testing.assert_allclose(found, life.ravel(), atol=0.015)
@@ -64,7 +64,7 @@ def test_a_life_counts_the_scatter_of_its_material():
     """Scatter 0.2 of the study and s of the material: P = 0.9 Phi(shift 0.2 / hypot(0.2, s))."""
     data = POINTS | {"analysis": {"target": {"roller_life_hours": {"min": 500}}, "material_scatter": 9}}
     own = np.log10(9) / 2.5631
-    found = analyse_dataset(solved(data))["target_probability"].values[0]
+    found = analyse(results_of(solved(data)))["target_probability"].values[0]
     exact = 0.9 * stats.norm.cdf(0.2 * np.array([0, 1, 2, -1, 0, 1]) / np.hypot(0.2, own))
     np.testing.assert_allclose(found, exact, atol=0.01)
 
@@ -77,7 +77,7 @@ def test_levels_of_other_designs_have_a_probability(design):
     factors = {"contact_angle": {"values": [30.0, 40.0]}, **(listed if design == "grid" else spread)}
     data = POINTS | {"design": design, "samples": 256, "factors": factors, "base": {"velocity": 30.0}}
     data |= {"analysis": {"target": {"friction_power": {"max": 8}}, "conditional_on": "contact_angle"}}
-    out = analyse_dataset(solved(data))
+    out = analyse(results_of(solved(data)))
     assert out.sizes["level"] == 2 < out.sizes["target_level"], "the levels of both keys stand side by side"
     assert float(out["target_probability"][0]) == pytest.approx(0.75, abs=0.005)
     own = (out["level_factor"] == "friction_coefficient").values
@@ -86,7 +86,7 @@ def test_levels_of_other_designs_have_a_probability(design):
 
 
 def test_cases_that_miss_a_constraint_miss_the_target():
-    out = analyse_dataset(solved(POINTS | {"constraints": ["friction_coefficient < 0.2"]}))
+    out = analyse(results_of(solved(POINTS | {"constraints": ["friction_coefficient < 0.2"]})))
     power = out["target_probability"].sel(target=out["target"] == "friction_power").values
     np.testing.assert_allclose(power, 0.5, atol=0.005)
     said = best_point(out, "roller_life_hours")

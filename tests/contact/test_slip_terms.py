@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from reference_cases import DATA, solve_sliding
+from synthetic_results import results_of
 
 import trackroller as tr
 from trackroller.contact.cross_sections import arcs
@@ -229,7 +230,6 @@ def test_time_of_a_study_counts_each_contact_model():
 
 
 def test_figures_hold_the_most_exact_of_several_contact_models():
-    from trackroller.analysis.table import StudyView
 
     groups = ("forces", "peak_stress", "life")
     made = [tr.solve(tr.Case(), outputs=groups, contact_model=name) for name in ("sliding", "fastsim")]
@@ -240,4 +240,4 @@ def test_figures_hold_the_most_exact_of_several_contact_models():
         compat="override",
         combine_attrs="override",
     )
-    assert StudyView.of(ds).held_level("contact_model") == "fastsim"
+    assert results_of(ds).view.held_level("contact_model") == "fastsim"

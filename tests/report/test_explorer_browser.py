@@ -10,15 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 import yaml
 from browser import CHROMIUM, Browser
-from synthetic_results import PAIRS, grid_study, sampled_study
+from synthetic_results import PAIRS, grid_study, results_of, sampled_study, view_of
 
 from trackroller.analysis.pareto import pareto
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.sensitivity import analyse
-from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.page import write_explorer
 from trackroller.report.pages.study import write_report
 from trackroller.study.file.load import parse_study
@@ -72,9 +70,7 @@ def place(tmp_path_factory):
 
 
 def written(ds, folder, name):
-    (folder / name).mkdir()
-    ds.to_netcdf(folder / name / "study.nc")
-    return write_explorer(folder / name)
+    return write_explorer(view_of(ds), folder / f"{name}.html")
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +140,7 @@ def expected(view, wanted):
 
 def test_counts_and_rows_of_ten_selections_are_those_of_the_data_set(browser, pages, grid, sample):
     for name, ds in (("grid", grid), ("sample", sample)):
-        view, page = StudyView.of(ds), browser.open(pages[name])
+        view, page = view_of(ds), browser.open(pages[name])
         for wanted in SELECTIONS[name]:
             mask = expected(view, wanted)
             page.run(f"trackroller.select({json.dumps(wanted)})")
@@ -179,7 +175,7 @@ def test_ten_pareto_sets_are_those_of_the_package(browser, pages, grid, sample):
     for name, ds in (("grid", grid), ("sample", sample)):
         page, sizes = browser.open(pages[name]), []
         for goals, limits, constraints in QUESTIONS:
-            out = pareto(ds, goals, constraints)
+            out = pareto(results_of(ds), goals, constraints)
             wanted = out["row"].values[out["optimal"].values == 1].tolist()
             assert page.run(f"trackroller.pareto({json.dumps(goals)}, {json.dumps(limits)})") == wanted
             told = [text for text in constraints if text != "regime != failed"]
@@ -222,11 +218,11 @@ def test_goals_that_are_statistics_compare_design_points(browser, place):
     assert "statistics over its scatter" in said and "it stands in report.html under Decide" in said
     assert page.run("trackroller.points()") == [] and page.complaints == []
     page.close()
-    analyse(place / "robust" / "study.nc", place / "robust" / "sensitivity.nc")
-    front = study_pareto(StudyView.of(ds, xr.load_dataset(place / "robust" / "sensitivity.nc")))
+    sens = analyse(results_of(ds))
+    front = study_pareto(view_of(ds, sens))
     best = np.flatnonzero(front["optimal"].values == 1)
     assert 1 < len(best) < front.sizes["row"] == 6
-    page = browser.open(write_explorer(place / "robust"))
+    page = browser.open(write_explorer(view_of(ds, sens), place / "robust.html"))
     assert page.run("trackroller.points()") == best.tolist()
     assert f"{len(best)} of 6 are beaten by no other" in page.run("document.querySelector('.points').textContent")
     page.run("document.querySelectorAll('.points button')[1].click()")
@@ -244,13 +240,13 @@ def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, gri
     told = yaml.safe_load(grid.attrs["study"]) | {"constraints": constraints}
     told["factors"] = {name: told["factors"][name] for name in grid.dims if name in told["factors"]}
     ds = grid.assign_attrs(study=yaml.safe_dump(told, sort_keys=False))
-    out = pareto(ds, {"roller_life_hours": "max", "axial_force": "max"}, constraints)
+    out = pareto(results_of(ds), {"roller_life_hours": "max", "axial_force": "max"}, constraints)
     page = browser.open(written(ds, place, "constraints"))
     asked = "{roller_life_hours: 'max', axial_force: 'max'}, {constraints: ['met']}"
     wanted = out["row"].values[out["optimal"].values == 1].tolist()
     assert page.run(f"trackroller.pareto({asked})") == wanted != page.run(f"trackroller.pareto({asked[:48]})")
     assert constraints[0] in page.run("document.querySelector('#explorer').textContent")
-    view = StudyView.of(ds)
+    view = view_of(ds)
     lost = int((view.inside & ~view.valid).sum())
     assert lost and f"{lost} constraints not met" in page.run("document.querySelector('.counts').textContent")
     assert shown(page)[1] == view.valid.sum()
@@ -379,7 +375,7 @@ def test_slices_of_a_grid_follow_the_slider(page, grid):
 def test_medians_of_a_sample_lie_within_their_band(browser, pages, sample):
     page = browser.open(pages["sample"])
     (life, *_), _ = page.run("trackroller.slice()")
-    valid = sample["roller_life_hours"].values[StudyView.of(sample).valid]
+    valid = sample["roller_life_hours"].values[view_of(sample).valid]
     assert len(life) > 5 and all(s["low"] <= s["median"] <= s["high"] for s in life)
     assert {s["median"] for s in life} <= set(valid.tolist())
     page.close()
@@ -483,7 +479,7 @@ STUDIES = {
 def test_studies_of_every_form_open_without_a_complaint(browser, place, name):
     ds = STUDIES[name]()
     page = browser.open(written(ds, place, name))
-    view = StudyView.of(ds)
+    view = view_of(ds)
     assert shown(page) == [len(view.table), view.valid.sum(), len(view.table) - view.valid.sum()]
     page.run("trackroller.pin(0); trackroller.select({regime: ['rolling', 'failed']})")
     assert shown(page)[0] == np.isin(view.regime, [0, 3]).sum()
@@ -512,14 +508,14 @@ def test_a_larger_study_shows_a_stated_sample_with_its_own_pareto_set(browser, p
     ds = ds.assign_attrs(study=yaml.safe_dump(told))
     page = browser.open(written(ds, place, "sampled"))
     said = page.run("document.querySelector('#explore p').textContent")
-    view, rows = StudyView.of(ds), page.run("trackroller.selected()")
+    view, rows = view_of(ds), page.run("trackroller.selected()")
     assert said.startswith(f"{len(rows):,} of 60,000 cases are shown: a sample by regime and validity")
     assert 49_900 < len(rows) <= 50_000 and len(rows) == shown(page)[0] == len(set(rows)) and max(rows) < 60_000
     assert shown(page)[1] == view.valid[rows].sum()
     for regime in np.unique(view.regime):
         share = (view.regime == regime).mean()
         assert (view.regime[rows] == regime).mean() == pytest.approx(share, rel=0.02)
-    out = pareto(ds, goals)
+    out = pareto(results_of(ds), goals)
     wanted = out["row"].values[out["optimal"].values == 1].tolist()
     assert page.run(f"trackroller.pareto({json.dumps(goals)})") == wanted
     assert page.complaints == []
@@ -536,8 +532,7 @@ def test_a_closed_figure_returns_to_its_place_and_keeps_the_focus(browser, place
     for name in names:
         (folder / f"{name}.svg").write_text(SVG)
     (folder / "index.json").write_text(json.dumps([{"name": n, "caption": n, "sentence": ""} for n in names]))
-    grid.to_netcdf(place / "enlarged.nc")
-    page = browser.open(write_report(StudyView.read(place / "enlarged.nc"), folder, place / "report.html"))
+    page = browser.open(write_report(view_of(grid), folder, place / "report.html"))
     for close in ("document.querySelector('figure:target .close').click()", "escape"):
         page.box("#regime_map a")
         page.run("document.querySelector('#regime_map a').click()")

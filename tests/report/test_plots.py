@@ -12,14 +12,13 @@ import pytest
 import xarray as xr
 from matplotlib.text import Text
 from reference_cases import solve_sliding
-from synthetic_results import PAIRS, grid_study, sampled_study
+from synthetic_results import PAIRS, grid_study, results_of, sampled_study, view_of
 
 import trackroller as tr
 from trackroller.analysis.columns import at_surface
 from trackroller.analysis.effects import paired_effect
 from trackroller.analysis.ranking import ranked_factors
-from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
 from trackroller.report.figures import style
 from trackroller.report.figures.contact import plot_case
@@ -51,7 +50,7 @@ SMALL = {
 
 def drawn(ds: xr.Dataset, folder) -> set[str]:
     ds.to_netcdf(folder / "study.nc")
-    return {info.name for info in draw_all(StudyView.read(folder / "study.nc"), folder / "figures")}
+    return {info.name for info in draw_all(view_of(folder / "study.nc"), folder / "figures")}
 
 
 @pytest.fixture
@@ -92,7 +91,7 @@ def test_figures_are_the_wide_column_and_nothing_is_cut_off(grid):
 
 @pytest.mark.parametrize("make", [lambda: grid_study(SMALL), lambda: sampled_study(200)])
 def test_every_text_has_at_least_seven_points(make):
-    view = StudyView.of(make())
+    view = view_of(make())
     with style.look():
         for draw in OF_CASES:
             figure = (draw(view) or [None])[0]
@@ -105,7 +104,7 @@ def test_a_sample_shows_medians_and_bands_and_is_not_coloured_by_its_own_fit():
     ds = sampled_study(300)
     names = ["friction_coefficient", "roller_profile_radius", "axial_force", "motor_force", "material_pair"]
     share = xr.DataArray([[0.1, 0.3, 0.1, 0.0, 0.2]], {"output": ["roller_peak_stress"], "factor": names})
-    view = StudyView.of(ds, xr.Dataset({"first": share}, attrs={"method": "lhs"}))
+    view = view_of(ds, xr.Dataset({"first": share}, attrs={"method": "lhs"}))
     with style.look():
         figure, info = stress_against_fit(view)
         forces, _ = forces_against_axial(view)
@@ -124,7 +123,7 @@ def test_materials_of_the_same_stresses_share_a_line():
     factors = SMALL | {"material_pair": [PAIRS[0], PAIRS[1], PAIRS[3]]}
     ds = grid_study(factors)
     with style.look():
-        figure, _ = stress_against_fit(StudyView.of(ds, analyse_dataset(ds)))
+        figure, _ = stress_against_fit(view_of(ds, analyse(results_of(ds))))
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert any(" and " in name for name in names) and len(names) == 4  # two lines, two kinds of marks
 
@@ -133,7 +132,7 @@ def test_the_same_study_gives_the_same_svg(grid, tmp_path):
     folder, _ = grid
     for draw in (regime_map, forces_against_axial):
         with style.look():
-            figure, info = draw(StudyView.of(grid_study(SMALL)))
+            figure, info = draw(view_of(grid_study(SMALL)))
             again, _ = style.save(figure, tmp_path, info.name)
         assert again.read_bytes() == (folder / "figures" / f"{info.name}.svg").read_bytes()
 
@@ -180,7 +179,7 @@ def test_one_case_alone_draws_nothing_and_raises_nothing(tmp_path):
 
 
 def test_held_factors_take_the_base_level_else_the_middle():
-    view = StudyView.of(grid_study(SMALL))
+    view = view_of(grid_study(SMALL))
     assert view.grid and set(view.factors) == set(SMALL)
     assert view.held_level("roller_profile_radius") == -7.0
     assert view.held_level("axial_force") == 30.0
@@ -190,7 +189,7 @@ def test_held_factors_take_the_base_level_else_the_middle():
 
 
 def test_an_effect_is_the_median_of_pairs():
-    view = StudyView.of(grid_study(SMALL))
+    view = view_of(grid_study(SMALL))
     effect = paired_effect(view, "roller_life_hours", "motor_force", view.valid)
     table = view.table[view.valid].set_index([f for f in SMALL if f != "motor_force"])
     driven, free = (table[table["motor_force"] == level]["roller_life_hours"] for level in (-30.0, 0.0))
@@ -204,7 +203,7 @@ def test_parameters_computed_from_factors_are_no_factors_but_can_be_drawn():
     study = "factors: {ratio: {uniform: [1, 2]}, roller_profile_radius: {expression: -6 * ratio}}"
     ds = ds.assign_coords(ratio=("case", -ds["roller_profile_radius"].values / 6))
     ds.attrs["study"] = study
-    view = StudyView.of(ds)
+    view = view_of(ds)
     assert view.factors == ("ratio",) and view.behind("roller_profile_radius") == ("case",)
 
 
@@ -322,7 +321,7 @@ def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force, unsave
 def test_figures_rank_factors_by_the_indices_of_the_tables_else_by_the_study_file():
     """The largest index leads, whatever the rows say; without an analysis the order of the study file counts."""
     ds = grid_study({"material_pair": list(PAIRS[:3]), "friction_coefficient": [0.2, 0.3], "axial_force": [0.0, 30.0]})
-    sens = analyse_dataset(ds)
+    sens = analyse(results_of(ds))
     names = ("material_pair", "friction_coefficient", "axial_force")
     sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.1, 0.2, 0.7]
     assert list(ranked_factors(sens, "roller_life_hours", names)) == ["axial_force", "friction_coefficient", names[0]]
@@ -334,7 +333,7 @@ def test_figures_rank_factors_by_the_indices_of_the_tables_else_by_the_study_fil
     assert next(iter(ranked_factors(sens, "roller_life_hours", names[:2]))) == "friction_coefficient"
     sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.05, 0.25, 0.7]
     with style.look():
-        plain, coloured = (by_factor(StudyView.of(ds, s))[1].caption for s in (sens, None))
+        plain, coloured = (by_factor(view_of(ds, s))[1].caption for s in (sens, None))
     assert "each level of axial force" in plain and "each level of material pair" in coloured
 
 

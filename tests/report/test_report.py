@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from browser import CHROMIUM, Browser
-from synthetic_results import PAIRS, grid_study, sampled_study
+from synthetic_results import PAIRS, grid_study, sampled_study, view_of
 
-from trackroller.analysis.table import StudyView
 from trackroller.report.build import build_report
 from trackroller.report.figures.study import draw_all
 from trackroller.report.pages.study import contents, models_used, write_report
@@ -54,8 +53,8 @@ class _Balanced(HTMLParser):
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     grid_study(FACTORS).to_netcdf(folder / "study.nc")
-    draw_all(StudyView.read(folder / "study.nc"), folder / "figures")
-    return write_report(StudyView.read(folder / "study.nc"), folder / "figures", folder / "report.html")
+    draw_all(view_of(folder / "study.nc"), folder / "figures")
+    return write_report(view_of(folder / "study.nc"), folder / "figures", folder / "report.html")
 
 
 def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
@@ -100,7 +99,7 @@ def test_names_from_the_study_are_escaped_and_tags_balance(report):
 
 
 def test_regimes_name_the_levels_at_which_they_occur():
-    view = StudyView.of(grid_study(FACTORS))
+    view = view_of(grid_study(FACTORS))
     rows = {row[0]: row for row in regime_table(view).rows}
     assert sum(row[1] for row in rows.values()) == len(view.table)
     assert rows["lift-off"][3].endswith("only at axial force 130 N: in all designs there.")
@@ -109,7 +108,7 @@ def test_regimes_name_the_levels_at_which_they_occur():
 
 
 def test_events_of_all_designs_and_of_none():
-    view = StudyView.of(grid_study(FACTORS))
+    view = view_of(grid_study(FACTORS))
     everywhere = occurrence(view, np.ones(len(view.table), bool), "Slip")
     assert everywhere.text == "Slip occurs in all 540 designs."
     assert occurrence(view, np.zeros(len(view.table), bool), "Slip") is None
@@ -117,7 +116,7 @@ def test_events_of_all_designs_and_of_none():
 
 def test_validity_bits_are_counted_by_mask():
     ds = grid_study(FACTORS)
-    view = StudyView.of(ds)
+    view = view_of(ds)
     rows = {row[0]: row for row in validity_table(view).rows}
     assert rows["conformal"][3] == int((((ds["validity"] & 8) > 0) & (ds["regime"] == 0)).sum()) > 0
     assert rows["static"][2] == VALIDITY_BITS["static"]
@@ -126,7 +125,7 @@ def test_validity_bits_are_counted_by_mask():
 
 def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_life():
     ds = grid_study(FACTORS)
-    best = {row[0]: row[1:] for row in contents(StudyView.of(ds))["decide"][0].rows}
+    best = {row[0]: row[1:] for row in contents(view_of(ds))["decide"][0].rows}
     valid = (ds["regime"] == 0) & ((ds["validity"] & 15) == 0)
     frame = ds["roller_life_hours"].where(valid).to_dataframe(name="life").reset_index()
     groups = frame.groupby(["roller_profile_radius", "material_pair"]).life
@@ -140,7 +139,7 @@ def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_lif
 
 def test_a_loads_only_study_and_a_missing_figure_folder_still_give_a_report(tmp_path):
     ds = grid_study({"axial_force": [0.0, 130.0], "radial_force": [-200.0, -100.0]}, only=("normal_force",))
-    text = write_report(StudyView.of(ds), tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
+    text = write_report(view_of(ds), tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
     assert "<figure" not in text and "Best 1" not in text and "lift-off" in text
 
 
@@ -152,12 +151,12 @@ def test_a_study_in_which_everything_failed_shows_the_reasons(tmp_path):
             ds[name] = variable * np.nan
     ds["reason"] = xr.full_like(ds["regime"], "no convergence <x>", dtype=object)
     ds.to_netcdf(tmp_path / "study.nc")
-    text = write_report(StudyView.read(tmp_path / "study.nc"), tmp_path, tmp_path / "report.html").read_text()
+    text = write_report(view_of(tmp_path / "study.nc"), tmp_path, tmp_path / "report.html").read_text()
     assert "no convergence &lt;x&gt;" in text and "Best 1" not in text
 
 
 def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
-    found = contents(StudyView.of(sampled_study(60)))
+    found = contents(view_of(sampled_study(60)))
     values, spec = next(row[2:4] for row in found["factors"].rows if row[0].startswith("Friction coefficient"))
     assert spec == "uniform 0.02, 0.4" and "…" in values
     assert "design lhs" in found["facts"] and "60 cases" in found["facts"]
@@ -208,14 +207,14 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     asked["contact_model_used"][:] = 3
     assert models_used(asked) == [Row("Contact model used", "kalker_table in 40 of 40 cases")]
     assert models_used(asked.assign_attrs(contact_model="kalker_table")) == []
-    told = contents(StudyView.of(ds))
+    told = contents(view_of(ds))
     valid = dict(told["summary"])["Valid designs"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)
     assert models_used(sampled_study(40)) == []
 
 
 def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
-    view = StudyView.of(sampled_study(400))
+    view = view_of(sampled_study(400))
     hit = np.zeros(400, dtype=bool)
     hit[:3] = True
     said = occurrence(view, hit, "Jamming")

@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from synthetic_results import grid_study
+from synthetic_results import grid_study, view_of
 
-from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.cases import validity_table
@@ -44,13 +43,13 @@ def test_a_trend_that_pooling_turns_is_told_by_category():
     life = 10 ** (2 - 3 * friction + 3 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
     low, high = np.median(life[friction < 0.2]), np.median(life[friction > 0.3])
     assert high > low  # all rows together suggest that friction lengthens the life
-    view = StudyView.of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
+    view = view_of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
     said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
     assert said is None  # the materials share too little of the range to be compared
     # where both materials were tried over the whole range, the common trend is found
     friction = rng.uniform(0, 0.5, 400)
     life = 10 ** (2 - 3 * friction + 0.2 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
-    view = StudyView.of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
+    view = view_of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
     said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
     assert said.kind == "classes" and "shortens the median life of the roller" in said.text
 
@@ -59,7 +58,7 @@ def test_no_effect_is_stated_where_the_interval_holds_zero():
     rng = np.random.default_rng(1)
     axial = rng.uniform(0, 50, 300)
     life = 10 ** (3 + 3.0 * (rng.random(300) < 0.5))  # bimodal, whatever the axial force
-    view = StudyView.of(study({"axial_force": axial}, roller_life_hours=life))
+    view = view_of(study({"axial_force": axial}, roller_life_hours=life))
     said = effect_of(view, "roller_life_hours", "life of the roller", "axial_force", view.valid)
     assert said.kind == "classes_none" and said.text.startswith("No effect of axial force")
 
@@ -68,13 +67,13 @@ def test_sentences_use_all_rows_and_not_those_of_a_figure():
     rng = np.random.default_rng(2)
     axial = rng.uniform(0, 50, 5000)
     life = 10 ** (3 - axial / 50 + rng.normal(0, 0.3, 5000))
-    view = StudyView.of(study({"axial_force": axial}, roller_life_hours=life))
+    view = view_of(study({"axial_force": axial}, roller_life_hours=life))
     said = effect_of(view, "roller_life_hours", "life of the roller", "axial_force", view.valid)
     assert said.values["size"] == pytest.approx(5000 / 3, abs=2) and said.rows.sum() == 5000
 
 
 def test_a_single_event_is_named_and_attributed_to_nothing():
-    view = StudyView.of(grid_study())
+    view = view_of(grid_study())
     hit = np.zeros(len(view.table), bool)
     hit[77] = True
     text = occurrence(view, hit, "Lift-off").text
@@ -86,7 +85,7 @@ def test_head_lines_count_valid_cases_and_say_by_body_why_others_are_not():
     roller, guide = (ds["validity"] & 4) > 0, (ds["validity"] & 8) > 0
     bits = xr.concat([roller * 4 + guide * 8, guide * 8 + 0 * roller], "body").astype("int32")
     ds["validity_body"] = bits.transpose(..., "body")
-    view = StudyView.of(ds)
+    view = view_of(ds)
     said = valid_designs(view)
     rolls = ds["regime"] == 0
     exceeds = int((roller & rolls).sum())
@@ -119,17 +118,16 @@ def with_error(middle):
     both = np.stack([power, power], axis=1)
     ds["friction_power"] = (("case", "contact"), both, {"units": "W", "long_name": "friction power"})
     ds["regime"] = ("case", np.zeros(60, "i1"))
-    ds.attrs = {"study": asked.merged()}
     return ds.assign_coords(contact=[1, 2])
 
 
 def test_full_sliding_is_told_where_no_friction_work_tells_its_error():
     whole = with_error(1.27).assign(contact_model_used=("case", np.repeat([0, 2], 30)))
     forces = whole.drop_vars(["energy_residual", "friction_power"])
-    found = full_sliding(StudyView.of(forces))
+    found = full_sliding(view_of(forces))
     assert found is not None and found.values == {"count": 30} and "kalker" in found.text
     exact = forces.assign(contact_model_used=("case", np.full(60, 2)))
-    assert full_sliding(StudyView.of(whole)) is None and full_sliding(StudyView.of(exact)) is None
+    assert full_sliding(view_of(whole)) is None and full_sliding(view_of(exact)) is None
 
 
 def test_error_of_full_sliding_that_is_told_is_the_measured_one():
@@ -141,8 +139,8 @@ def test_error_of_full_sliding_that_is_told_is_the_measured_one():
 @pytest.mark.parametrize(("middle", "told"), [(1.27, True), (0.03, False)])
 def test_a_known_model_error_above_5_percent_is_told_with_its_size(middle, told):
     ds = with_error(middle)
-    assert (friction_error(StudyView.of(ds)) is not None) == told
-    found = contents(StudyView.of(ds))
+    assert (friction_error(view_of(ds)) is not None) == told
+    found = contents(view_of(ds))
     sure = " ".join(s.text for s in dict(found["summary"]).get("How sure", []))
     table = next(t for t in found["decide"] if t.name == "pareto")
     for text in (sure, table.note):
@@ -160,7 +158,7 @@ def test_a_set_with_designs_outside_the_model_says_how_many():
         attrs={"objectives": "a max, b min", "excluded": "nothing"},
     )
     ds = study({"axial_force": [0.0, 1.0]}, regime=[0, 1])
-    assert "1 of the set lie outside the model" in pareto_sentence(front, StudyView.of(ds)).text
+    assert "1 of the set lie outside the model" in pareto_sentence(front, view_of(ds)).text
 
 
 def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
@@ -184,7 +182,7 @@ def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
         attrs={
             "outer_factors": "velocity",
             "log_life_scatter": 0.2,
-            "study": yaml.safe_dump({"analysis": {"outputs": names}}),
+            "outputs_named": 1,
         },
     )
     found = {t.name: t for t in robust_tables(table, None)}
@@ -198,7 +196,7 @@ def test_tables_are_exported_as_csv_and_one_workbook_with_units_in_the_head(tmp_
     import zipfile
     from xml.etree import ElementTree as ET
 
-    tables = [t for t in contents(StudyView.of(grid_study()))["decide"] if t]
+    tables = [t for t in contents(view_of(grid_study()))["decide"] if t]
     paths = export(tables, tmp_path)
     assert paths[-1].name == "tables.xlsx" and len(paths) == len(tables) + 1
     with paths[0].open(encoding="utf-8") as file:
@@ -217,7 +215,7 @@ def test_pairs_agree_with_a_closed_form():
     """Life 10^(3 - friction) exactly: every pair of friction 0 and 0.4 differs by 10^0.4."""
     friction, axial = np.array(list(itertools.product([0.0, 0.2, 0.4], [0.0, 10.0, 20.0, 30.0, 40.0, 50.0]))).T
     ds = study({"friction_coefficient": friction, "axial_force": axial}, roller_life_hours=10 ** (3 - friction))
-    view = StudyView.of(ds)
+    view = view_of(ds)
     said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
     assert said.text == (
         "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold in the median of 6 pairs of valid "

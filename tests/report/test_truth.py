@@ -11,8 +11,8 @@ import pandas as pd
 import pytest
 import yaml
 from random_studies import FLAGS, random_study
+from synthetic_results import view_of
 
-from trackroller.analysis.table import StudyView
 from trackroller.report.words.accuracy import accuracy, friction_error
 from trackroller.report.words.cases import extremes, valid_designs
 from trackroller.report.words.designs import best_design
@@ -371,7 +371,7 @@ def check_others(raw, view):
 def sentences_of(seed):
     """Check every sentence on one random study; return the kinds of the sentences."""
     ds = random_study(seed)
-    raw, view = Raw(ds), StudyView.of(ds)
+    raw, view = Raw(ds), view_of(ds)
     assert set(view.factors) == set(raw.factors)
     said = [valid_designs(view)]
     check_valid(raw, said[0])

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.stats import spearmanr
+from synthetic_results import results_of, view_of
 
 from trackroller.analysis.pareto import pareto_mask
-from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.sensitivity import analyse
 from trackroller.report.numbers import level_text
 from trackroller.report.words import indices
 from trackroller.report.words.design_points import best_point
@@ -336,13 +336,13 @@ def test_sentences_name_the_factors_that_are_correlated_in_the_rows():
     ds = study.design()
     ds["roller_life_hours"] = ("case", 1e5 / -ds["radial_force"].values, {"units": "h"})
     ds.attrs["study"] = study.merged()
-    view = StudyView.of(ds)
+    view = view_of(ds)
     for factor in ("axial_force", "radial_force", "velocity"):
         said = effect_of(view, "roller_life_hours", "life of the roller", factor, np.ones(300, bool))
         named = [n for n in view.factors if n in said.values.get("correlated", ())]
         tied = [n for n in view.factors if n != factor and abs(spearmanr(ds[factor], ds[n]).statistic) > 0.3]
         assert named == tied and ("correlated" in said.text) == bool(tied)
-    sens = analyse_dataset(ds)
+    sens = analyse(results_of(ds))
     assert sens["correlated"].values.tolist() == [1, 1, 0]
     assert "Radial force" in indices.decides(sens, "roller_life_hours").text
     assert "axial force and radial force are correlated, and" in indices.decides(sens, "roller_life_hours").text

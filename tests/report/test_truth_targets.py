@@ -6,9 +6,9 @@ import re
 
 import numpy as np
 import pytest
+from synthetic_results import results_of, view_of
 
-from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.sensitivity import analyse
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.targets import target_tables
 from trackroller.report.words.targets import target
@@ -52,7 +52,6 @@ def random_aims(seed, design):
     ds["roller_life_hours"] = ("case", life, {"units": "h"})
     ds["friction_power"] = ("case", 3 * logs, {"units": "W"})
     ds["regime"] = ("case", (rng.random(n) < rng.choice([0.0, 0.1])).astype("i1"))
-    ds.attrs = {"study": study.merged()}
     return ds, data
 
 
@@ -99,7 +98,7 @@ def test_every_sentence_on_targets_is_true(design):
     levels = 0
     for seed in range(14):
         ds, data = random_aims(seed, design)
-        sens = analyse_dataset(ds)
+        sens = analyse(results_of(ds))
         rows = hits(ds, data)
         assert sens.sizes["target"] == len(rows)
         for number, met in enumerate(rows):
@@ -125,7 +124,7 @@ def test_every_sentence_on_targets_is_true(design):
 
 def test_targets_stand_in_the_head_and_in_decide_of_the_report():
     ds, data = random_aims(3, "inner_outer")
-    found = contents(StudyView.of(ds, analyse_dataset(ds)))
+    found = contents(view_of(ds, analyse(results_of(ds))))
     head = dict(found["summary"])["Best design point"]
     assert [s.kind for s in head] == ["robust", "target"]
     table = next(t for t in found["decide"] if t.name == "targets")

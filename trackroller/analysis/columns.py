@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.parameters import PARAMETERS
-from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.stored import FACTOR
-from trackroller.study.outputs import case_dims, flat, read_study
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.outputs import flat
 
-INNER = ("contact", "body", "y", "x", "n", "section_x", "section_y", "section_z", "component", FACTOR)
 CATEGORIES = ("material_pair", "roller_material", "guide_material")
 CONTACT_RESULTS = (
     "normal_force",
@@ -45,28 +43,21 @@ PLAIN_RESULTS = (
 SURFACE_SHARE = 0.01  # of the smaller semi-axis: a peak above this depth counts as lying at the surface
 
 
-def study_dims(ds: xr.Dataset) -> list[str]:
-    """Name the dimensions that count cases: `case`, or the factors of a grid, in the order of the study file."""
-    found = [d for d in map(str, ds.dims) if d not in INNER and (d == "case" or d in ds.coords or d in PARAMETERS)]
-    given = case_dims(ds, read_study(ds).get("factors") or {})
-    return [*(d for d in given if d in found), *(d for d in found if d not in given)]
-
-
-def _columns(ds: xr.Dataset, dims: list[str], names: Iterable[str]) -> dict[str, np.ndarray]:
+def _columns(ds: xr.Dataset, dims: Sequence[str], names: Iterable[str]) -> dict[str, np.ndarray]:
     """Flatten those quantities that have one value a case, numbers as floats."""
     varying = [n for n in dict.fromkeys(names) if n in ds.variables and ds[n].ndim]
     found = {n: flat(ds, n, tuple(dims)) for n in varying if set(ds[n].dims) <= set(dims)}
     return {n: v.astype(str if v.dtype.kind in "OSU" else float) for n, v in found.items()}
 
 
-def input_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
+def input_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
     """Flatten factors and other inputs that vary over `dims` in one common order."""
     own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
     words = [f"{n}_value" for n in PARAMETERS]  # numbers that belong to a friction coefficient given as a word
     return _columns(ds, dims, [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *CATEGORIES])
 
 
-def case_columns(ds: xr.Dataset, dims: list[str]) -> dict[str, np.ndarray]:
+def case_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
     """Flatten inputs and wanted results over `dims` in one common order."""
     ds = ds.transpose(..., "contact", "body", missing_dims="ignore")
 
@@ -115,33 +106,17 @@ def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return told
 
 
-def factor_names(ds: xr.Dataset, dims: list[str], table: pd.DataFrame) -> list[str]:
-    """Name the factors: dimensions of a grid, or columns along `case` that vary and are not derived."""
-    names = [d for d in dims if d != "case" and ds.sizes[d] > 1]
+def factor_names(ds: xr.Dataset, dims: Sequence[str], design: SampledDesign, table: pd.DataFrame) -> list[str]:
+    """Name the factors that vary: dimensions of a grid, or independent factors along `case`."""
     if "case" not in dims:
-        return names
-    listed = [
-        str(n)
-        for n, v in ds.variables.items()
-        if v.dims == ("case",) and n in table and n not in PLAIN_RESULTS and n != "case"
-    ]
-    varying = [n for n in listed if table[n].nunique(dropna=False) > 1]
-    study = read_study(ds)
-    given = study.get("factors")
-    if isinstance(given, Mapping):  # a quantity that an expression gives is no factor of its own
-        free = [str(n) for n, spec in given.items() if not (isinstance(spec, Mapping) and "expression" in spec)]
-        free += [n for n in OPTION_FACTORS if isinstance(study.get(n), list)]
-        varying = [n for n in free if n in varying] or varying
-    if "material_pair" in varying:
-        varying = [n for n in varying if n not in ("roller_material", "guide_material")]
-    return names + varying
+        return [d for d in dims if ds.sizes[d] > 1]
+    varying = [name for name in design.factors if name in table and table[name].nunique(dropna=False) > 1]
+    return [n for n in varying if n not in MATERIAL_FIELDS] if "material_pair" in varying else varying
 
 
-def base_values(ds: xr.Dataset) -> dict[str, Any]:
+def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of the parameters that are the same in all cases."""
-    base = read_study(ds).get("base")
-    values = {name: parameter.default for name, parameter in PARAMETERS.items()}
-    values |= dict(base) if isinstance(base, Mapping) else {}
+    values = {name: parameter.default for name, parameter in PARAMETERS.items()} | dict(base)
     for name in (*PARAMETERS, *CATEGORIES):
         if name in ds.variables and ds[name].ndim == 0:
             values[name] = ds[name].item()

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.analysis.columns import CONTACT_RESULTS, input_columns, study_dims
+from trackroller.analysis.columns import CONTACT_RESULTS, input_columns
 from trackroller.analysis.table import LIVES, StudyView
 from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.roller.geometry import contact_geometry
@@ -46,7 +46,7 @@ def pairs(view: StudyView) -> xr.Dataset | None:
     ds = view.data
     if MODEL not in ds.variables or "regime" not in ds:
         return None
-    dims = study_dims(ds)
+    dims = view.dims
     table = pd.DataFrame(input_columns(ds, dims))
     models = [m for m in EXACTNESS[::-1] if m in set(table.get(MODEL, ()))]
     if len(models) < 2:

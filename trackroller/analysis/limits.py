@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -12,12 +13,17 @@ from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.expressions import condition
 from trackroller.study.design.factors import readable
 from trackroller.study.file.goals import names_in
-from trackroller.study.outputs import flat, outputs, read_study, regimes
+from trackroller.study.outputs import flat, outputs, regimes
+
+if TYPE_CHECKING:
+    from trackroller.study.file.config import StudyFile
 
 Column = tuple[np.ndarray, str, str]  # values (n,), units, long name
 
 
-def column(ds: xr.Dataset, dims: tuple[str, ...], name: str, factors: Iterable[str] = ()) -> Column:
+def column(
+    ds: xr.Dataset, dims: tuple[str, ...], name: str, base: Mapping[str, Any], factors: Iterable[str] = ()
+) -> Column:
     """Return a factor, a parameter, the regime or an output of every case.
 
     Parameters
@@ -25,6 +31,7 @@ def column(ds: xr.Dataset, dims: tuple[str, ...], name: str, factors: Iterable[s
     ds : gathered study
     dims : its case dimensions, see `trackroller.study.outputs.case_dims`
     name : of the quantity
+    base : values of the base case in the study file
     factors : names of the factors, if they are no coordinates of `ds`
 
     Returns
@@ -40,7 +47,7 @@ def column(ds: xr.Dataset, dims: tuple[str, ...], name: str, factors: Iterable[s
     given = name in ds.variables
     if name in PARAMETERS or name in MATERIAL_FIELDS or (given and (name in ds.coords or name in factors)):
         rows = int(np.prod([ds.sizes[d] for d in dims]))
-        values = readable(flat(ds, name, dims) if given else _constant(ds, name, rows))
+        values = readable(flat(ds, name, dims) if given else _constant(base, name, rows))
         known = PARAMETERS.get(name)
         return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
     try:
@@ -52,9 +59,8 @@ def column(ds: xr.Dataset, dims: tuple[str, ...], name: str, factors: Iterable[s
     return found.values, found.units, found.long_name
 
 
-def _constant(ds: xr.Dataset, name: str, rows: int) -> np.ndarray:
-    """Return a parameter that the result lacks from its study file."""
-    base = read_study(ds).get("base", {})
+def _constant(base: Mapping[str, Any], name: str, rows: int) -> np.ndarray:
+    """Return a parameter that the result lacks."""
     value = base.get(name, PARAMETERS[name].default if name in PARAMETERS else "")
     return np.full(rows, np.nan if value is None else value)
 
@@ -76,13 +82,16 @@ def meeting(constraints: Iterable[str], values: Mapping[str, np.ndarray], rows: 
     return {text: np.broadcast_to(condition(text, known), (rows,)) for text in constraints}
 
 
-def allowed_cases(ds: xr.Dataset, dims: tuple[str, ...], factors: Iterable[str] = ()) -> np.ndarray | None:
+def allowed_cases(
+    ds: xr.Dataset, dims: tuple[str, ...], config: StudyFile, factors: Iterable[str] = ()
+) -> np.ndarray | None:
     """Mark the cases that meet all constraints of the study file.
 
     Parameters
     ----------
-    ds : gathered study with its study file as attribute
+    ds : gathered study
     dims : its case dimensions
+    config : its study file
     factors : names of the factors, if they are no coordinates of `ds`
 
     Returns
@@ -93,9 +102,10 @@ def allowed_cases(ds: xr.Dataset, dims: tuple[str, ...], factors: Iterable[str] 
     ------
     InputError : a constraint names an unknown quantity or is no comparison
     """
-    texts = list(read_study(ds).get("constraints") or ())
+    texts = list(config.constraints)
     if not texts:
         return None
     rows, factors = int(np.prod([ds.sizes[d] for d in dims])), list(factors)
-    values = {n: column(ds, dims, n, factors)[0] for n in sorted({n for text in texts for n in names_in(text)})}
+    names = sorted({name for text in texts for name in names_in(text)})
+    values = {name: column(ds, dims, name, config.base, factors)[0] for name in names}
     return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))

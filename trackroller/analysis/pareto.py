@@ -9,13 +9,13 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.limits import Column, column, meeting
-from trackroller.analysis.restore import design_of
+from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import names_in, statistic
-from trackroller.study.outputs import case_dims, regimes
+from trackroller.study.outputs import regimes
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.ndarray | None = None) -> np.ndarray:
@@ -64,7 +64,7 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.n
 
 
 def pareto(
-    ds: xr.Dataset,
+    results: StudyResults,
     objectives: Mapping[str, str],
     constraints: Iterable[str] = (),
 ) -> xr.Dataset:
@@ -72,8 +72,8 @@ def pareto(
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        Gathered study with its study file as attribute.
+    results : StudyResults
+        A solved study.
     objectives : mapping of str to str
         Output, numeric factor or parameter, and `min` or `max` for each, such as {"roller_life_hours": "max",
         "friction_power": "min"}.
@@ -100,11 +100,10 @@ def pareto(
     constraints = list(constraints)
     wanted = {name for text in constraints for name in names_in(text)}
     keep = REGIMES[:3] if "regime" in wanted else ("rolling",)
-    design = design_of(ds)
-    dims = case_dims(ds, design.factors)
+    ds, design, dims = results.data, results.design, results.dims
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
-    columns = {name: column(ds, dims, name, design.columns) for name in names}
+    columns = {name: column(ds, dims, name, results.config.base, design.columns) for name in names}
     values = {name: found[0] for name, found in columns.items()}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
@@ -118,7 +117,7 @@ def pareto(
         "model": model,
         "excluded": "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing",
         "not_rolling": int((own & (regime != 0)).sum()),
-        "study": ds.attrs.get("study", ""),
+        "study": results.study.merged(),
     }
     return _front(shown, columns, objectives, allowed, told)
 
@@ -170,7 +169,7 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
 
     Parameters
     ----------
-    table : result of `trackroller.analysis.sensitivity.analyse_dataset` for an inner/outer design
+    table : result of `trackroller.analysis.sensitivity.analyse` for an inner/outer design
     objectives : statistic such as `b10(roller_life_hours)` or outer factor -> `max` or `min`
 
     Returns

@@ -12,7 +12,6 @@ from trackroller.analysis.designs import Designs, pair_beyond_data
 from trackroller.analysis.limits import column
 from trackroller.analysis.pareto import default_objectives, pareto, pareto_mask, pareto_of_points
 from trackroller.analysis.table import StudyView
-from trackroller.study.outputs import case_dims
 
 
 def study_pareto(view: StudyView) -> xr.Dataset | None:
@@ -43,7 +42,7 @@ def study_pareto(view: StudyView) -> xr.Dataset | None:
     mixed = designs is not None and bool(designs.conditions)
     if mixed and not given:
         return None
-    front = pareto(view.data, goals, view.study.get("constraints") or ())
+    front = pareto(view.solved, goals, view.study.get("constraints") or ())
     front["beyond"] = ("row", pair_beyond_data(view)[front["row"].values].astype(np.int8))
     return front.assign_attrs(kind="case" if mixed else "design")
 
@@ -66,8 +65,7 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
         `beyond`, 1 where the life of that case lies beyond the S-N data.
     """
     view = designs.view
-    dims = case_dims(view.data, view.factors)
-    columns = {name: column(view.data, dims, name, view.factors) for name in objectives}
+    columns = {name: column(view.data, view.dims, name, view.base, view.factors) for name in objectives}
     worst = {name: designs.worst_cases(columns[name][0].astype(float), way) for name, way in objectives.items()}
     held = designs.table["valid"].sort_index().to_numpy()
     kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))

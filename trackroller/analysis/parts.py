@@ -15,13 +15,14 @@ from trackroller.analysis.sobol import closed_indices, with_bounds
 from trackroller.study.design.factors import label
 from trackroller.study.design.saltelli import all_groups, as_set
 from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.file.goals import Analysis
 from trackroller.study.outputs import Output
 
 ENDS = ("", "_low", "_high")
 
 
 def parts_of(
-    design: SampledDesign, columns: Sequence[Output], asked: Mapping[str, Any], seed: int, resamples: int
+    design: SampledDesign, columns: Sequence[Output], asked: Analysis, seed: int, resamples: int
 ) -> xr.Dataset:
     """Compute the indices of groups and within the levels of a category that a study file asks for.
 
@@ -29,7 +30,7 @@ def parts_of(
     ----------
     design : the design
     columns : the outputs
-    asked : keys under `analysis` of the study file: `groups`, `conditional_on`
+    asked : the key `analysis` of the study file, with `groups` and `conditional_on`
     seed, resamples : of the bootstrap
 
     Returns
@@ -40,8 +41,8 @@ def parts_of(
     """
     found: dict[str, Any] = {}
     coords: dict[str, Any] = {}
-    if asked.get("groups"):
-        groups = all_groups(asked["groups"], design.factors)
+    if asked.groups:
+        groups = all_groups(asked.groups, design.factors)
         coords["group"] = np.array(list(groups), dtype=object)
         words = [factor_name(name) if name in design.factors else name.replace("_", " ") for name in groups]
         coords["group_name"] = ("group", np.array(words, dtype=object))
@@ -49,7 +50,7 @@ def parts_of(
         coords["group_members"] = ("group", np.array(members, dtype=object))
         estimates = [of_groups(column.values, design, groups, seed, resamples) for column in columns]
         found |= stacked(estimates, ("output", "group"))
-    if category := asked.get("conditional_on"):
+    if category := asked.conditional_on:
         levels = design.factors[category].levels
         coords["level"] = ("level", np.array([label(level) for level in levels], dtype=object), {"factor": category})
         coords["factor"] = np.array(list(design.factors), dtype=object)

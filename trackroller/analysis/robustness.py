@@ -18,8 +18,8 @@ from scipy import stats
 from scipy.optimize import brentq
 
 from trackroller.analysis.labels import output_labels
-from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.probability import probabilities
+from trackroller.analysis.table import StudyResults
 from trackroller.analysis.targets import body_of, inner_sample
 from trackroller.damage.sn_curve import DECADES, SNCurve
 from trackroller.errors import InputError
@@ -28,24 +28,21 @@ from trackroller.study.design.factors import readable
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import statistic
-from trackroller.study.outputs import Output, case_dims, default_names, flat, outputs, read_study, regimes, settings
+from trackroller.study.outputs import Output, default_names, flat, outputs, regimes
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
 
 def robustness(
-    ds: xr.Dataset,
-    design: SampledDesign,
+    results: StudyResults,
     log_life_scatter: Mapping[str, np.ndarray],
 ) -> xr.Dataset:
     """Summarise every output and the probability of each regime at every design point.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        Solved study with an inner/outer array design, dimension `case`.
-    design : SampledDesign
-        Design of the study, see `trackroller.analysis.restore.design_of`.
+    results : StudyResults
+        Solved study with an inner/outer array design.
     log_life_scatter : mapping of str to numpy.ndarray
         For each body the standard deviation of log10 life of the material itself [1], shape (n,), besides the scatter
         of the study: see `material_deviations`.
@@ -64,34 +61,33 @@ def robustness(
     InputError
         If the study has another design.
     """
+    ds, design, config = results.data, results.design, results.config
     if design.method != "inner_outer":
         allowed = "design inner_outer: lists as outer array, distributions as inner array"
         raise InputError("design", design.method, allowed)
     shape = (design.meta["design_points"], design.meta["inner_samples"])
-    dims = case_dims(ds, design.factors)
-    regime = regimes(ds, dims).reshape(shape)
-    study = read_study(ds)
-    wanted = list(settings(study).get("outputs") or default_names(ds, design.factors, dims))
-    goals = [statistic(goal) for goal in study.get("pareto") or ()]
+    regime = regimes(ds, results.dims).reshape(shape)
+    wanted = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
+    goals = [statistic(goal) for goal in config.pareto]
     wanted += [output for kind, output in goals if kind not in ("", "probability") and output not in wanted]
-    met = allowed_cases(ds, dims, design.columns)
-    columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=met)
-    results = []
+    columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed)
+    found = []
     for column in columns:
         scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size)).reshape(shape)
-        results.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
+        found.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
     out = xr.Dataset(coords=_coordinates(design, shape, columns))
-    for key in results[0] if results else ():
+    for key in found[0] if found else ():
         axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        out[key] = (axes, np.stack([one[key] for one in results]), {"comment": "in the units of the output"})
+        out[key] = (axes, np.stack([one[key] for one in found]), {"comment": "in the units of the output"})
     events = np.stack([regime == i for i in range(len(REGIMES))]).reshape(-1, shape[1]).T.astype(float)
-    found = dict(zip(("", "_low", "_high"), probabilities(events, *inner_sample(design)), strict=True))
-    for end, value in found.items():
+    chances = dict(zip(("", "_low", "_high"), probabilities(events, *inner_sample(design)), strict=True))
+    for end, value in chances.items():
         attrs = {"units": "1", "long_name": f"probability{end.replace('_', ' ')} of the regime"}
         out[f"probability{end}"] = (("regime", "point"), value.reshape(len(REGIMES), -1), attrs)
     largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
-    out.attrs = _attributes(design, largest) | {"study": ds.attrs.get("study", "")}
-    out.attrs["constrained"] = int(met is not None)
+    out.attrs = _attributes(design, largest) | {"study": results.study.merged()}
+    out.attrs["constrained"] = int(results.allowed is not None)
+    out.attrs["outputs_named"] = int(config.analysis.outputs is not None)
     return out
 
 
@@ -112,22 +108,21 @@ def _attributes(design: SampledDesign, scatter: float) -> dict[str, str | int | 
     }
 
 
-def material_deviations(ds: xr.Dataset, wanted: bool | float) -> dict[str, np.ndarray]:
+def material_deviations(results: StudyResults) -> dict[str, np.ndarray]:
     """Return the standard deviation of log10 life of each body's material in each case, lg(T_N) / 2.563.
 
     Parameters
     ----------
-    ds : gathered study with the values of its materials as attribute `materials`
-    wanted : true: T_N (or T_S to the power of k) of the materials; a number: T_N itself; false: nothing
+    results : solved study, whose key `analysis.material_scatter` states what is wanted: true: T_N (or T_S to the power
+        of k) of the materials in the attribute `materials`; a number: T_N itself; false: nothing
 
     Returns
     -------
     body -> array [1] of shape (n,), 0 for a material without scatter. Empty if not wanted.
     """
-    if wanted is False or wanted is None:
+    ds, dims, wanted = results.data, results.dims, results.config.analysis.material_scatter
+    if wanted is False:
         return {}
-    study = read_study(ds)
-    dims = case_dims(ds, study.get("factors", {}))
     known = json.loads(ds.attrs.get("materials", "{}"))
     out = {}
     for field, body in zip(MATERIAL_FIELDS, ("roller", "guide"), strict=True):

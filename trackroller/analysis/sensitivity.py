@@ -9,14 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from trackroller.analysis import convergence, indices
-from trackroller.analysis.givendata import MEASURES, firsts, given_data
+from trackroller.analysis.givendata import firsts, given_data
 from trackroller.analysis.labels import (
     RELIABLE,
     correlated,
@@ -26,19 +25,16 @@ from trackroller.analysis.labels import (
     note,
     treatment,
 )
-from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.pairs import pairs
 from trackroller.analysis.parts import parts_of
-from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import material_deviations, robustness
 from trackroller.analysis.sobol import sobol
+from trackroller.analysis.table import StudyResults
 from trackroller.analysis.targets import targets
 from trackroller.errors import InputError
-from trackroller.files import write_whole
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.design.sampling import SampledDesign
-from trackroller.study.outputs import Output, case_dims, outputs, read_study, regimes, settings
-from trackroller.study.store.seal import check_sealed
+from trackroller.study.outputs import Output, outputs, regimes
 
 NEEDS = {
     "grid": "a full grid, every level weighing the same",
@@ -146,15 +142,14 @@ _METHODS: dict[str, Callable[[np.ndarray, SampledDesign, Settings], Found]] = {
 _UNIT = {"saltelli": "blocks", "morris": "elementary effects", "grid": "cells"}
 
 
-def analyse_dataset(ds: xr.Dataset) -> xr.Dataset:
+def analyse(results: StudyResults) -> xr.Dataset:
     """Compute sensitivity indices of every output of a study and record how they were obtained.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        Gathered study with dimension `case` or one dimension a factor, and the study file in the attribute `study`.
-        The key `analysis` of the study file says which outputs and regimes count. The same study gives the same
-        indices.
+    results : StudyResults
+        A solved study. The key `analysis` of its study file says which outputs and regimes count. The same study gives
+        the same indices.
 
     Returns
     -------
@@ -171,20 +166,15 @@ def analyse_dataset(ds: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InputError
-        If no output or no factor varies, or if the rows do not belong to the study file.
+        If no output or no factor varies.
     """
-    study = read_study(ds)
-    design = design_of(ds, study)
-    given = settings(study)
-    keep = tuple(given.get("keep", ("rolling",)))
-    how = Settings(int(given.get("resamples", 300)), tuple(given.get("measures", MEASURES)))
-    dims = case_dims(ds, design.factors)
-    met = allowed_cases(ds, dims, design.columns)
-    own = material_deviations(ds, given.get("material_scatter", False))
-    aims = targets(ds, design, given["target"], own, met) if given.get("target") else xr.Dataset()
+    ds, design, given = results.data, results.design, results.config.analysis
+    how = Settings(given.resamples, given.measures)
+    own = material_deviations(results)
+    aims = targets(ds, design, given.target, own, results.allowed) if given.target else xr.Dataset()
     if design.method == "inner_outer":
-        return robustness(ds, design, own).merge(aims, combine_attrs="override")
-    columns = outputs(ds, design.factors, given.get("outputs"), keep, scale=given.get("scale", ""), allowed=met)
+        return robustness(results, own).merge(aims, combine_attrs="override")
+    columns = outputs(ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed)
     if not columns or not design.factors:
         raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
     found = [_METHODS[design.method](column.values, design, how) for column in columns]
@@ -202,12 +192,12 @@ def analyse_dataset(ds: xr.Dataset) -> xr.Dataset:
         "method": design.method,
         "needs": NEEDS[design.method],
         "rows": design.size,
-        "kept_regimes": ", ".join(keep),
+        "kept_regimes": ", ".join(given.keep),
         "bootstrap_seed": how.seed,
         "resamples": how.resamples,
         "interval": "95 %",
-        "treatment": treatment(regimes(ds, dims), keep, met) + correlated(design),
-        "study": ds.attrs.get("study", ""),
+        "treatment": treatment(regimes(ds, results.dims), given.keep, results.allowed) + correlated(design),
+        "study": results.study.merged(),
     }
     return result.merge(aims, combine_attrs="override")
 
@@ -245,30 +235,3 @@ def _bounds(out: indices.Estimates, method: str) -> tuple[np.ndarray, np.ndarray
     low, high = (np.concatenate([out[f"{name}_{end}"] for name in names]) for end in ("low", "high"))
     whole = float(np.nanmax(out["mu_star"], initial=0.0)) if method == "morris" else 1.0
     return (low / whole, high / whole) if whole > 0 else (low * np.nan, high * np.nan)
-
-
-def analyse(study_nc: str | Path, out_nc: str | Path) -> xr.Dataset:
-    """Analyse a gathered study file and write the labelled result.
-
-    Parameters
-    ----------
-    study_nc : str or pathlib.Path
-        Gathered study.
-    out_nc : str or pathlib.Path
-        NetCDF file to write. The file appears only after it has been written completely.
-
-    Returns
-    -------
-    xarray.Dataset
-        The dataset that was written, see `analyse_dataset`.
-
-    Raises
-    ------
-    InputError
-        As `analyse_dataset`.
-    """
-    path = check_sealed(Path(study_nc))
-    with xr.open_dataset(path, cache=False) as opened:  # variables one by one: a study may be large
-        result = analyse_dataset(opened)
-    write_whole(Path(out_nc), lambda part: result.to_netcdf(part))
-    return result

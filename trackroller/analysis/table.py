@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.analysis.columns import base_values, case_columns, factor_names, study_dims
+from trackroller.analysis.columns import base_values, case_columns, factor_names
 from trackroller.analysis.limits import allowed_cases
 from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.study.design.levels import NAMED
-from trackroller.study.outputs import read_study
-from trackroller.study.store.seal import read_result
+from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.file.config import StudyFile
+from trackroller.study.file.study import Study
+from trackroller.study.outputs import case_dims
 
 LIVES = (
     ("pair_life_hours", "life of the pair", "h"),
@@ -29,6 +30,42 @@ LIVES = (
 BODIES = ("roller", "guide")
 MOST_LEVELS = 12  # a factor with more levels is looked at in classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
+
+
+@dataclass(frozen=True, eq=False)
+class StudyResults:
+    """A solved study, which analysis and report take.
+
+    Attributes
+    ----------
+    study : the checked study
+    design : its design, with the places of the rows and the groups of factors
+    results : the solved study that the table was made from
+    """
+
+    study: Study
+    design: SampledDesign
+    data: xr.Dataset
+
+    @property
+    def config(self) -> StudyFile:
+        """Return what the study file says."""
+        return self.study.config
+
+    @cached_property
+    def dims(self) -> tuple[str, ...]:
+        """Return the dimensions that count cases: `case`, or the factors of a grid in the order of the study file."""
+        return case_dims(self.data, self.study.factors)
+
+    @cached_property
+    def allowed(self) -> np.ndarray | None:
+        """Return the cases that meet the constraints of the study, shape (n,); None without constraints."""
+        return allowed_cases(self.data, self.dims, self.config, self.design.columns)
+
+    @cached_property
+    def view(self) -> StudyView:
+        """Return the table of cases, from which figures, sentences and the explorer are made."""
+        return StudyView.of(self)
 
 
 @dataclass(frozen=True)
@@ -47,7 +84,7 @@ class StudyView:
     derived : factors that other parameters follow from
     study : the study file with its defaults
     met : cases that meet the constraints of the study, shape (n,) bool; None without constraints
-    data : the gathered data set that the table was made from
+    results : the solved study that the table was made from
     analysis : its sensitivity analysis, None without one
     """
 
@@ -60,25 +97,16 @@ class StudyView:
     derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     study: Mapping[str, Any] = field(default_factory=dict)
     met: np.ndarray | None = None
-    data: xr.Dataset = field(default_factory=xr.Dataset)
+    results: StudyResults | None = None
     analysis: xr.Dataset | None = None
 
     @classmethod
-    def read(cls, study_nc: Path | str, analysis_nc: Path | str | None = None) -> StudyView:
-        """Make the table of a gathered study file and its analysis.
-
-        A missing analysis file, and one that only says why there is no analysis, count as no analysis.
-        """
-        known = read_result(analysis_nc) if analysis_nc is not None and Path(analysis_nc).is_file() else None
-        return cls.of(read_result(study_nc), known)
-
-    @classmethod
-    def of(cls, ds: xr.Dataset, analysis: xr.Dataset | None = None) -> StudyView:
-        """Make the table of a gathered study (grid dimensions or one dimension `case`)."""
-        dims = study_dims(ds)
+    def of(cls, results: StudyResults, analysis: xr.Dataset | None = None) -> StudyView:
+        """Make the table of a solved study; an analysis without variables counts as no analysis."""
+        ds, dims = results.data, list(results.dims)
         table = pd.DataFrame(case_columns(ds, dims))
-        names = factor_names(ds, dims, table)
-        base = base_values(ds)
+        names = factor_names(ds, dims, results.design, table)
+        base = base_values(ds, results.config.base)
         full = int(np.prod([table[f].nunique(dropna=False) for f in names], dtype=float)) if names else 1
         grid = full == len(table) and not (len(names) == 1 and dims == ["case"] and len(table) > 60)
         for name in dims:  # a dimension of one level is held by itself
@@ -90,9 +118,29 @@ class StudyView:
             if p in ds.variables and p in table and p not in names and table[p].nunique() > 1
         }
         flags = tuple(str(ds["validity"].attrs.get("flag_meanings", "")).split()) if "validity" in ds else ()
-        met = allowed_cases(ds, tuple(dims), names)
-        analysis = analysis if analysis is not None and analysis.data_vars else None
-        return cls(table, tuple(names), base, grid, dict(ds.attrs), flags, derived, read_study(ds), met, ds, analysis)
+        found = dict(ds.attrs), flags, derived, results.study.as_dict(), results.allowed, results
+        return cls(table, tuple(names), base, grid, *found).analysed(analysis)
+
+    def analysed(self, analysis: xr.Dataset | None) -> StudyView:
+        """Return the table with its analysis."""
+        return replace(self, analysis=analysis if analysis is not None and analysis.data_vars else None)
+
+    @property
+    def solved(self) -> StudyResults:
+        """Return the solved study that the table was made from; a table of a comparison has none."""
+        if self.results is None:
+            raise ValueError("this table was not made from a solved study")
+        return self.results
+
+    @property
+    def data(self) -> xr.Dataset:
+        """Return the data of the study."""
+        return self.solved.data
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Return the dimensions of the data that count cases."""
+        return self.solved.dims
 
     def levels(self, name: str, table: pd.DataFrame | None = None) -> list[Any]:
         """List the values of a factor.

@@ -157,16 +157,18 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
         folder = out or Path(f"{path.stem}-figures")
         drawn = plot_case(dataset, folder)
     else:
-        from trackroller.analysis.table import StudyView
+        from xarray import load_dataset
+
         from trackroller.report.figures.study import draw_all
+        from trackroller.solved import open_study
         from trackroller.study.status import find_study
         from trackroller.study.store.plan import study_folder
 
         place = study_folder(find_study(target, results).name, results)
-        if not place.gathered.is_file():
-            raise InputError("study", target, f"{place.gathered} is not there yet", "Run the study first.")
         folder = out or place.root / "figures"
-        drawn = draw_all(StudyView.read(place.gathered, place.root / "sensitivity.nc"), folder)
+        sensitivity = place.root / "sensitivity.nc"
+        analysis = load_dataset(sensitivity) if sensitivity.is_file() else None
+        drawn = draw_all(open_study(place.root).view.analysed(analysis), folder)
     print(f"{len(drawn)} figures in {folder}")
 
 

@@ -120,10 +120,11 @@ def explore(
     ] = None,
 ) -> None:
     """Write the explorer of a study that was run as one page (HTML) that works without a network."""
-    from trackroller.report.explorer.page import write_explorer
+    from trackroller.solved import open_study
 
-    path = Path(study)
-    print(write_explorer(path if path.exists() else results / study, out))
+    path = Path(study) if Path(study).exists() else results / study
+    page = (path if path.is_dir() else path.parent) / "explorer.html"
+    print(open_study(path).explore(out or page))
 
 
 @app.command()

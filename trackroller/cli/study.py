@@ -6,9 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 from rich.filesize import decimal
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from trackroller.cli.case import case_of, is_study
 from trackroller.errors import InputError
@@ -19,6 +17,7 @@ from trackroller.roller.options import Options, options_of_cases
 from trackroller.study.cost import bytes_a_case, duration
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.load import load_study
+from trackroller.study.progress import progress_bar
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import find_study, status_of
@@ -34,29 +33,15 @@ def run_with_progress(
 ) -> None:
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
     study = load_study(path)
-    console = Console(file=sys.stderr, soft_wrap=True)
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]} cases/s, left"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, disable=quiet, speed_estimate_period=120) as bar:
-        task = bar.add_task(study.name, total=None, rate="-")
-
-        def progress(count: int) -> None:
-            bar.advance(task, count)
-            bar.update(task, rate=f"{bar.tasks[0].speed or 0:.0f}")
-
+    with progress_bar(study.name, not quiet) as bar:
         plan = run_study(
             study,
             results,
             rerun_failed=rerun_failed,
             scheduler=scheduler,
-            started=lambda total, done: bar.update(task, total=total, completed=done),
-            tell=lambda line: console.print(line, highlight=False, markup=False),
-            progress=progress,
+            started=bar.started,
+            tell=bar.tell,
+            progress=bar.advanced,
         )
     if report:
         print(_report(plan.folder))

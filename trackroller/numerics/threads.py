@@ -6,14 +6,28 @@ this compiles several times faster, and it keeps all cores busy when rows differ
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import ContextVar
+
+_limit: ContextVar[int | None] = ContextVar("threads", default=None)
+
+
+@contextlib.contextmanager
+def limited_to(threads: int | None) -> Iterator[None]:
+    """Use this number of threads until the context ends; None changes nothing."""
+    before = _limit.set(threads or _limit.get())
+    try:
+        yield
+    finally:
+        _limit.reset(before)
 
 
 def thread_count() -> int:
-    """Return the number of threads: NUMBA_NUM_THREADS if set, otherwise the number of cores of the machine."""
-    return int(os.environ.get("NUMBA_NUM_THREADS", 0)) or os.cpu_count() or 1
+    """Return the number of threads: that of `limited_to`, NUMBA_NUM_THREADS if set, or the cores of the machine."""
+    return _limit.get() or int(os.environ.get("NUMBA_NUM_THREADS", 0)) or os.cpu_count() or 1
 
 
 def share_rows(work: Callable[[int, int], object], rows: int, smallest: int, largest: int | None = None) -> None:

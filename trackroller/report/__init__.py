@@ -20,8 +20,8 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `trackroller.solve` for one case or of `solve_spectrum`, or the gathered results of a study
-        (`study.nc`).
+        Result of `trackroller.solve` for one case or for the design of a study, result of `solve_spectrum`, or the
+        data set in `study.nc`.
     path : Path or str
         The file to write. It stands alone and can be sent by mail.
 
@@ -49,10 +49,11 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
         return write_spectrum(ds, path)
     if "study" not in ds.attrs:
         return write_sheet(ds, path)
+    from trackroller.analysis.stored_study import read_results  # heavy: pandas, SciPy and SALib, for studies only
     from trackroller.files import write_text
-    from trackroller.report.build import report_text  # heavy: pandas, SciPy and SALib, for studies only
+    from trackroller.report.build import report_text
 
-    write_text(Path(path), report_text(ds))
+    write_text(Path(path), report_text(read_results(ds)))
     return Path(path)
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import logging
 import tempfile
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import xarray as xr
 
-from trackroller.analysis.sensitivity import analyse_dataset
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.sensitivity import analyse
+from trackroller.analysis.stored_study import read_results
+from trackroller.analysis.table import StudyResults, StudyView
 from trackroller.errors import InputError
 from trackroller.files import whole_folder, write_whole
 from trackroller.report.pages.study import contents, page_text, write_report
@@ -52,8 +52,8 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     alone.touch()
     with locked(folder.lock, shared=True), locked(alone, tell=tell):
         tell("analyse the results")
-        view = StudyView.of(read_result(folder.gathered))
-        view = replace(view, analysis=_analysed(view.data, folder.root / "sensitivity.nc"))
+        results = read_results(folder.gathered)
+        view = results.view.analysed(_analysed(results, folder.root / "sensitivity.nc"))
         tell("draw the figures")
         _draw(view, folder.root / "figures")
         tell("write the report")
@@ -63,47 +63,44 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     return report
 
 
-def report_text(ds: xr.Dataset) -> str:
-    """Return the report of a gathered study as HTML, with its analysis and figures; no file is left behind.
-
-    Parameters
-    ----------
-    ds : gathered study
-    """
+def report_text(results: StudyResults) -> str:
+    """Return the report of a solved study as HTML, with its analysis and figures; no file is left behind."""
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    view = StudyView.of(ds, _analysis(ds))
+    view = results.view.analysed(_analysis(results))
     with tempfile.TemporaryDirectory() as place:
         draw_all(view, Path(place))
         return page_text(view, contents(view), Path(place))
 
 
-def _analysis(ds: xr.Dataset) -> xr.Dataset:
+def _analysis(results: StudyResults) -> xr.Dataset:
     """Return the sensitivity analysis of a study, or a data set without variables that says why there is none."""
     try:
-        return analyse_dataset(ds)
+        return analyse(results)
     except InputError as exc:
         log.info("no sensitivity analysis: %s", exc)
         return xr.Dataset(attrs={"comment": f"no sensitivity analysis: {exc}"})
 
 
-def _analysed(ds: xr.Dataset, out: Path) -> xr.Dataset | None:
-    result = _analysis(ds)
+def _analysed(results: StudyResults, out: Path) -> xr.Dataset:
+    analysis = _analysis(results)
     with sealing(out):
-        write_whole(out, lambda beside: result.to_netcdf(beside))
-    return result if result.data_vars else None
+        write_whole(out, lambda beside: analysis.to_netcdf(beside))
+    return analysis
 
 
 def analyse_study(study_nc: str, out: str) -> None:
     """Write the sensitivity analysis of a study, or a file that says why there is none."""
-    path = check_sealed(Path(study_nc))
-    with xr.open_dataset(path, cache=False) as opened:  # variables one by one: a study may be large
-        _analysed(opened, Path(out))
+    _analysed(read_results(study_nc), Path(out))
+
+
+def _read(study_nc: str, sensitivity_nc: str) -> StudyView:
+    return read_results(study_nc).view.analysed(read_result(sensitivity_nc))
 
 
 def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:
     """Draw all figures of a study; the folder appears whole or not at all."""
-    _draw(StudyView.read(study_nc, sensitivity_nc), Path(out_dir))
+    _draw(_read(study_nc, sensitivity_nc), Path(out_dir))
 
 
 def _draw(view: StudyView, out: Path) -> None:
@@ -115,7 +112,7 @@ def _draw(view: StudyView, out: Path) -> None:
 
 def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:
     """Write the report, with the sensitivity analysis where there is one."""
-    _report(StudyView.read(study_nc, sensitivity_nc), check_sealed(Path(figures)), Path(out))
+    _report(_read(study_nc, sensitivity_nc), check_sealed(Path(figures)), Path(out))
 
 
 def _report(view: StudyView, figures: Path, out: Path) -> Path:

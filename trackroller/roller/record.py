@@ -8,8 +8,10 @@ import shlex
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from trackroller.errors import InputError
-from trackroller.materials import Material
+from trackroller.materials import Material, load_database
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.case import Case, to_table
 
@@ -44,14 +46,17 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     return ds.assign_attrs({CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))})
 
 
-def with_design(ds: xr.Dataset, design: xr.Dataset) -> xr.Dataset:
+def with_design(ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase | None) -> xr.Dataset:
     """Return the results of a study's design with the design: its variables as coordinates, and its attributes.
 
-    The results of other cases come back as they are.
+    The attribute `materials` (JSON) holds the values of the materials. Results of other cases come back as they are.
     """
     if STUDY not in design.attrs:
         return ds
-    return ds.assign_coords(dict(design.variables)).assign_attrs(design.attrs)
+    names = sorted({str(name) for field in MATERIAL_FIELDS for name in np.unique(design[field].values.astype(str))})
+    known = load_database() if database is None else database
+    values = json.dumps({name: known.material(name).with_sources() for name in names}, default=str)
+    return ds.assign_coords(dict(design.variables)).assign_attrs(design.attrs | {MATERIALS: values})
 
 
 def plain_inputs(case: Case) -> dict[str, Any]:

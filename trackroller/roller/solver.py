@@ -169,13 +169,13 @@ def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: Materia
     options = [Options(**one) for one in different]
     table = to_table(cases, database)
     if len(options) == 1:
-        return with_design(_solve_table(table, options[0], "case" not in cases.dims), cases)
+        return with_design(_solve_table(table, options[0], "case" not in cases.dims), cases, database)
     rows = [np.flatnonzero(group == number) for number in range(len(options))]
     parts = [
         _solve_table(table.take(own), one, single=False).assign_coords(case=own)
         for own, one in zip(rows, options, strict=True)
     ]
-    return with_design(joined(parts).sel(case=np.arange(len(table))).drop_vars("case"), cases)
+    return with_design(joined(parts).sel(case=np.arange(len(table))).drop_vars("case"), cases, database)
 
 
 def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset:

@@ -12,7 +12,6 @@ import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.yaml_file import parse_yaml
 
 BOOKKEEPING = {
     "regime",
@@ -61,18 +60,6 @@ class Output:
     long_name: str
     scale: str
     excluded: dict[str, int] = field(default_factory=dict)
-
-
-def settings(study: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys under `analysis` of a study file, {} if there are none."""
-    found = study.get("analysis")
-    return dict(found) if isinstance(found, Mapping) else {}
-
-
-def read_study(ds: xr.Dataset) -> dict[str, Any]:
-    """Return the study file that a result stores in the attribute `study` (YAML), {} without it."""
-    found = parse_yaml(str(ds.attrs.get("study", "")), "stored study file")
-    return dict(found) if isinstance(found, Mapping) else {}
 
 
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:

@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+import xarray as xr
+
+from trackroller.roller.options import options_of_cases
 from trackroller.study.cluster import workers
 from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
+from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell
 from trackroller.study.store.gather import gather
+from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan
 from trackroller.study.store.planning import working_plan
 
@@ -77,3 +84,41 @@ def run_study(
             tell(solve_chunk(plan.folder, name, study.materials, executor=executor, tell=tell, progress=progress))
         gather(plan, tell=tell)
     return plan
+
+
+def solve_study(
+    study: Study,
+    started: Callable[[int, int], None] | None = None,
+    progress: Callable[[int], None] | None = None,
+    solver: Solver | None = None,
+) -> xr.Dataset:
+    """Solve a study in memory.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study.
+    started, progress, solver : callable, optional
+        As for `run_study`.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same data set that `run_study` writes to `study.nc`.
+    """
+    design = study.design()
+    options, group = options_of_cases(design, {})
+    cases = design.drop_vars(list(design.coords)).drop_attrs().assign_coords(case=np.arange(len(group)))
+    if started is not None:
+        started(len(group), 0)
+    blocks = []
+    for number, one in enumerate(options):
+        part = cases.isel(case=np.flatnonzero(group == number)).assign_attrs(options=json.dumps(one))
+        for block in solve_here(part, study.materials, solver):
+            blocks.append(block)
+            if progress is not None:
+                progress(block.sizes["case"])
+    solved = chunks.join(blocks).sel(case=cases["case"].values)
+    results = {name: values.variable for name, values in solved.data_vars.items()}
+    axes = {name: values.variable for name, values in solved.coords.items() if name != "case"}
+    return labelled(study, study.drawn, design, results, axes, solved.attrs)

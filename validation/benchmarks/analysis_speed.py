@@ -3,7 +3,7 @@
     OPENBLAS_NUM_THREADS=1 python -m validation.benchmarks.analysis_speed [--rows N] [--output FILE]
 
 A Latin hypercube of eight factors, one of them a list, with the results of `tests/synthetic_results.py` instead of
-solved ones. The parts are the functions below `analyse_dataset`; a part that calls another one includes it. The
+solved ones. The parts are the functions below `analyse`; a part that calls another one includes it. The
 goal is 45 s for 100,000 rows.
 """
 
@@ -18,9 +18,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
-from trackroller.analysis.sensitivity import analyse_dataset
+from trackroller.analysis.sensitivity import analyse
+from trackroller.analysis.stored_study import read_results
+from trackroller.analysis.table import StudyResults
 from trackroller.study.file.load import parse_study
 from validation.benchmarks.command import run
 
@@ -44,8 +45,8 @@ STUDY: dict[str, Any] = {
 PARTS = ("outputs", "firsts", "prcc", "delta", "pawn", "pawn_interval", "pairs", "course")
 
 
-def made_up(rows: int) -> xr.Dataset:
-    """Return a gathered study with made-up results.
+def made_up(rows: int) -> StudyResults:
+    """Return a solved study with made-up results.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def made_up(rows: int) -> xr.Dataset:
 
     Returns
     -------
-    xarray.Dataset along `case`.
+    StudyResults with data along `case`.
     """
     sys.path.insert(0, str(TESTS))
     study = parse_study(STUDY | {"samples": rows})
@@ -68,18 +69,18 @@ def made_up(rows: int) -> xr.Dataset:
     ds["max_pressure"] = ds["peak_stress"].max("body") / (0.6 + 0.1 * ds["friction_coefficient"])
     ds["drilling_torque"] = (ds["normal_force"] * ds["semi_axis_rolling"]).sum("contact") * ds["friction_coefficient"]
     ds["slip"] = 1e-3 * ds["motor_force"] / ds["normal_force"].sum("contact") / ds["semi_axis_lateral"].max("contact")
-    return ds.assign_coords(contact=[1, 2], body=["roller", "guide"]).assign_attrs(study=study.merged())
+    return read_results(ds.assign_coords(contact=[1, 2], body=["roller", "guide"]))
 
 
 def measure(rows: int = 100_000) -> dict[str, Any]:
     """Return the processor time of the analysis and of its parts [s], and how many outputs it had."""
-    analyse_dataset(made_up(500))  # imports and caches
-    ds = made_up(rows)
+    analyse(made_up(500))  # imports and caches
+    results = made_up(rows)
     start = time.process_time()
-    result = analyse_dataset(ds)
+    result = analyse(results)
     whole = time.process_time() - start
     profile = cProfile.Profile(time.process_time)
-    profile.runcall(analyse_dataset, ds)
+    profile.runcall(analyse, results)
     parts = dict.fromkeys(PARTS, 0.0)
     for (file, _, name), numbers in pstats.Stats(profile).stats.items():  # type: ignore[attr-defined]
         if name in parts and "trackroller" in file:

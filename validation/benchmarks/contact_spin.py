@@ -16,7 +16,11 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller.analysis import contact_models as ladder
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.table import StudyResults
+from trackroller.study.design.draws import of_columns
+from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.file.load import checked_keys
+from trackroller.study.file.study import Study
 from validation.benchmarks.command import run
 from validation.contact_models.product import spread
 
@@ -29,7 +33,7 @@ OUTPUTS = ("forces", "contact", "friction_work", "peak_stress")
 SPINS = (0.0, 0.2, 0.5, 10.0)
 
 
-def solved(accuracy: str) -> xr.Dataset:
+def solved(accuracy: str) -> StudyResults:
     """Solve all rollers with both models and gather them as a study does."""
     rows = list(itertools.product(FRICTIONS, ANGLES, DISTANCES, LOADS))
     inputs = {
@@ -49,7 +53,11 @@ def solved(accuracy: str) -> xr.Dataset:
         labels: dict = {name: ("case", values) for name, values in inputs.items()}
         labels |= {"contact_model": ("case", [model] * len(rows)), "guide_curve_radius": np.inf}
         parts.append(ds.assign_coords(labels))
-    return xr.concat(parts, "case", combine_attrs="drop_conflicts")
+    data = xr.concat(parts, "case", combine_attrs="drop_conflicts")
+    columns = {name: data[name].values for name in (*inputs, "contact_model")}
+    free, unit = of_columns(columns)
+    study = Study(checked_keys({"name": "contact-spin", "base": {"guide_curve_radius": np.inf}}))
+    return StudyResults(study, SampledDesign(columns, free, "table", unit, {}), data)
 
 
 def steps(limits: tuple[float, ...]) -> list[tuple[str, float, float]]:
@@ -59,7 +67,7 @@ def steps(limits: tuple[float, ...]) -> list[tuple[str, float, float]]:
 
 def measure(accuracy: str = "standard") -> dict[str, Any]:
     """Return the errors of full sliding: of all rollers, by mu tan(alpha) and load, and by friction and spin."""
-    paired = ladder.pairs(StudyView.of(solved(accuracy)))
+    paired = ladder.pairs(solved(accuracy).view)
     errors = {str(name): e.values for name, e in ladder.errors(paired).sel(contact_model="sliding").data_vars.items()}
     mu, lean, spin = (paired[n].values for n in ("friction_coefficient", "lean", "spin"))
     flat = paired["contact_angle"].values <= 60

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.contact_models import GOOD, errors, pairs
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.stored_study import read_results
 from trackroller.files import write_whole
 from trackroller.report.build import analyse_study, draw_study, report_study
 from trackroller.report.figures import style
@@ -53,15 +53,14 @@ def compare(study_file: Path, out: Path) -> None:
 
 def write_errors(study_nc: str, path: Path) -> None:
     """Write how far each cheaper model is from the exact theory: quantity by quantity, as JSON."""
-    with xr.open_dataset(study_nc) as ds:
-        paired = pairs(StudyView.of(ds))
-        if paired is None:
-            raise ValueError("the study must compare contact models")
-        found = errors(paired)
-        told = {
-            model: {str(name): spread(found[name].sel(contact_model=model).values) for name in found.data_vars}
-            for model in found.contact_model.values.tolist()
-        }
+    paired = pairs(read_results(study_nc).view)
+    if paired is None:
+        raise ValueError("the study must compare contact models")
+    found = errors(paired)
+    told = {
+        model: {str(name): spread(found[name].sel(contact_model=model).values) for name in found.data_vars}
+        for model in found.contact_model.values.tolist()
+    }
     told = {"designs": paired.sizes["design"], "models": told}
     write_whole(path, lambda beside: beside.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8"))
 

@@ -4,7 +4,11 @@
 rule sensitivity:
     input:
         study=f"{RESULTS}/study.nc",
-        code=digest_file(f"{RESULTS}/code", "trackroller.analysis.sensitivity"),
+        code=digest_file(
+            f"{RESULTS}/code",
+            "trackroller.analysis.sensitivity",
+            "trackroller.analysis.stored_study",
+        ),
     output:
         f"{RESULTS}/sensitivity.nc",
     log:
@@ -23,6 +27,7 @@ rule figures:
             f"{RESULTS}/code",
             "trackroller.report.figures.study",
             "trackroller.report.figures.sensitivity",
+            "trackroller.analysis.stored_study",
         ),
     output:
         report(
@@ -45,7 +50,9 @@ rule report:
         study=f"{RESULTS}/study.nc",
         figures=f"{RESULTS}/figures",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=digest_file(f"{RESULTS}/code", "trackroller.report.pages.study"),
+        code=digest_file(
+            f"{RESULTS}/code", "trackroller.report.pages.study", "trackroller.analysis.stored_study"
+        ),
     output:
         report(
             f"{RESULTS}/report.html",

@@ -1,5 +1,6 @@
 """Keys analysis, pareto and constraints of a study file, in analysis and report; delta index; S-N diagram."""
 
+import dataclasses
 import json
 import re
 from pathlib import Path
@@ -8,15 +9,14 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from synthetic_results import results_of, view_of
 
 from trackroller.analysis.delta import delta
 from trackroller.analysis.givendata import given_data
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.pawn import bins, pawn, pawn_interval
-from trackroller.analysis.restore import design_of
 from trackroller.analysis.robustness import b10, material_deviations
-from trackroller.analysis.sensitivity import analyse, analyse_dataset
-from trackroller.analysis.table import StudyView
+from trackroller.analysis.sensitivity import analyse
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -26,6 +26,7 @@ from trackroller.report.numbers import share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.inputs import as_material
 from trackroller.report.words import indices
+from trackroller.study.file.goals import Analysis
 from trackroller.study.file.load import parse_study
 from trackroller.study.store.sources import source_files
 
@@ -61,7 +62,7 @@ def solved(data=LHS, regime=None, **fake):
     for name, of in fake.items():
         ds[name] = ("case", of(x, v), {"units": "h" if "life" in name else "W"})
     ds["regime"] = ("case", (np.zeros(x.size) if regime is None else regime(x, v)).astype(np.int8))
-    ds.attrs = {"study": study.merged(), "materials": json.dumps({"PA6": STEEL, "POM": STEEL})}
+    ds.attrs["materials"] = json.dumps({"PA6": STEEL, "POM": STEEL})
     return ds
 
 
@@ -169,11 +170,11 @@ def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_pat
         roller_life_hours=lambda x, v: 100 * v,
         friction_power=lambda x, v: 10 * v,
     )
-    front = study_pareto(StudyView.of(ds))
+    front = study_pareto(view_of(ds))
     kept = ds.isel(case=front["row"].values)
     assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
     assert set(kept["roller_material"].values) == {"PA6"}
-    told = next(t for t in contents(StudyView.of(ds))["decide"] if t.name == "pareto")
+    told = next(t for t in contents(view_of(ds))["decide"] if t.name == "pareto")
     assert told.heads[1] == "Life of the roller [h] ↑" and told.rows
     lives = [float(ds["roller_life_hours"][row[0]]) for row in told.rows]
     assert lives == sorted(lives, reverse=True)
@@ -186,10 +187,10 @@ def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
         friction_power=lambda x, v: 10 ** (3 * x),
     )
     ds.to_netcdf(tmp_path / "study.nc")
-    sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
+    sens = analyse(results_of(tmp_path / "study.nc"))
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
     assert "delta" in sens and "pawn" not in sens and "first" in sens
-    told = contents(StudyView.of(ds, sens))["why"][1]
+    told = contents(view_of(ds, sens))["why"][1]
     assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
     column = told.heads.index("Delta")
@@ -204,7 +205,7 @@ def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
         roller_life_hours=lambda x, v: np.where(x > 0.5, 1e-9, 10**v),
         friction_power=lambda x, v: 0 * x + 7.0,
     )
-    sens = analyse_dataset(ds)
+    sens = analyse(results_of(ds))
     life = sens.sel(output="roller_life_hours")
     assert float(life["first"].sel(factor="velocity")) > 0.9 and not int(life["reliable"])
     assert "200 of 400 rows used" in life["note"].item() and "200 full slip" in life["note"].item()
@@ -227,15 +228,15 @@ def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set(
     kept = (ds["velocity"].values < 1.2) & (ds["axial_force"].values <= 0.9)
     index = {}
     for name, one in (("limited", ds), ("free", free)):
-        sens = analyse_dataset(one)
+        sens = analyse(results_of(one))
         index[name] = float(sens["first"].sel(output="roller_life_hours", factor="axial_force"))
         if name == "limited":
             assert f"{kept.sum()} of 400 rows used" in sens["note"].values[0]
             assert f"{360 - kept.sum()} outside the constraints" in sens["note"].values[0]
     assert index["limited"] > 0.9 > 0.3 > index["free"]
-    view = StudyView.of(ds)
+    view = view_of(ds)
     np.testing.assert_array_equal(view.valid, kept)
-    told = dict(contents(StudyView.of(ds))["summary"])
+    told = dict(contents(view_of(ds))["summary"])
     assert f"{kept.sum()} of the 360 meet `friction_power < 12`" in told["Valid designs"][0].text
     lives = ds["roller_life_hours"].values[kept]
     best = told["Best"][0].values
@@ -244,7 +245,7 @@ def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set(
 
 def test_zero_and_infinite_lives_are_left_out_and_counted():
     ds = solved(LIVES, roller_life_hours=lambda x, v: np.where(x < 0.1, np.inf, np.where(x > 0.9, 0.0, 10**v)))
-    sens = analyse_dataset(ds)
+    sens = analyse(results_of(ds))
     note = sens["note"].item()
     assert "40 unlimited" in note and "40 not positive" in note and "320 of 400" in note
     assert np.isfinite(sens["first"]).any()
@@ -323,7 +324,7 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
         "base": {"roller_material": "steel", "guide_material": "steel"},
     }
     ds.attrs = {"study": json.dumps(study), "materials": json.dumps({"steel": STEEL | {"scatter_in_cycles": 4.0}})}
-    _, info = sn_diagram(StudyView.of(ds))
+    _, info = sn_diagram(view_of(ds))
     below, above = (
         int(((np.arange(40) % 4 > 0) & hit).sum()) for hit in (stress[:, 0, 0] < 360, stress[:, 0, 0] > 720)
     )
@@ -336,6 +337,12 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
 
 def test_scatter_of_each_material_widens_its_own_cases():
     """s = lg(T_N) / 2.563 by material and body; T_S counts by its power k."""
+
+    def found(wanted):
+        config = results.config.model_copy(update={"analysis": Analysis(material_scatter=wanted)})
+        study = dataclasses.replace(results.study, config=config)
+        return material_deviations(dataclasses.replace(results, study=study))
+
     ds = solved()
     k = np.log(500) / np.log(2)
     ds.attrs["materials"] = json.dumps(
@@ -345,10 +352,10 @@ def test_scatter_of_each_material_widens_its_own_cases():
             "POM": STEEL | {"scatter_in_stress": 4.0 ** (1 / k)},
         }
     )
-    found = material_deviations(ds, True)
-    np.testing.assert_allclose(found["roller"], np.log10(4) / 2.5631, rtol=1e-4)
-    assert (found["guide"] == 0).all() and material_deviations(ds, False) == {}
-    np.testing.assert_allclose(material_deviations(ds, 4)["guide"], np.log10(4) / 2.5631, rtol=1e-4)
+    results = results_of(ds)
+    np.testing.assert_allclose(found(True)["roller"], np.log10(4) / 2.5631, rtol=1e-4)
+    assert (found(True)["guide"] == 0).all() and found(False) == {}
+    np.testing.assert_allclose(found(4)["guide"], np.log10(4) / 2.5631, rtol=1e-4)
     lives = np.full(400, 1e3)
     half = np.where(np.arange(400) % 2, 0.5, 0.0)
     t = b10(lives, half)[0]  # mean of the two distributions: Phi((lg t - 3) / 0.5) / 2 = 0.1
@@ -375,9 +382,9 @@ def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
             roller_life_hours=lambda x, v: 10 ** (3 + 0.1 * x),
         )
         ds.to_netcdf(tmp_path / "study.nc")
-        sens = analyse(tmp_path / "study.nc", tmp_path / "out.nc")
+        sens = analyse(results_of(tmp_path / "study.nc"))
         lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
-        told = [t for t in contents(StudyView.of(ds, sens))["decide"] if t.name.startswith(("b10", "percentiles"))]
+        told = [t for t in contents(view_of(ds, sens))["decide"] if t.name.startswith(("b10", "percentiles"))]
         assert len(told[0].rows) == 2 and told[0].heads[4].startswith("Full slip") and "5" in told[0].rows[0][4]
         assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # the table of percentiles stands apart
     spread = np.hypot(0.1, np.log10(9) / 2.5631)
@@ -393,9 +400,8 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
     )
     ds = study.design()
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
-    ds.attrs = {"study": study.merged()}
-    assert design_of(ds).method == "table"
-    assert "are correlated (rank correlation -1.00)" in analyse_dataset(ds).attrs["treatment"]
+    assert results_of(ds).design.method == "table"
+    assert "are correlated (rank correlation -1.00)" in analyse(results_of(ds)).attrs["treatment"]
 
 
 def test_every_source_of_an_analysis_is_an_input_of_its_rule():
@@ -406,7 +412,7 @@ def test_every_source_of_an_analysis_is_an_input_of_its_rule():
     assert {"sensitivity", "figures", "report"} <= set(rules)
     found = {rule: source_files(re.findall(r'"(trackroller[\w.]+)"', named)) for rule, named in rules.items()}
     names = {path.relative_to(root / "trackroller").as_posix() for path in found["sensitivity"]}
-    estimators = ("sobol", "indices", "givendata", "delta", "pairs", "convergence", "robustness", "labels", "restore")
+    estimators = ("sobol", "indices", "givendata", "delta", "pairs", "convergence", "robustness", "stored_study")
     assert {f"analysis/{name}.py" for name in estimators} <= names
     assert {f"study/design/{name}.py" for name in ("arrays", "draws", "factors", "sampling", "grown_lhs")} <= names
     assert {"parameters/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names

@@ -13,9 +13,7 @@ from typing import Any
 
 import markupsafe
 import numpy as np
-import xarray as xr
 
-from trackroller.analysis.columns import study_dims
 from trackroller.analysis.pareto import default_objectives, pareto
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
@@ -28,8 +26,7 @@ from trackroller.report.html import render
 from trackroller.report.numbers import count
 from trackroller.report.words.pareto import goal_heading
 from trackroller.study.file.goals import statistic
-from trackroller.study.outputs import flat, read_study
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.outputs import flat
 
 MODEL = "contact_model"  # a Pareto set compares designs solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
@@ -46,17 +43,17 @@ def explorer(view: StudyView) -> dict[str, Any]:
     -------
     `header` (JSON), `rows` (base64), `script` and `style` (text), `sampled` (a sentence, '' if all cases are shown)
     """
-    ds, columns = view.data, collect(view.data, view)
-    settings, more = solve_inputs(ds, view, {c.name: c for c in columns})
+    ds, columns = view.data, collect(view)
+    settings, more = solve_inputs(view, {c.name: c for c in columns})
     columns += more
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
-    kept = pareto_rows(ds, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
+    kept = pareto_rows(view, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
     rows = sample_rows(state, kept)
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
         columns.append(Column("row", "Row", "", "row", rows.astype(float)))
-    if (numbers := _numbers(ds, view)) is not None:
+    if (numbers := _numbers(view)) is not None:
         columns.append(Column("case", "Case", "", "row", numbers[rows].astype(float)))
     packed, block = pack(columns)
     header = {
@@ -87,24 +84,22 @@ def explorer(view: StudyView) -> dict[str, Any]:
     }
 
 
-def _numbers(ds: xr.Dataset, view: StudyView) -> np.ndarray | None:
+def _numbers(view: StudyView) -> np.ndarray | None:
     """Return the case numbers of `trackroller repeat` if they are not the row numbers."""
+    ds = view.data
     if "case" not in ds.variables or ds["case"].size != len(view.table) or ds["case"].dtype.kind not in "fiu":
         return None
-    numbers = flat(ds, "case", tuple(study_dims(ds)))
+    numbers = flat(ds, "case", view.dims)
     return None if (numbers == np.arange(len(numbers))).all() else numbers
 
 
-def pareto_rows(ds: xr.Dataset, cases: int) -> np.ndarray:
+def pareto_rows(view: StudyView, cases: int) -> np.ndarray:
     """Mark the cases that no other case beats in the study's goals, shape (n,) bool; all False without goals."""
-    marked, study = np.zeros(cases, dtype=bool), read_study(ds)
-    goals = study.get("pareto") or default_objectives(ds)
-    if not goals or study.get("design") == "inner_outer":
+    marked = np.zeros(cases, dtype=bool)
+    goals = view.study.get("pareto") or default_objectives(view.data)
+    if not goals or view.solved.design.method == "inner_outer":
         return marked
-    try:
-        front = pareto(ds, goals, study.get("constraints") or ())
-    except InputError:  # a result without the study file that its goals need
-        return marked
+    front = pareto(view.solved, goals, view.solved.config.constraints)
     marked[front["row"].values[front["optimal"].values == 1]] = True
     return marked
 
@@ -154,37 +149,25 @@ def secured(page: str) -> str:
     return page.replace(POLICY, "; ".join(policy), 1)
 
 
-def write_explorer(study_nc: Path, out: Path | None = None) -> Path:
-    """Write the explorer of a gathered study as one HTML file.
+def write_explorer(view: StudyView, out: Path) -> Path:
+    """Write the explorer of a solved study as one HTML file.
 
     Parameters
     ----------
-    study_nc : pathlib.Path
-        Gathered study, or the folder that holds it.
-    out : pathlib.Path, optional
-        File to write; `explorer.html` beside the study if not given.
+    view : StudyView
+        The study as a table, with its analysis for the design points of an inner/outer design.
+    out : pathlib.Path
+        File to write.
 
     Returns
     -------
     pathlib.Path
         The path of the page.
-
-    Raises
-    ------
-    InputError
-        If there is no gathered study.
     """
-    path = StudyFolder(study_nc).gathered if study_nc.is_dir() else study_nc
-    if not path.is_file():
-        raise InputError(
-            "study", str(study_nc), "a folder results/NAME with study.nc, or such a file", "Run the study."
-        )
-    view = StudyView.read(path, path.with_name("sensitivity.nc"))
     content = {
-        "name": str(view.study.get("name") or path.parent.name),
-        "description": str(view.study.get("description") or ""),
+        "name": str(view.study.get("name", "")),
+        "description": str(view.study.get("description", "")),
         "explorer": explorer(view),
     }
-    out = path.with_name("explorer.html") if out is None else Path(out)
     write_text(out, secured(render("explorer.html.j2", content)))
     return out

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, study_dims
+from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.errors import InputError
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
@@ -19,7 +19,7 @@ from trackroller.report.words.flags import words_of
 from trackroller.roller.record import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
-from trackroller.study.outputs import Output, default_names, flat, outputs, read_study
+from trackroller.study.outputs import Output, default_names, flat, outputs
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
@@ -51,20 +51,19 @@ class Column:
     log: bool = False
 
 
-def collect(ds: xr.Dataset, view: StudyView) -> list[Column]:
+def collect(view: StudyView) -> list[Column]:
     """Return the columns of a gathered study.
 
     Parameters
     ----------
-    ds : gathered study
-    view : the same study as a table, with its rows in the same order
+    view : the study as a table
 
     Returns
     -------
     Columns of equal length. Outputs hold the numbers that `pareto` and the analyses use, in double precision; figures
     of single contacts hold single precision.
     """
-    dims = study_dims(ds)
+    ds, dims = view.data, view.dims
     columns = [_setting(view, name, "factor") for name in view.factors]
     columns += [_setting(view, name, "input") for name in view.derived]
     columns += _results(ds, dims, view)
@@ -113,19 +112,18 @@ def _spread(values: np.ndarray) -> bool:
     return bool(good.size and good.min() > 0 and good.max() > 100 * good.min())
 
 
-def _results(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
+def _results(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
     """Return the usual outputs and those that the study file names as goals."""
-    names = default_names(ds, dims, tuple(dims))
-    study = read_study(ds)
+    names = default_names(ds, dims, dims)
     asked = [
-        *(study.get("pareto") or {}),
-        *(n for text in study.get("constraints") or () for n in goals.names_in(text)),
+        *(view.study.get("pareto") or {}),
+        *(n for text in view.study.get("constraints") or () for n in goals.names_in(text)),
     ]
     names += [n for n in dict.fromkeys(asked) if n not in names and n not in view.table and n not in PARAMETERS]
     return [_output(found, "output") for found in _found(ds, dims, names)]
 
 
-def _found(ds: xr.Dataset, dims: list[str], names: Iterable[str]) -> list[Output]:
+def _found(ds: xr.Dataset, dims: tuple[str, ...], names: Iterable[str]) -> list[Output]:
     """Return the outputs of these names that the study has."""
     found = []
     for name in names:
@@ -141,7 +139,7 @@ def _output(found: Output, role: str) -> Column:
     return Column(found.name, capital(found.long_name), unit_text(found.units), role, values, log="life" in found.name)
 
 
-def _details(ds: xr.Dataset, dims: list[str], known: set[str]) -> list[Column]:
+def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str]) -> list[Column]:
     """Return figures of each contact and body, under names such as `peak_stress[1,roller]`."""
     names = []
     for variable in (n for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)):
@@ -154,7 +152,7 @@ def _details(ds: xr.Dataset, dims: list[str], known: set[str]) -> list[Column]:
     return [_output(found, "detail") for found in _found(ds, dims, names)]
 
 
-def _states(ds: xr.Dataset, dims: list[str], view: StudyView) -> list[Column]:
+def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
     """Return regime, state, validity flags (of each body where they are known), and reason of failure."""
     regime = np.clip(np.nan_to_num(view.regime, nan=3), 0, 3).astype(int)
     rolls = np.where(view.inside, 6, np.where(view.rolling, 1, 5))
@@ -186,13 +184,12 @@ def flag_text(mask: int, flags: Sequence[str]) -> str:
     return "; ".join(said) or "none"
 
 
-def solve_inputs(ds: xr.Dataset, view: StudyView, known: dict[str, Column]) -> tuple[list[list[Any]], list[Column]]:
+def solve_inputs(view: StudyView, known: dict[str, Column]) -> tuple[list[list[Any]], list[Column]]:
     """Return what `trackroller solve --set` needs to repeat a case.
 
     Parameters
     ----------
-    ds : gathered study
-    view : the same study as a table
+    view : the study as a table
     known : columns that the explorer has already, by name
 
     Returns
@@ -200,12 +197,13 @@ def solve_inputs(ds: xr.Dataset, view: StudyView, known: dict[str, Column]) -> t
     settings : pairs of a key and its text, or of a key and a list with the name of its column if the text varies
     columns : further columns that the settings name
     """
-    dims, settings, more = study_dims(ds), [], []
+    ds, dims = view.data, view.dims
+    settings, more = [], []
     for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
         name = f"{key}_value" if f"{key}_value" in ds.variables else key
         if name in ds.variables and set(ds[name].dims) & set(dims):
             if name not in known:
-                more.append(_input(name, flat(ds, name, tuple(dims))))
+                more.append(_input(name, flat(ds, name, dims)))
             settings.append([key, [name]])
         elif (text := setting_text(_fixed(ds, view, name))) is not None and key != "shortcuts":
             settings.append([key, text])

@@ -1,6 +1,6 @@
 """Figures of sensitivities: ranked indices, overview, convergence, Morris plane, interactions.
 
-Every function takes the dataset of `trackroller.analysis.sensitivity.analyse_dataset` and returns a figure with its
+Every function takes the dataset of `trackroller.analysis.sensitivity.analyse` and returns a figure with its
 caption and sentence, or None where the design does not support it.
 """
 

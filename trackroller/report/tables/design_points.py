@@ -13,7 +13,6 @@ from trackroller.report.tables.targets import MAX_POINTS
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.design_points import point_words
 from trackroller.report.words.sentence import Sentence
-from trackroller.study.outputs import read_study, settings
 
 OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 
@@ -21,7 +20,7 @@ OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
 def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
     """List every analysed output of an inner/outer design by design point: lives first, the best point on top."""
     names = [str(n) for n in table["output"].values]
-    asked = settings(read_study(table)).get("outputs")
+    asked = table.attrs.get("outputs_named")
     lives = [n for n in names if "life" in n and np.isfinite(table["percentile_value"].sel(output=n)).any()]
     others = [n for n in names if "life" not in n] if asked or not lives else []
     found = [part for n in lives for part in _life_tables(table, n)]

@@ -34,29 +34,33 @@ def _translate(error: ValidationError) -> InputError:
     return InputError(where, detail.get("input"), detail["msg"])
 
 
+def checked_keys(data: Mapping[str, Any]) -> StudyFile:
+    """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
+    try:
+        return StudyFile.model_validate(dict(data))
+    except ValidationError as error:
+        raise _translate(error) from None
+
+
 def parse_study(
     data: Mapping[str, Any], path: Path | None = None, database: Any = None, planned: bool = False
 ) -> Study:
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     with noted_reads() as inputs:
-        try:
-            config = StudyFile.model_validate(dict(data))
-        except ValidationError as error:
-            raise _translate(error) from None
-        study = Study(config, path, database, inputs)
+        study = Study(checked_keys(data), path, database, inputs)
         cross_check(study)
         if not planned:
             check_geometry(study)
     return study
 
 
-def load_study(path: str | Path, database: Any = None, planned: bool = False) -> Study:
+def load_study(path: str | Path | Mapping[str, Any], database: Any = None, planned: bool = False) -> Study:
     """Read and check a study file.
 
     Parameters
     ----------
-    path : str or pathlib.Path
-        The YAML file.
+    path : str, pathlib.Path or mapping
+        The YAML file, or a mapping with its keys.
     database : MaterialDatabase, optional
         Materials. Default: the built-in database, changed and extended by the user's own file.
     planned : bool
@@ -80,6 +84,8 @@ def load_study(path: str | Path, database: Any = None, planned: bool = False) ->
     >>> load_study("study.yaml").design().sizes["case"]
     2
     """
+    if isinstance(path, Mapping):
+        return parse_study(path, None, database, planned)
     path = Path(path)
     with files_beside(path), noted_reads():
         data = parse_mapping(read_text(path, "study file"), "study file")

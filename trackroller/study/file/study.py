@@ -75,15 +75,15 @@ class Study:
         table : str, optional
             Write this path of the table of cases instead of that in the study file.
         """
-        return self._text if table is None else write_yaml(self._data | {"table": table})
+        return self._text if table is None else write_yaml(self.as_dict() | {"table": table})
 
-    @property
-    def _data(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
+        """Return what the study file says, every default included, as values of YAML."""
         return self.config.model_dump(mode="json", exclude_none=True)
 
     @cached_property
     def _text(self) -> str:
-        return write_yaml(self._data)  # kept: planning, solving and gathering ask for it several times
+        return write_yaml(self.as_dict())  # kept: planning, solving and gathering ask for it several times
 
     @cached_property
     def drawn(self) -> SampledDesign:

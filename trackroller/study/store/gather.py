@@ -74,7 +74,7 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
     def save(beside: Path) -> None:
-        labelled(study, design, *_collect(found, place, folder.root)).to_netcdf(beside, engine="netcdf4")
+        labelled(study, study.drawn, design, *_collect(found, place, folder.root)).to_netcdf(beside, engine="netcdf4")
 
     with sealing(folder.gathered):
         write_whole(folder.gathered, save)

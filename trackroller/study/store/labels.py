@@ -11,6 +11,7 @@ import xarray as xr
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.study.design.factors import Factor, readable
+from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.design.stored import FACTOR, META, PLACE
 from trackroller.study.store import provenance
 
@@ -22,7 +23,8 @@ Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any
 
 def labelled(
     study: Study,
-    design: xr.Dataset,
+    drawn: SampledDesign,
+    cases: xr.Dataset,
     results: Mapping[Hashable, xr.Variable],
     axes: Mapping[Hashable, xr.Variable],
     attrs: Mapping[str, Any],
@@ -33,7 +35,9 @@ def labelled(
     ----------
     study : Study
         The study.
-    design : xarray.Dataset
+    drawn : SampledDesign
+        Its design.
+    cases : xarray.Dataset
         Its n cases, as `Study.design` returns them.
     results : mapping
         Results by name, each with `case` as its first dimension.
@@ -48,24 +52,27 @@ def labelled(
         Results with parameters, factors and the places of the design as coordinates. The attributes hold what is needed
         to repeat the study, and the study file itself.
     """
-    grid = study.drawn.factors if study.drawn.method == "grid" else {}
-    shape = study.drawn.meta["shape"] if grid else (design.sizes["case"],)
+    grid = drawn.factors if drawn.method == "grid" else {}
+    shape = drawn.meta["shape"] if grid else (cases.sizes["case"],)
     sizes = dict(zip(grid or ("case",), shape, strict=True))
     unstacked = {
         name: _variable((*sizes, *v.dims[1:]), v.values.reshape(*shape, *v.shape[1:]), v.attrs)
         for name, v in results.items()
     }
-    coords = _labels(design, sizes, grid)
+    coords = _labels(cases, sizes, grid)
     for name, v in axes.items():
         coords.setdefault(name, _variable(v.dims, v.values, v.attrs, coordinate=True))
-    return xr.Dataset(unstacked, coords, _attributes(study, design, attrs))
+    return xr.Dataset(unstacked, coords, _attributes(study, cases, attrs))
 
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
     """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
     names = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
     kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in {*study.factors, "seconds"}}
-    return kept | {META: design.attrs[META]} | provenance.attributes(study, names)
+    # what `solve` recorded of its materials holds, whatever the database says by now
+    recorded = {"materials": attrs["materials"]} if "materials" in attrs else {}
+    told = provenance.attributes(study, [] if recorded else names)
+    return kept | {META: design.attrs[META]} | told | recorded
 
 
 def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:

@@ -1,0 +1,196 @@
+"""The one solved study: its configuration, design and data, and what analysis and report make of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import xarray as xr
+
+from trackroller.analysis.designs import Designs
+from trackroller.analysis.pareto import default_objectives, pareto
+from trackroller.analysis.pareto_designs import study_pareto
+from trackroller.analysis.sensitivity import analyse
+from trackroller.analysis.stored_study import read_results
+from trackroller.analysis.table import StudyResults
+from trackroller.errors import InputError
+from trackroller.files import write_text
+from trackroller.numerics.threads import limited_to
+from trackroller.report.build import report_text
+from trackroller.report.explorer.page import write_explorer
+from trackroller.study.file.load import load_study
+from trackroller.study.file.study import Study
+from trackroller.study.progress import progress_bar
+from trackroller.study.run import run_study, solve_study
+
+
+class Solved(StudyResults):
+    """A solved study.
+
+    `trackroller.run` and `trackroller.open_study` return it.
+
+    Attributes
+    ----------
+    study : Study
+        The checked study; `config` is what its file says.
+    design : SampledDesign
+        The rows of the design with their places and the groups of factors, as they were drawn.
+    data : xarray.Dataset
+        The results, over the factors of a grid or along `case`, with every input as a coordinate.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> text = "{name: friction, factors: {friction_coefficient: {values: [0.1, 0.2]}}, contact_model: sliding}"
+    >>> characters = Path("friction.yaml").write_text(text)
+    >>> solved = tr.run("friction.yaml", progress=False)
+    >>> solved.data.sizes["friction_coefficient"], solved.indices().attrs["method"]
+    (2, 'grid')
+    """
+
+    @cached_property
+    def _analysis(self) -> xr.Dataset:
+        return analyse(self)
+
+    def indices(self) -> xr.Dataset:
+        """Return the sensitivity indices of every output, see `trackroller.analysis.sensitivity.analyse`.
+
+        Raises
+        ------
+        InputError
+            If no output or no factor varies.
+        """
+        return self._analysis
+
+    def robustness(self) -> xr.Dataset:
+        """Return life and probabilities at each design point of an inner/outer array design.
+
+        Raises
+        ------
+        InputError
+            If the study has another design.
+        """
+        if self.design.method != "inner_outer":
+            remedy = "Take indices() for this study, or give the study design: inner_outer."
+            raise InputError("design", self.design.method, "design inner_outer, which has design points", remedy)
+        return self._analysis
+
+    def pareto(
+        self, objectives: Mapping[str, str] | None = None, constraints: Iterable[str] | None = None
+    ) -> xr.Dataset | None:
+        """Return the Pareto set of the designs, or of the cases where goals or constraints are given.
+
+        Parameters
+        ----------
+        objectives : mapping of str to str, optional
+            Outputs or factors, each with `min` or `max`. Default: the key `pareto` of the study file, otherwise the
+            longest life with the lowest friction or pressure.
+        constraints : iterable of str, optional
+            Comparisons that an allowed design must meet. Default: the key `constraints` of the study file.
+
+        Returns
+        -------
+        xarray.Dataset or None
+            None if the study has no goals.
+        """
+        if objectives is None and constraints is None:
+            needs_points = self.design.method == "inner_outer" and self.config.pareto
+            return study_pareto(self.view.analysed(self._analysis if needs_points else None))
+        goals = objectives or self.config.pareto or default_objectives(self.data)
+        return pareto(self, goals, self.config.constraints if constraints is None else constraints)
+
+    def best(self, count: int = 5) -> pd.DataFrame:
+        """Return the best designs over all their conditions, the best one first.
+
+        Parameters
+        ----------
+        count : int
+            Number of designs.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Rows of `trackroller.analysis.designs.Designs.table`; empty for a study without choices or lives.
+        """
+        designs = Designs.of(self.view)
+        return pd.DataFrame() if designs is None else designs.table.head(count)
+
+    def to_table(self) -> pd.DataFrame:
+        """Return one row a case: factors, other inputs that vary, and results by contact and body."""
+        return self.view.table.copy()
+
+    def report(self, path: Path | str) -> Path:
+        """Write the report as one HTML file, and return its path."""
+        write_text(Path(path), report_text(self))
+        return Path(path)
+
+    def explore(self, path: Path | str) -> Path:
+        """Write the explorer as one HTML file that works without a network, and return its path."""
+        points = self._analysis if self.design.method == "inner_outer" else None
+        return write_explorer(self.view.analysed(points), Path(path))
+
+
+def run(
+    study: Study | Path | str | Mapping[str, Any],
+    cores: int | None = None,
+    progress: bool = True,
+    results: Path | str | None = None,
+) -> Solved:
+    """Solve a study in this process.
+
+    Parameters
+    ----------
+    study : Study, pathlib.Path, str or mapping
+        The study, its file, or a mapping with the keys of a study file.
+    cores : int, optional
+        Number of threads; by default one for each processor.
+    progress : bool
+        Whether to show a progress bar.
+    results : path, optional
+        Parent of a folder that keeps every solved case, as `trackroller run` does: a run that was interrupted goes on
+        there. By default nothing is written.
+
+    Returns
+    -------
+    Solved
+        The solved study.
+
+    Raises
+    ------
+    InputError
+        If the study is wrong.
+    WorkError
+        If the folder cannot be written.
+    """
+    checked = study if isinstance(study, Study) else load_study(study)
+    with limited_to(cores), progress_bar(checked.name, progress) as bar:
+        if results is not None:
+            plan = run_study(checked, results, started=bar.started, progress=bar.advanced, tell=bar.tell)
+            return open_study(plan.folder.root)
+        return Solved(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
+
+
+def open_study(source: xr.Dataset | Path | str) -> Solved:
+    """Open a solved study.
+
+    Parameters
+    ----------
+    source : xarray.Dataset, pathlib.Path or str
+        Folder of a study, its file `study.nc`, the data set in such a file, or the result of `trackroller.solve` for
+        the design of a study.
+
+    Returns
+    -------
+    Solved
+        The study with the same meaning as before it was written.
+
+    Raises
+    ------
+    InputError
+        If the source holds no solved study, or a study that this version would read differently.
+    """
+    found = read_results(source)
+    return Solved(found.study, found.design, found.data)

@@ -1,0 +1,56 @@
+"""Show on a terminal how many cases of a study are solved, how fast, and the time left."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+_COLUMNS = (
+    TextColumn("{task.description}"),
+    BarColumn(),
+    MofNCompleteColumn(),
+    TextColumn("{task.fields[rate]} cases/s, left"),
+    TimeRemainingColumn(),
+)
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A progress bar with the functions that a run of a study calls."""
+
+    shown: Progress
+    task: TaskID
+
+    def started(self, total: int, done: int) -> None:
+        """Set the number of cases, and how many of them were solved before."""
+        self.shown.update(self.task, total=total, completed=done)
+
+    def advanced(self, count: int) -> None:
+        """Add solved cases."""
+        self.shown.advance(self.task, count)
+        self.shown.update(self.task, rate=f"{self.shown.tasks[0].speed or 0:.0f}")
+
+    def tell(self, line: str) -> None:
+        """Print a line above the bar."""
+        self.shown.console.print(line, highlight=False, markup=False)
+
+
+@contextlib.contextmanager
+def progress_bar(name: str, shown: bool = True) -> Iterator[Bar]:
+    """Show a progress bar on standard error until the context ends.
+
+    Parameters
+    ----------
+    name : str
+        Name of the study.
+    shown : bool
+        Whether to show the bar. Lines of `Bar.tell` are printed anyway.
+    """
+    console = Console(file=sys.stderr, soft_wrap=True)
+    with Progress(*_COLUMNS, console=console, disable=not shown, speed_estimate_period=120) as progress:
+        yield Bar(progress, progress.add_task(name, total=None, rate="-"))
