@@ -150,9 +150,9 @@ class Limit:
     distribution: str = "none"
 
 
-def variables(group: str, *rows: tuple[str, tuple[str, ...], str, str, str]) -> tuple[Variable, ...]:
-    """Return result variables of a group from rows of name, dimensions, unit, symbol and long name."""
-    return tuple(Variable(name, group, *rest) for name, *rest in rows)  # type: ignore[arg-type]
+def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:
+    """Return result variables of a group from rows of name, dimensions, unit, symbol, long name and `odd`, if it is."""
+    return tuple(Variable(name, group, *rest) for name, *rest in rows)
 
 
 def optional(

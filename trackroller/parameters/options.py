@@ -224,7 +224,7 @@ _OPTIONS = (
     Option(
         "shortcuts",
         True,
-        "use symmetry and repetition among the cases; numbers stay the same to rounding",
+        "use symmetry and repetition among the cases; mirrored rollers then have mirrored numbers",
         kind="switch",
         identity=False,
         recorded=False,

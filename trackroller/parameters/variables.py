@@ -17,6 +17,8 @@ class Variable:
         Dimensions after `case`.
     units, symbol, long_name : str
         Unit as the CF conventions write it, symbol of the publication, and name for figures and reports.
+    odd : bool
+        Whether the value changes its sign in the mirror image of a roller, as lateral positions and forces do.
     """
 
     name: str
@@ -25,3 +27,4 @@ class Variable:
     units: str
     symbol: str
     long_name: str
+    odd: bool = False

@@ -29,6 +29,7 @@ def file_attributes(title: str, action: str) -> dict[str, str]:
     }
 
 
+_ODD = True  # the value changes its sign in the mirror image of a roller
 _C, _CB = ("contact",), ("contact", "body")
 _PATCH = ("contact", "y", "x")
 _XZ, _YZ = ("contact", "body", "section_z", "section_x"), ("contact", "body", "section_z", "section_y")
@@ -36,9 +37,9 @@ _XZ, _YZ = ("contact", "body", "section_z", "section_x"), ("contact", "body", "s
 _GROUPS = {
     "forces": (
         ("normal_force", _C, "N", "F_N", "normal force"),
-        ("lateral_force", _C, "N", "F_T", "lateral friction force on the roller"),
+        ("lateral_force", _C, "N", "F_T", "lateral friction force on the roller", _ODD),
         ("driving_force", _C, "N", "F_A", "longitudinal friction force on the roller"),
-        ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal"),
+        ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _ODD),
         ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N"),
         ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius"),
         ("slip", (), "1", "xi", "longitudinal creepage r_Delta0/r_A, > 0 braking"),
@@ -49,18 +50,18 @@ _GROUPS = {
             "(M_R1 - M_R2) sin(alpha)",
             "roller torque about the track normal (drilling torque)",
         ),
-        ("tilting_moment", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)"),
-        ("yaw_moment", (), "N mm", "M_zR", "moment about the radial direction, eq. (12)"),
+        ("tilting_moment", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)", _ODD),
+        ("yaw_moment", (), "N mm", "M_zR", "moment about the radial direction, eq. (12)", _ODD),
         ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track"),
     ),
     "contact": (
         ("semi_axis_lateral", _C, "mm", "a", "lateral semi-axis, or half width of a patch"),
         ("semi_axis_rolling", _C, "mm", "b", "semi-axis in the rolling direction, or half length"),
         ("patch_area", _C, "mm2", "A", "area of the contact patch"),
-        ("pressure_centre", _C, "mm", "x_p", "lateral position of the resultant of the pressure"),
+        ("pressure_centre", _C, "mm", "x_p", "lateral position of the resultant of the pressure", _ODD),
         ("max_pressure", _C, "MPa", "p_max", "largest contact pressure"),
         ("max_shear", _C, "MPa", "tau_max", "largest surface shear traction"),
-        ("spin_pole_lateral", _C, "mm", "x_spin", "lateral position of the spin pole"),
+        ("spin_pole_lateral", _C, "mm", "x_spin", "lateral position of the spin pole", _ODD),
         ("spin_pole_rolling", _C, "mm", "y_spin", "position of the spin pole in the rolling direction"),
         ("stick_area_fraction", _C, "1", "A_stick/A", "adhesion (stick) area over the area of the patch"),
     ),
@@ -78,17 +79,17 @@ _GROUPS = {
     ),
     "peak_stress": (
         ("peak_stress", _CB, "MPa", "sigma_DEH,max", "largest von Mises stress of the body"),
-        ("peak_x", _CB, "mm", "x_C", "lateral position of the peak stress"),
+        ("peak_x", _CB, "mm", "x_C", "lateral position of the peak stress", _ODD),
         ("peak_y", _CB, "mm", "y_C", "position of the peak stress in the rolling direction"),
         ("peak_z", _CB, "mm", "z_C", "depth of the peak stress"),
     ),
     "tractions": (
-        ("patch_x", ("contact", "x"), "mm", "x_C", "lateral position in the patch"),
+        ("patch_x", ("contact", "x"), "mm", "x_C", "lateral position in the patch", _ODD),
         ("patch_y", ("contact", "y"), "mm", "y_C", "position in the patch in the rolling direction"),
         ("pressure", _PATCH, "MPa", "p", "contact pressure"),
-        ("shear_lateral", _PATCH, "MPa", "tau_x", "lateral shear on the roller"),
+        ("shear_lateral", _PATCH, "MPa", "tau_x", "lateral shear on the roller", _ODD),
         ("shear_rolling", _PATCH, "MPa", "tau_y", "shear on the roller in the rolling direction"),
-        ("slip_lateral", _PATCH, "1", "v_x/v", "lateral creepage at a point: slip speed over travel speed"),
+        ("slip_lateral", _PATCH, "1", "v_x/v", "lateral creepage at a point: slip speed over travel speed", _ODD),
         ("slip_rolling", _PATCH, "1", "v_y/v", "creepage at a point in the rolling direction"),
         (
             "friction_energy_density",
@@ -99,7 +100,7 @@ _GROUPS = {
         ),
     ),
     "subsurface": (
-        ("xz_x", ("contact", "body", "section_x"), "mm", "x_C", "x in the lateral section"),
+        ("xz_x", ("contact", "body", "section_x"), "mm", "x_C", "x in the lateral section", _ODD),
         ("xz_z", ("contact", "body", "section_z"), "mm", "z_C", "depth in the lateral section"),
         ("yz_y", ("contact", "body", "section_y"), "mm", "y_C", "y in the rolling section"),
         ("yz_z", ("contact", "body", "section_z"), "mm", "z_C", "depth in the rolling section"),

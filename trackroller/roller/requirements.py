@@ -1,6 +1,7 @@
 """Find cases with the same mechanics and mirror-symmetric rollers, so that each contact is solved only once.
 
 These shortcuts change no number beyond rounding; `solve(..., shortcuts=False)` switches them off.
+Mirror images of whole rollers are the subject of `reflection`.
 """
 
 from __future__ import annotations

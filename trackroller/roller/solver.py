@@ -24,6 +24,7 @@ from trackroller.roller.dataset import VARIABLES, build, file_attributes, joined
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.roller.record import with_design, with_inputs
+from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
@@ -102,7 +103,8 @@ def solve(
         Condition such as "peak_stress > R_m". Where it holds, no peak stress is searched for, and the case is marked
         `stopped`. See `trackroller.roller.stop`.
     shortcuts : bool
-        Whether symmetry and repetition among the cases are used (default). The numbers are the same to rounding.
+        Whether symmetry and repetition among the cases are used (default). Rollers with opposite axial forces then have
+        mirrored numbers; without shortcuts they agree within the errors of the contact model.
     slip_terms : str or collection of str
         What the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: "profile", the slip of
         the guide's profile by eq. (20), which sliding always counts, and "curve", the turning of the roller with the
@@ -210,12 +212,16 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
 def _solve_window(table: CaseTable, options: Options) -> Block:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
     rows = number = np.arange(len(table))
+    mirrored = np.zeros(len(table), bool)
+    if options.shortcuts:
+        table, mirrored = handed(table)
     # limits of patches depend on the speed and on all values of the materials
     if options.shortcuts and len(table) > 1 and not of_patches(options.outputs):
         rows, number = requirements.distinct_mechanics(table)
     distinct = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
     block = distinct.take(number)
     stages_case.finish(table, block, options)
+    reflect(block.values, mirrored)
     return block
 
 
