@@ -6,11 +6,14 @@ import contextlib
 import errno
 import hashlib
 import os
+import signal
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
@@ -205,6 +208,39 @@ def whole_folder(path: Path) -> Iterator[Path]:
                 if exc.errno not in (errno.ENOTEMPTY, errno.EEXIST):
                     raise disk_error(exc, path) from exc
         raise WorkError(f"{path}: other processes replace this folder all the time. Start again when they have ended.")
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise `KeyboardInterrupt`, but try again in 20 ms if the libraries of netCDF files are at work.
+
+    These libraries hold a lock, which an interrupt would leave held, so that the next access would wait forever. Python
+    drops an exception that is raised while it disposes of an object.
+    """
+    while frame is not None:
+        module = str(frame.f_globals.get("__name__"))
+        if module.startswith(("netCDF4", "xarray.backends", "weakref")) or frame.f_code.co_name == "__del__":
+            signal.setitimer(signal.ITIMER_REAL, 0.02)
+            return
+        frame = frame.f_back
+    raise KeyboardInterrupt
+
+
+@contextmanager
+def interrupts_wait_for_files() -> Iterator[None]:
+    """Let Ctrl-C wait while a netCDF file is read or written; a thread beside the main one is left as it is."""
+    main = threading.current_thread() is threading.main_thread()
+    if not main or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield
+        return
+    before = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGALRM)}
+    try:
+        yield
+    finally:
+        waiting, _ = signal.setitimer(signal.ITIMER_REAL, 0)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if waiting:
+            raise KeyboardInterrupt
 
 
 def _sync_folder(folder: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
-from trackroller.cli.main import main
-
-__all__ = ["main"]
+INTERRUPTED = 130  # exit code after Ctrl-C, as in a shell
+STOPPED = (
+    "stopped. The finished chunks of a study are kept, and no file is half written. Start the same command again to go "
+    "on."
+)

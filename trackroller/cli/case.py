@@ -157,18 +157,13 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
         folder = out or Path(f"{path.stem}-figures")
         drawn = plot_case(dataset, folder)
     else:
-        from xarray import load_dataset
-
-        from trackroller.report.figures.study import draw_all
-        from trackroller.solved import open_study
+        from trackroller.report.build import draw_study
         from trackroller.study.status import find_study
         from trackroller.study.store.plan import study_folder
 
         place = study_folder(find_study(target, results).name, results)
         folder = out or place.root / "figures"
-        sensitivity = place.root / "sensitivity.nc"
-        analysis = load_dataset(sensitivity) if sensitivity.is_file() else None
-        drawn = draw_all(open_study(place.root).view.analysed(analysis), folder)
+        drawn = draw_study(place.gathered, place.root / "sensitivity.nc", folder, place)
     print(f"{len(drawn)} figures in {folder}")
 
 

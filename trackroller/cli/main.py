@@ -6,6 +6,8 @@ Exit codes: 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the p
 from __future__ import annotations
 
 import functools
+import io
+import signal
 import sys
 import tempfile
 import traceback
@@ -17,8 +19,10 @@ from typing import Annotated, Any
 import typer
 
 from trackroller import __version__
+from trackroller.cli import INTERRUPTED, STOPPED
 from trackroller.errors import InputError, WorkError
-from trackroller.files import disk_error
+from trackroller.files import interrupts_wait_for_files
+from trackroller.numerics.threads import check_threads
 from trackroller.parameters import options_text
 
 app = typer.Typer(
@@ -132,7 +136,7 @@ def status(study: AnyStudy, results: Results = Path("results")) -> None:
     """Print how many cases are solved, missing and failed, the causes of failures, and the time left."""
     from trackroller.cli.study import print_status
 
-    print_status(study, results)
+    raise typer.Exit(print_status(study, results))
 
 
 @app.command()
@@ -245,32 +249,41 @@ def materials_add(
 def main() -> None:
     """Run the command line and end the process with its exit code.
 
-    The codes are 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the program. Every error is one line on
-    stderr; an error of the program leaves its traceback in a log file that the line names. A warning is one line too,
-    which is printed once.
+    The codes are 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the program, 130 stopped by Ctrl-C.
+    Every error is one line on stderr; an error of the program leaves its traceback in a log file that the line names. A
+    warning is one line too, which is printed once.
     """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # a terminal without UTF-8 shows '?' for a sign that it lacks
     print_once = functools.cache(_print_line)
     warnings.showwarning = lambda message, *_: print_once(str(message))
-    raise SystemExit(run_app(app))
+    code = run_app(app)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # nothing is left to stop
+    raise SystemExit(code)
 
 
 def run_app(command: Callable[[], object]) -> int:
     """Call a command, print every error in one line on stderr, and return the exit code."""
     try:
-        command()
+        check_threads()
+        with interrupts_wait_for_files():
+            command()
     except SystemExit as exc:
-        return exc.code if isinstance(exc.code, int) else int(exc.code is not None)
+        code = exc.code if isinstance(exc.code, int) else int(exc.code is not None)
+        return _tell(STOPPED, code) if code == INTERRUPTED else code
     except InputError as exc:
         return _tell(str(exc), 2)
     except WorkError as exc:
         return _tell(str(exc), 1)
     except KeyboardInterrupt:
-        return _tell("stopped; finished cases are kept. Start the same command again to go on.", 1)
+        return _tell(STOPPED, INTERRUPTED)
     except BrokenPipeError:
         sys.stderr.close()
         return 1
     except OSError as exc:
-        return _tell(str(disk_error(exc, Path(str(exc.filename or "a file")))), 1)
+        # a failed write has its own message: this file could not be read
+        return _tell(f"{exc.filename or 'a file'} cannot be read ({exc.strerror or exc}). Repair or replace it.", 1)
     except Exception as exc:
         return _tell(f"internal error, {type(exc).__name__}. Please report it with the log {_log(exc)}", 3)
     return 0

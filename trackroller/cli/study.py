@@ -62,8 +62,14 @@ def _report(folder: StudyFolder) -> Path:
     return build_report(folder, lambda line: print(line, file=sys.stderr))
 
 
-def print_status(name: str, results: Path) -> None:
-    """Print how many cases of a study are done, missing and failed, and the failures by cause."""
+def print_status(name: str, results: Path) -> int:
+    """Print how many cases of a study are done, missing and failed, and the failures by cause.
+
+    Returns
+    -------
+    int
+        The exit code: 1 if a file of the study is damaged or was altered.
+    """
     study = find_study(name, results)
     status = status_of(study, results)
     print(
@@ -81,9 +87,10 @@ def print_status(name: str, results: Path) -> None:
     for (factor, level), count in status.by_level.items():
         print(f"failed    {count} at {factor} = {level}")
     for line in status.corrupt:
-        print(f"corrupt   {line} (the next run solves its cases again)")
+        print(f"corrupt   {line} (the next run makes it again)")
     if status.failed:
         print("          `trackroller run STUDY --rerun-failed` solves just these again")
+    return int(bool(status.corrupt))
 
 
 def print_repeat(name: str, case: int, results: Path) -> int:

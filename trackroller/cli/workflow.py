@@ -12,7 +12,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
+from trackroller.cli import STOPPED
 from trackroller.errors import InputError, WorkError, unknown_name
+from trackroller.files import interrupts_wait_for_files
 from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
@@ -135,7 +137,7 @@ def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
     to : text stream
         Where the message is written.
     """
-    plan = json.loads(folder.plan_file.read_text(encoding="utf-8"))
+    plan = folder.record()
     total = plan["distinct"]
     done = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
     line = f"{folder.root.name}: {done:,} of {total:,} cases solved ({100 * done // max(total, 1)} %)"
@@ -173,6 +175,7 @@ def finished(folder: StudyFolder, seconds: float) -> str:
 def log_to(path: str, step: str = "") -> None:
     """Send the log lines and warnings of this process to a rule's log file, and tell the user the step's name."""
     sys.excepthook = _tell_error
+    _held.enter_context(interrupts_wait_for_files())
     if step:
         print(step, file=sys.stderr, flush=True)
     Path(path).parent.mkdir(parents=True, exist_ok=True)
@@ -184,5 +187,7 @@ def _tell_error(kind: type[BaseException], error: BaseException, trace: Tracebac
     """Print an error of the input or the work in one line, any other error with its traceback."""
     if isinstance(error, (InputError, WorkError)):
         print(f"trackroller: {error}", file=sys.stderr)
+    elif isinstance(error, KeyboardInterrupt):
+        print(f"trackroller: {STOPPED}", file=sys.stderr)
     else:
         sys.__excepthook__(kind, error, trace)

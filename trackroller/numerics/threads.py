@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import ContextVar
 
+from trackroller.errors import InputError
+
 _limit: ContextVar[int | None] = ContextVar("threads", default=None)
 
 
@@ -23,6 +25,13 @@ def limited_to(threads: int | None) -> Iterator[None]:
         yield
     finally:
         _limit.reset(before)
+
+
+def check_threads() -> None:
+    """Refuse a value of NUMBA_NUM_THREADS that is no whole number above 0; numba would end with a traceback."""
+    given = os.environ.get("NUMBA_NUM_THREADS", "1")
+    if not given.isdecimal() or int(given) < 1:
+        raise InputError("NUMBA_NUM_THREADS", given, "a whole number above 0", "Correct the environment variable.")
 
 
 def thread_count() -> int:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -13,7 +15,7 @@ from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.stored_study import read_results
 from trackroller.analysis.table import StudyResults, StudyView
 from trackroller.errors import InputError
-from trackroller.files import whole_folder, write_whole
+from trackroller.files import interrupts_wait_for_files, whole_folder, write_whole
 from trackroller.report.pages.study import contents, page_text, write_report
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.folder import StudyFolder, locked
@@ -22,6 +24,7 @@ from trackroller.study.store.seal import check_sealed, read_result, sealing
 log = logging.getLogger("trackroller")
 
 
+@interrupts_wait_for_files()
 def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) -> Path:
     """Write `sensitivity.nc`, `figures/`, `report.html` and the crate beside the gathered results of a study.
 
@@ -48,9 +51,7 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     """
     if not folder.gathered.is_file():
         raise InputError("study", str(folder.root), "a study with study.nc", "Run the study to its end first.")
-    alone = folder.create().lock.with_name(".report")
-    alone.touch()
-    with locked(folder.lock, shared=True), locked(alone, tell=tell):
+    with _alone(folder, tell):
         tell("analyse the results")
         results = read_results(folder.gathered)
         view = results.view.analysed(_analysed(results, folder.root / "sensitivity.nc"))
@@ -94,20 +95,44 @@ def analyse_study(study_nc: str, out: str) -> None:
     _analysed(read_results(study_nc), Path(out))
 
 
-def _read(study_nc: str, sensitivity_nc: str) -> StudyView:
-    return read_results(study_nc).view.analysed(read_result(sensitivity_nc))
+def _read(study_nc: str | Path, sensitivity_nc: str | Path) -> StudyView:
+    analysis = read_result(sensitivity_nc) if Path(sensitivity_nc).is_file() else None
+    return read_results(study_nc).view.analysed(analysis)
 
 
-def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> None:
-    """Draw all figures of a study; the folder appears whole or not at all."""
-    _draw(_read(study_nc, sensitivity_nc), Path(out_dir))
+def draw_study(
+    study_nc: str | Path, sensitivity_nc: str | Path, out_dir: str | Path, folder: StudyFolder | None = None
+) -> list[Any]:
+    """Draw all figures of a study and return them; the folder appears whole or not at all.
+
+    Parameters
+    ----------
+    study_nc, sensitivity_nc : path
+        Gathered results and their analysis.
+    out_dir : path
+        Folder of the figures.
+    folder : StudyFolder, optional
+        Its lock is held, so that no report is made meanwhile. The workflow's main process holds it already.
+    """
+    with contextlib.nullcontext() if folder is None else _alone(folder):
+        return _draw(_read(study_nc, sensitivity_nc), Path(out_dir))
 
 
-def _draw(view: StudyView, out: Path) -> None:
+@contextlib.contextmanager
+def _alone(folder: StudyFolder, tell: Callable[[str], None] | None = None) -> Iterator[None]:
+    """Keep other reports from being made, and the plan from being changed."""
+    file = folder.create().lock.with_name(".report")
+    file.touch()
+    with locked(folder.lock, shared=True), locked(file, tell=tell):
+        yield
+
+
+def _draw(view: StudyView, out: Path) -> list[Any]:
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    with sealing(out), whole_folder(out) as beside:
-        draw_all(view, beside)
+    seal = sealing(out) if (out.parent / "plan").is_dir() else contextlib.nullcontext()
+    with seal, whole_folder(out) as beside:
+        return draw_all(view, beside)
 
 
 def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:

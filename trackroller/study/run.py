@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from trackroller.files import interrupts_wait_for_files
 from trackroller.roller.options import options_of_cases
 from trackroller.study.cluster import workers
 from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
 
+@interrupts_wait_for_files()
 def run_study(
     study: Study,
     results: Path | str = "results",

@@ -19,6 +19,7 @@ from trackroller.study.store.chunks import FAILED
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.plan import locate, study_folder
+from trackroller.study.store.seal import altered
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -45,7 +46,7 @@ class Status:
     gathered : bool
         Whether `study.nc` exists.
     corrupt : list of str
-        Damaged files.
+        Damaged or altered files, and what is wrong with each.
     """
 
     total: int
@@ -121,7 +122,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         speed=found.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
         measured=seconds > 0,
         gathered=folder.gathered.is_file(),
-        corrupt=list(found.corrupt.values()),
+        corrupt=[*found.corrupt.values(), *filter(None, map(altered, (folder.design, folder.gathered)))],
     )
     for name, factor in study.drawn.factors.items():
         if factor.discrete:
