@@ -1,4 +1,4 @@
-"""Ctrl-C at a random moment: the command ends soon, says in one sentence what is kept, and goes on when started again."""
+"""Ctrl-C at a random moment: the command ends, says in one sentence what is kept, and goes on when started again."""
 
 from __future__ import annotations
 

@@ -82,13 +82,14 @@ def find_study(study: str, results: Path | str = "results") -> Study:
     path = Path(study)
     if path.suffix in (".yaml", ".yml") or path.is_file():
         return load_study(path)
-    root = path if StudyFolder(path).study_file.is_file() else Path(results) / study
-    if not StudyFolder(root).study_file.is_file():
-        known = sorted(p.parent.parent.name for p in Path(results).glob("*/inputs/study.yaml"))
+    folders = [StudyFolder(root) for root in (path, Path(results) / study)]
+    folder = next((f for f in folders if f.plan_file.is_file() or f.study_file.is_file()), None)
+    if folder is None:
+        known = sorted(p.parent.name for p in Path(results).glob("*/plan.json"))
         close = nearest(study, known)
         allowed = f"a study file, or a study in {results}/: {', '.join(known) or 'none yet'}"
         raise InputError("study", study, allowed, f"Did you mean '{close}'?" if close else "")
-    return study_of_folder(StudyFolder(root))
+    return study_of_folder(folder)
 
 
 def status_of(study: Study, results: Path | str = "results") -> Status:
@@ -122,7 +123,11 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         speed=found.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
         measured=seconds > 0,
         gathered=folder.gathered.is_file(),
-        corrupt=[*found.corrupt.values(), *filter(None, map(altered, (folder.design, folder.gathered)))],
+        corrupt=[
+            *found.corrupt.values(),
+            *(f"{path}: it is gone" for path in folder.lost_files()),
+            *filter(None, map(altered, (folder.design, folder.gathered))),
+        ],
     )
     for name, factor in study.drawn.factors.items():
         if factor.discrete:

@@ -60,6 +60,13 @@ class StudyFolder:
         """Return the files with results of solved cases."""
         return sorted((self.root / "chunks").glob("*.nc"))
 
+    def lost_files(self) -> list[Path]:
+        """Return the files with solved cases that the plan counts on and that are gone."""
+        record = self.record()
+        solved = [name for name in record.get("chunks", {}) if self.mark(name).is_file()]
+        paths = [*map(self.chunk, solved), *(self.root / "chunks" / name for name in record.get("uses", ()))]
+        return [path for path in paths if not path.is_file()]
+
     def create(self) -> StudyFolder:
         """Create the folders of the study.
 
