@@ -51,9 +51,10 @@ def _client(scheduler: str) -> Any:
         raise InputError("--scheduler", scheduler, "local, or the address of a dask scheduler: tcp://host:port")
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
     if scheduler == "local":
-        return Client(n_workers=len(os.sched_getaffinity(0)), threads_per_worker=1, dashboard_address=None)
+        count = len(os.sched_getaffinity(0))
+        return Client(n_workers=count, threads_per_worker=1, dashboard_address=None)  # type: ignore[no-untyped-call]
     try:
-        return Client(scheduler, timeout="10s")
+        return Client(scheduler, timeout="10s")  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as exc:
         why = f"no dask scheduler answers there ({exc})"
         remedy = "Start one: dask scheduler, dask worker ADDRESS."
@@ -73,7 +74,7 @@ def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset
     count = cases.sizes["case"]
     size = max(8, min(2000, math.ceil(BATCH_SECONDS * rate(json.loads(cases.attrs["options"])))))
     batches = np.array_split(np.arange(count), max(1, math.ceil(count / size))) if count else []
-    queue = as_completed([submit(index) for index in batches])
+    queue = as_completed([submit(index) for index in batches])  # type: ignore[no-untyped-call]
     for future in queue:
         index = waiting.pop(future.key)
         try:
@@ -81,7 +82,7 @@ def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset
         except KilledWorker:
             if len(index) > 1:
                 for half in np.array_split(index, 2):
-                    queue.add(submit(half))
+                    queue.add(submit(half))  # type: ignore[no-untyped-call]
             else:
                 yield chunks.failure(cases["case"].values[index], "killed its worker process")
         except (InputError, WorkError):

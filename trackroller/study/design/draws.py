@@ -194,12 +194,12 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
     InputError : no such file, a line of another length, an empty cell, or a text where a number is wanted
     """
     names, lines = csv_lines(read_text(path, "table", most=math.inf), path, "table", "case")
-    for number, line in enumerate(lines, start=2):
+    for number, line in lines.items():
         if not all(line):
             raise InputError("table", f"{path}, line {number}", f"{len(names)} values, none of them empty")
     columns: dict[str, np.ndarray] = {}
     for j, name in enumerate(names):
-        cells = [line[j] for line in lines]
+        cells = [line[j] for line in lines.values()]
         try:
             columns[name] = column([read_number(cell) for cell in cells], numeric=True)
         except ValueError as exc:

@@ -97,8 +97,8 @@ class Factor:
     def bin(self, unit: np.ndarray) -> np.ndarray:
         """Return the index of the listed value at the quantiles `unit`, shape (n,)."""
         if self.weights:
-            return np.searchsorted(np.cumsum(self.weights)[:-1], unit, side="right")
-        return np.minimum((unit * len(self.levels)).astype(int), len(self.levels) - 1)
+            return np.asarray(np.searchsorted(np.cumsum(self.weights)[:-1], unit, side="right"))
+        return np.asarray(np.minimum((unit * len(self.levels)).astype(int), len(self.levels) - 1))
 
     def from_unit(self, unit: np.ndarray, tail: float = 0.0) -> np.ndarray:
         """Return the values at quantiles.
@@ -125,14 +125,14 @@ class Factor:
 
         if self.kind == "triangular":
             low, mode, high = self.numbers
-            return triang.ppf(unit, (mode - low) / (high - low), low, high - low)
+            return np.asarray(triang.ppf(unit, (mode - low) / (high - low), low, high - low))
         mean, deviation, *ends = self.numbers
         if self.kind == "normal":
             cut = max(tail, 1e-9)
-            return norm.ppf(np.clip(unit, cut, 1 - cut), mean, deviation)
+            return np.asarray(norm.ppf(np.clip(unit, cut, 1 - cut), mean, deviation))
         low, high = ends
         cut_low, cut_high = (low - mean) / deviation, (high - mean) / deviation
-        return np.clip(truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high)
+        return np.asarray(np.clip(truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high))
 
 
 def column(values: list[Any], numeric: bool) -> np.ndarray:

@@ -36,7 +36,7 @@ def _check_options(study: Study) -> None:
     """Refuse options that exclude each other, in any combination of the levels that are factors."""
 
     def levels(name: str) -> list[str]:
-        return study.factors.get(name, {}).get("values", [getattr(study.config, name)])
+        return list(study.factors.get(name, {}).get("values", [getattr(study.config, name)]))
 
     for model, normal in itertools.product(levels("contact_model"), levels("normal")):
         check_pairs(study.config.hertz, normal, study.config.slip_terms, model)

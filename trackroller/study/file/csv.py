@@ -9,8 +9,10 @@ from pathlib import Path
 from trackroller.errors import InputError
 
 
-def csv_lines(text: str, path: Path | str, field: str, what: str) -> tuple[list[str], list[list[str]]]:
-    """Return the names of the columns and the lines of cells; spaces around a cell and empty lines are left out.
+def csv_lines(text: str, path: Path | str, field: str, what: str) -> tuple[list[str], dict[int, list[str]]]:
+    """Return the names of the columns, and the cells of each line by its number in the file, the first line being 1.
+
+    Spaces around a cell and empty lines are left out.
 
     Parameters
     ----------
@@ -29,17 +31,17 @@ def csv_lines(text: str, path: Path | str, field: str, what: str) -> tuple[list[
         If the file is not readable as CSV, has only one line, repeats a name, or has a line of another length.
     """
     try:
-        cells = csv.reader(io.StringIO(text, newline=""))
-        lines = [line for row in cells if any(line := [cell.strip() for cell in row])]
+        reader = csv.reader(io.StringIO(text, newline=""))
+        lines = {reader.line_num: line for row in reader if any(line := [cell.strip() for cell in row])}
     except csv.Error as exc:
         raise InputError(field, str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
     if len(lines) < 2:
         raise InputError(field, str(path), f"a CSV with a line of names and at least one {what}")
-    names = lines[0]
+    names = lines.pop(next(iter(lines)))
     if len(set(names)) < len(names) or not all(names):
         remedy = f"Correct the first line of {path}."
         raise InputError(field, ", ".join(names), "a different name for each column", remedy)
-    for number, line in enumerate(lines[1:], start=2):
+    for number, line in lines.items():
         if len(line) != len(names):
             raise InputError(field, f"{path}, line {number}", f"{len(names)} cells; there are {len(line)}")
-    return names, lines[1:]
+    return names, lines

@@ -37,9 +37,10 @@ def _translate(error: ValidationError) -> InputError:
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     try:
-        return StudyFile.model_validate(dict(data))
+        config: StudyFile = StudyFile.model_validate(dict(data))
     except ValidationError as error:
         raise _translate(error) from None
+    return config
 
 
 def parse_study(

@@ -34,7 +34,7 @@ class Study:
     @property
     def name(self) -> str:
         """Return the name of the study and of its results folder."""
-        return self.config.name
+        return str(self.config.name)
 
     @cached_property
     def factors(self) -> dict[str, dict[str, Any]]:
@@ -79,7 +79,7 @@ class Study:
 
     def as_dict(self) -> dict[str, Any]:
         """Return what the study file says, every default included, as values of YAML."""
-        return self.config.model_dump(mode="json", exclude_none=True)
+        return dict(self.config.model_dump(mode="json", exclude_none=True))
 
     @cached_property
     def _text(self) -> str:

@@ -223,7 +223,7 @@ def _probabilities(values: Any) -> tuple[float, ...]:
 def _table(path: Path) -> list[dict[str, Any]]:
     """Return the blocks of a CSV file, one from each line; empty cells are left out."""
     names, lines = csv_lines(read_text(path, "blocks"), path, "blocks", "block")
-    return [{n: cell for n, cell in zip(names, line, strict=True) if cell} for line in lines]
+    return [{n: cell for n, cell in zip(names, line, strict=True) if cell} for line in lines.values()]
 
 
 def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:

@@ -101,7 +101,7 @@ def check(path: Path) -> np.ndarray:
 def read(path: Path) -> xr.Dataset:
     """Read a block; raise `CorruptFile` if the file is damaged."""
     with _opened(path) as (file, _):
-        return xr.open_dataset(xr.backends.NetCDF4DataStore(file)).load()
+        return xr.open_dataset(xr.backends.NetCDF4DataStore(file)).load()  # type: ignore[no-untyped-call]
 
 
 def read_state(path: Path) -> xr.Dataset:
