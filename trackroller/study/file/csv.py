@@ -32,7 +32,8 @@ def csv_lines(text: str, path: Path | str, field: str, what: str) -> tuple[list[
     """
     try:
         reader = csv.reader(io.StringIO(text, newline=""))
-        lines = {reader.line_num: line for row in reader if any(line := [cell.strip() for cell in row])}
+        cells = ((reader.line_num, [cell.strip() for cell in row]) for row in reader)
+        lines = {number: line for number, line in cells if any(line)}
     except csv.Error as exc:
         raise InputError(field, str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
     if len(lines) < 2:
