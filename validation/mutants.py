@@ -20,11 +20,11 @@ WORDS = (
 )
 DESIGNS = (BORDERS, "analysis/test_designs.py", "report/test_sentences.py", "report/test_truth.py")
 TARGETS = (BORDERS, "analysis/test_targets.py", "analysis/test_robustness.py", "report/test_truth_targets.py")
-PACKED = ("report/test_explorer.py",)
-STORE = ("study/test_resume.py", "study/test_two_runs.py", "cli/test_cli.py")
-ANALYSED = ("analysis/test_sensitivity.py", "analysis/test_robustness.py", "report/test_report.py")
-PLANNED = ("study/test_levels.py", "study/test_resume.py", "cli/test_cli.py")
-SAMPLED = ("study/test_sampling.py",)
+PACKED = (BORDERS, "report/test_explorer.py")
+STORE = ("study/test_resume.py", "study/test_two_runs.py")
+ANALYSED = (BORDERS, "analysis/test_sensitivity.py", "analysis/test_robustness.py", "report/test_report.py")
+PLANNED = (BORDERS, "study/test_levels.py", "study/test_resume.py")
+SAMPLED = (BORDERS, "study/test_sampling.py")
 FORMULAS = {
     "profile-slip eq. (20)": ("halfspace/rigid_slip.py", "return -np.minimum(deep", "return np.minimum(deep", SLIP),
     "rolling-slip eq. (21)": (

@@ -11,7 +11,12 @@ import pytest
 
 from trackroller.analysis.groups import classes
 from trackroller.analysis.targets import _all, _hits
+from trackroller.report.explorer.pack import _numbers
+from trackroller.report.explorer.sample import RARE, sample_rows
 from trackroller.report.numbers import level_text
+from trackroller.study import cost
+from trackroller.study.design.grown_lhs import grown_lhs
+from trackroller.study.outputs import _countable
 
 
 def test_a_value_on_an_edge_belongs_to_the_class_above():
@@ -52,3 +57,41 @@ def test_all_targets_of_a_body_are_met_with_the_least_of_their_probabilities():
 )
 def test_signs_in_words(name, value, words):
     assert level_text(name, value) == words
+
+
+def test_zero_has_no_logarithm_and_is_counted():
+    """0 and negative values are lost on a logarithmic scale, with their reason."""
+    everything = np.ones(4, dtype=bool)
+    values, why = _countable(np.array([10.0, 0.0, -1.0, 100.0]), everything, ~everything, False, "log10")
+    assert why == {"not positive": 2}
+    np.testing.assert_array_equal(values, [1.0, np.nan, np.nan, 2.0])
+
+
+def test_a_grown_sample_fills_the_empty_strata():
+    """4 rows grown to 8 and 16: each stratum of a factor holds one row."""
+    for seed in range(5):
+        unit = grown_lhs(3, [4, 8, 16], seed)
+        for column in unit.T:
+            assert sorted((column * 16).astype(int)) == list(range(16))
+            assert sorted((column[:8] * 8).astype(int)) == list(range(8))
+
+
+@pytest.mark.parametrize("levels", [254, 255, 256, 65_535, 65_536])
+def test_positions_of_all_levels_are_told_apart(levels):
+    """A column of so many levels has a number for each of them, and 0 for no value."""
+    column = SimpleNamespace(levels=range(levels), values=np.arange(-1, levels))
+    assert _numbers(column).tolist() == list(range(levels + 1))
+
+
+def test_a_state_of_just_so_many_cases_counts_as_rare():
+    """States of `RARE` cases and fewer keep all of their cases; a common one keeps its share."""
+    state = np.repeat([0, 1, 2], [RARE, RARE - 1, 20 * RARE])
+    rows = sample_rows(state, np.zeros(len(state), dtype=bool), most=5 * RARE)
+    assert np.bincount(state[rows]).tolist() == [RARE, RARE - 1, 3 * RARE + 1]
+
+
+def test_the_rate_of_several_models_is_that_of_their_times_together(monkeypatch):
+    """A study with a quick and a slow model takes the time of both: the rate is the harmonic mean."""
+    study = SimpleNamespace(factors={"contact_model": {"values": ["sliding", "kalker"]}}, options={})
+    monkeypatch.setattr(cost, "rate", lambda options: {"sliding": 100.0, "kalker": 1.0}[options["contact_model"]])
+    assert cost.study_rate(study) == pytest.approx(2 / (1 / 100 + 1 / 1))
