@@ -96,13 +96,15 @@ def test_a_study_file_that_would_be_read_with_another_meaning_is_refused(monkeyp
 
 
 def test_report_explorer_and_best_cases_come_from_the_same_object(tmp_path):
-    study = parse_study(SMALL | {"factors": {"friction_coefficient": {"values": [0.1, 0.2, 0.3]}}})
+    grooves = {"roller_profile_radius": {"values": [-7, -8, -9]}}
+    study = parse_study(SMALL | {"factors": SMALL["factors"] | grooves})
     ds = tr.solve(study.design(), accuracy="preview")
     solved = tr.open_study(ds)
     assert solved.view is solved.view, "the table of cases is made once"
     best = solved.best(2)
-    lives = solved.to_table().loc[solved.view.valid, "roller_life_hours"].sort_values(ascending=False)
-    assert best["roller_life_hours"].tolist() == lives[:2].tolist()
+    worst = solved.to_table().groupby("roller_profile_radius")[solved.view.life[0]].min().sort_values(ascending=False)
+    assert best["roller_profile_radius"].tolist() == worst.index[:2].tolist()
+    assert best["worst"].tolist() == worst[:2].tolist()
     page = solved.report(tmp_path / "report.html").read_text(encoding="utf-8")
     again = tr.report(ds, tmp_path / "again.html").read_text(encoding="utf-8")
     assert "Valid designs" in page and len(page) == pytest.approx(len(again), rel=0.01)

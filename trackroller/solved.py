@@ -164,6 +164,14 @@ def run(
         If the study is wrong.
     WorkError
         If the folder cannot be written.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> factors = {"friction_coefficient": {"values": [0.1, 0.2]}, "roller_profile_radius": {"values": [-7, -8]}}
+    >>> solved = tr.run({"name": "groove", "factors": factors, "contact_model": "sliding"}, progress=False)
+    >>> float(solved.best(1)["roller_profile_radius"].iloc[0])
+    -7.0
     """
     checked = study if isinstance(study, Study) else load_study(study)
     with limited_to(cores), progress_bar(checked.name, progress) as bar:
@@ -191,6 +199,15 @@ def open_study(source: xr.Dataset | Path | str) -> Solved:
     ------
     InputError
         If the source holds no solved study, or a study that this version would read differently.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> factors = {"roller_profile_radius": {"values": [-7, -8]}}
+    >>> study = {"name": "groove", "factors": factors, "contact_model": "sliding"}
+    >>> ds = tr.solve(tr.load_study(study).design(), accuracy="preview")
+    >>> tr.open_study(ds).data.sizes["roller_profile_radius"]
+    2
     """
     found = read_results(source)
     return Solved(found.study, found.design, found.data)
