@@ -25,6 +25,8 @@ def _part(value: Any, index: Any) -> Any:
 def once_each(make: Callable[[Any], Any], values: Iterable[Any]) -> list[Any]:
     """Return `make(value)` for each value; values with the same text share one call."""
     values = list(values)
+    if len(set(map(id, values))) == 1:  # a column of millions of cases mostly holds one object
+        return [make(values[0])] * len(values)
     keys = [value if isinstance(value, str) else repr(value) for value in values]
     made = {key: make(value) for key, value in dict(zip(keys, values, strict=True)).items()}
     return [made[key] for key in keys]

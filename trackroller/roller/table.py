@@ -39,9 +39,10 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     @classmethod
     def of(cls, materials: list[Material]) -> MaterialArrays:
         """Return the arrays of a list of n materials; the same few objects fill a list of millions."""
-        distinct = {id(m): m for m in materials}
+        keys = list(map(id, materials))
+        distinct = dict(zip(keys, materials, strict=True))
         places = {key: place for place, key in enumerate(distinct)}
-        index = np.array([places[id(m)] for m in materials], dtype=int)
+        index = np.fromiter(map(places.__getitem__, keys), int, len(keys))
 
         def values(attribute: str) -> np.ndarray:
             return np.array([getattr(m, attribute) for m in distinct.values()], dtype=float)[index]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -107,7 +107,7 @@ def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase)
         data[name] = ("case", columns.pop(name), attrs)
     for name in case_columns(columns)[len(PARAMETERS) :]:
         attrs = {"long_name": name.replace("_", " ")}
-        data[name] = ("case", np.array([str(v) for v in columns.pop(name)], dtype=object), attrs)
+        data[name] = ("case", _mapped(str, object, columns.pop(name)), attrs)
     coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
     if "material_pair" in design.columns:
         columns["material_pair"] = design.columns["material_pair"]
@@ -126,7 +126,8 @@ def _columns(config: StudyFile, design: SampledDesign, n: int, materials: Materi
         base |= dict(zip(MATERIAL_FIELDS, pair, strict=True))
     columns: dict[str, np.ndarray] = {}
     for name, value in base.items():
-        columns[name] = np.full(n, value, dtype=object if isinstance(value, str) or value is None else float)
+        one = np.array(value, dtype=object if isinstance(value, str) or value is None else float)
+        columns[name] = np.broadcast_to(one, n)  # a value that all cases share takes no memory
     columns |= design.columns
     if "material_pair" in columns:
         pairs = columns.pop("material_pair")
@@ -139,8 +140,20 @@ def _columns(config: StudyFile, design: SampledDesign, n: int, materials: Materi
             columns["friction_coefficient"] = own_frictions(columns["friction_law"])
     columns["friction_coefficient"] = _friction(materials, columns)
     for name in PARAMETERS:
-        columns[name] = columns[name].astype(float)  # None becomes NaN
+        if columns[name].dtype != float:
+            columns[name] = _mapped(_number, float, columns[name])
     return columns
+
+
+def _mapped(function: Callable[..., Any], dtype: type, *columns: np.ndarray) -> np.ndarray:
+    """Return a function of the rows of columns (n,). It is computed once if no column varies."""
+    if all(column.strides == (0,) for column in columns):
+        return np.broadcast_to(np.array(function(*(column[0] for column in columns)), dtype=dtype), len(columns[0]))
+    return np.array([function(*row) for row in zip(*columns, strict=True)], dtype=dtype)
+
+
+def _number(value: Any) -> float:
+    return math.nan if value is None else float(value)
 
 
 def _split_pair(text: str) -> tuple[str, str]:
@@ -163,5 +176,4 @@ def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> np
         level = value if isinstance(value, str) and value in FRICTION_LEVELS else "typical"
         return float(materials.friction(roller, guide, level=level).value)
 
-    rows = zip(values, *(columns[name].astype(str) for name in MATERIAL_FIELDS), strict=True)
-    return np.array([known(*row) for row in rows])
+    return _mapped(known, float, values, *(_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS))

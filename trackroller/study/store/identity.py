@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.errors import InputError
 from trackroller.materials import MaterialDatabase
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.case import CaseTable, MaterialArrays, to_table
@@ -33,6 +34,7 @@ from trackroller.study.store.sources import solver_digest
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
+BLOCK = 100_000  # cases whose tables are in memory at once: the table of millions of cases takes gigabytes
 _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name not in ("name", "guesses"))
 
 
@@ -74,14 +76,14 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
     given = any(np.any(column != "") for column in texts)
     data, width = rows.reshape(-1).view(np.uint8).data, rows.itemsize * rows.shape[1]
-    found = bytearray()
+    digests = bytearray()
     for i, number in enumerate(numbers):
         digest = heads[number].copy()
         digest.update(data[i * width : (i + 1) * width])
         if given:
             digest.update(json.dumps([column[i] for column in texts]).encode())
-        found += digest.digest()[:16]
-    return np.frombuffer(found.hex().encode(), dtype="S32")
+        digests += digest.digest()[:16]
+    return np.frombuffer(digests.hex().encode(), dtype="S32")
 
 
 def chunk_name(cases: np.ndarray) -> str:
@@ -115,6 +117,15 @@ class Cases:
     @cached_property
     def fingerprints(self) -> np.ndarray:
         """Return the fingerprint of each case, dtype S32, shape (n,); raise `InputError` if a case is not valid."""
-        options, group = self.options
-        table = to_table(self.design.drop_vars(list(self.design.coords)), self.study.materials)
-        return fingerprints(table, *options, group=group)
+        (options, group), database = self.options, self.study.materials
+        cases = self.design.drop_vars(list(self.design.coords))
+        out = np.empty(len(group), dtype="S32")
+        for start in range(0, len(out), BLOCK):
+            block = slice(start, start + BLOCK)
+            try:
+                table = to_table(cases.isel(case=block), database)
+            except InputError:
+                to_table(cases, database)  # names the case by its number in the design, not in the block
+                raise
+            out[block] = fingerprints(table, *options, group=group[block])
+        return out

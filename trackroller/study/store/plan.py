@@ -145,9 +145,10 @@ def new_plan(study: Study, folder: StudyFolder, found: Inventory) -> Plan:
     place = found.find(wanted)
     missing = np.sort(first[place < 0])
     size = chunk_size(study, len(missing))
-    fields = cases.design.drop_vars(list(cases.design.coords))[list(case_columns(cases.design))].drop_attrs()
+    columns = {name: cases.design[name].values for name in case_columns(cases.design)}
     # a value that all cases share is written once
-    fields = fields.map(lambda column: column[0] if all_equal(column.values) else column).assign_coords(case=names)
+    shared = {name: values[:1].reshape(()) for name, values in columns.items() if all_equal(values)}
+    fields = xr.Dataset({n: ((), shared[n]) if n in shared else ("case", v) for n, v in columns.items()})
     sizes: dict[str, int] = {}
     identity = solver_and_materials(study.materials)
     for number, chosen in enumerate(options):
@@ -156,7 +157,9 @@ def new_plan(study: Study, folder: StudyFolder, found: Inventory) -> Plan:
         for part in np.array_split(rows, max(1, math.ceil(len(rows) / size))):
             if len(part):
                 name = chunk_name(names[part])
-                chunks.write(folder.case_list(name), fields.isel(case=part).assign_attrs(attrs))
+                # an index of all names would take 70 bytes a case
+                block = fields.isel(case=part, missing_dims="ignore").assign_coords(case=names[part])
+                chunks.write(folder.case_list(name), block.assign_attrs(attrs))
                 sizes[name] = len(part)
     uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
     return Plan(study, folder, sizes, len(names), len(wanted), tuple(uses), cases)
