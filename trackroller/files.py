@@ -6,6 +6,7 @@ import contextlib
 import errno
 import hashlib
 import os
+import shutil
 import signal
 import tempfile
 import threading
@@ -14,7 +15,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import IO, Any
 
 from trackroller.errors import InputError, WorkError
 
@@ -165,8 +166,8 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     except (OSError, RuntimeError) as exc:
         if isinstance(exc, OSError) and (exc.errno or 0) > 0:
             raise disk_error(exc, path) from exc
-        free = os.statvfs(path.parent)  # the netCDF library hides the operating system's error
-        code = errno.ENOSPC if free.f_bavail * free.f_frsize < 16_000_000 else errno.EIO
+        full = shutil.disk_usage(path.parent).free < 16_000_000  # the netCDF library hides the system's error
+        code = errno.ENOSPC if full else errno.EIO
         raise disk_error(OSError(code, str(exc)), path) from exc
     finally:
         with contextlib.suppress(OSError):
@@ -175,7 +176,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file whole or not at all; see `write_whole`."""
-    write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8"))
+    write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
 
 
 @contextmanager
@@ -228,7 +229,7 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 @contextmanager
 def interrupts_wait_for_files() -> Iterator[None]:
     """Let Ctrl-C wait while a netCDF file is read or written; a thread beside the main one is left as it is."""
-    main = threading.current_thread() is threading.main_thread()
+    main = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")  # not on Windows
     if not main or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         yield
         return
@@ -250,6 +251,30 @@ def _sync_folder(folder: Path) -> None:
             os.fsync(handle)
         finally:
             os.close(handle)
+
+
+def reserve(file: IO[bytes], size: int) -> None:
+    """Take room on the disk for an open file.
+
+    Parameters
+    ----------
+    file : binary file
+        Open for writing and empty.
+    size : int
+        Number of bytes.
+
+    Raises
+    ------
+    OSError
+        If the disk is full.
+    """
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(file.fileno(), 0, size)
+        return
+    block = bytes(1 << 20)  # a system that promises room only to what is written
+    for start in range(0, size, len(block)):
+        file.write(block[: size - start])
+    file.flush()
 
 
 def sha256(path: Path) -> str:

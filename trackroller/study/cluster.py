@@ -43,16 +43,24 @@ def workers(scheduler: str) -> Iterator[Executor]:
         yield lambda cases, database: _solve(client, cases, database)
 
 
-def _client(scheduler: str) -> Any:
-    import dask  # dask is optional and slow to import
-    from distributed import Client
+def cores() -> int:
+    """Return the number of processors that this process may use; of the machine where the system does not say."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
+
+def _client(scheduler: str) -> Any:
+    import dask  # slow to import
+
+    try:
+        from distributed import Client
+    except ImportError:
+        remedy = "Install it: pip install 'trackroller[cluster]'."
+        raise InputError("--scheduler", scheduler, "possible with the package distributed only", remedy) from None
     if scheduler != "local" and not scheduler.startswith(("tcp://", "tls://")):
         raise InputError("--scheduler", scheduler, "local, or the address of a dask scheduler: tcp://host:port")
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
     if scheduler == "local":
-        count = len(os.sched_getaffinity(0))
-        return Client(n_workers=count, threads_per_worker=1, dashboard_address=None)  # type: ignore[no-untyped-call]
+        return Client(n_workers=cores(), threads_per_worker=1, dashboard_address=None)  # type: ignore[no-untyped-call]
     try:
         return Client(scheduler, timeout="10s")  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as exc:

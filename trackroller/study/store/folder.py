@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import fcntl
 import hashlib
 import json
 import shutil
@@ -13,12 +12,15 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 
+import portalocker
+
 from trackroller.errors import InputError
 from trackroller.files import disk_error, write_text
 from trackroller.study.store.seal import is_sealed, read_result
 from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]
+LOCK = {True: portalocker.LockFlags.SHARED, False: portalocker.LockFlags.EXCLUSIVE}
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
 
 
@@ -125,10 +127,10 @@ def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
     two processes may solve the same case.
     """
     try:
-        fcntl.flock(stream, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
-    except BlockingIOError:
+        portalocker.lock(stream, LOCK[shared] | portalocker.LockFlags.NON_BLOCKING)
+    except portalocker.AlreadyLocked:
         return False
-    except OSError:
+    except (portalocker.LockException, OSError):
         return True
     return True
 

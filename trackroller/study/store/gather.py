@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import tempfile
 from collections.abc import Hashable
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import WorkError
-from trackroller.files import write_whole
+from trackroller.files import reserve, write_whole
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell
@@ -122,7 +121,7 @@ def _room(shape: tuple[int, ...], dtype: np.dtype, folder: Path) -> np.ndarray:
     if size <= MOST_MEMORY:
         return np.full(shape, missing, dtype)
     with tempfile.TemporaryFile(dir=folder) as file:
-        os.posix_fallocate(file.fileno(), 0, size)  # a full disk must not end in SIGBUS
+        reserve(file, size)  # a full disk must not end in SIGBUS
         values: np.ndarray = np.memmap(file, dtype, "r+", shape=shape)
     values[...] = missing
     return values

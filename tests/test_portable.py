@@ -1,0 +1,121 @@
+"""Nothing needs Linux: calls that other systems lack stand where a test for them stands beside."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+MODULES = {"fcntl", "resource", "pwd", "grp", "termios", "tty", "pty", "posix", "syslog"}
+CALLS = {
+    "os": "fork forkpty statvfs fstatvfs posix_fallocate posix_fadvise sched_getaffinity getuid geteuid getgid getegid "
+    "chown lchown fchmod killpg getpgid getpgrp setsid setpgid mkfifo mknod uname wait3 wait4 nice lockf pread pwrite "
+    "openpty ttyname O_DIRECTORY O_NOFOLLOW O_NONBLOCK",
+    "signal": "SIGKILL SIGHUP SIGUSR1 SIGUSR2 SIGALRM SIGQUIT SIGPIPE SIGCHLD alarm setitimer pause sigwait "
+    "pthread_sigmask pthread_kill sigtimedwait ITIMER_REAL",
+}
+# file -> calls of it that a `hasattr` beside them guards
+GUARDED = {
+    "trackroller/files.py": {"posix_fallocate", "setitimer", "SIGALRM", "ITIMER_REAL"},
+    "trackroller/study/cluster.py": {"sched_getaffinity"},
+}
+ALARM = {"SIGALRM", "ITIMER_REAL"}  # where `setitimer` is
+OPTIONAL = {"snakemake", "distributed"}  # of the extras `workflow` and `cluster`; the core runs without them
+# what another system lacks fails here as it would there; the library that locks files has its own way there
+WITHOUT = """
+import builtins, os, sys
+plain = builtins.__import__
+def without(name, globals=None, locals=None, fromlist=(), level=0):
+    ours = str((globals or {{}}).get("__name__", "")).startswith("trackroller")
+    if name in {optional!r} or name in {modules!r} and ours:
+        raise ModuleNotFoundError(name)
+    return plain(name, globals, locals, fromlist, level)
+builtins.__import__ = without
+for name in {calls!r}.split():
+    if hasattr(os, name):
+        delattr(os, name)
+import signal
+del signal.setitimer, signal.SIGALRM, signal.ITIMER_REAL
+from trackroller.cli.main import app, run_app
+sys.exit(run_app(lambda: app(sys.argv[1:])))
+"""
+STUDY = """name: small
+factors:
+  friction_coefficient: {values: [0.1, 0.3]}
+  axial_force: {values: [0, 30]}
+contact_model: sliding
+accuracy: preview
+outputs: [forces, peak_stress, life]
+"""
+
+
+def posix_only(tree: ast.AST) -> set[str]:
+    """Return the modules and calls of a file that other systems lack."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found |= {name.name for name in node.names} & MODULES
+        elif isinstance(node, ast.ImportFrom):
+            names = {name.name for name in node.names}
+            found |= {node.module} & MODULES | names & set(CALLS.get(node.module or "", "").split())
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            found |= {node.attr} & set(CALLS.get(node.value.id, "").split())
+    return found
+
+
+def test_calls_that_other_systems_lack_stand_guarded_in_two_files():
+    found = {}
+    for path in sorted((ROOT / "trackroller").rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        if calls := posix_only(ast.parse(text)):
+            found[path.relative_to(ROOT).as_posix()] = calls
+            assert all(re.search(rf'hasattr\((?:os|signal), "{call}"\)', text) for call in calls - ALARM), path
+    assert found == GUARDED
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("import fcntl", {"fcntl"}),
+        ("from resource import getrusage", {"resource"}),
+        ("from signal import SIGKILL", {"SIGKILL"}),
+        ("import os\nos.fork()", {"fork"}),
+        ("import os\nos.replace('a', 'b')", set()),
+    ],
+)
+def test_the_check_finds_what_other_systems_lack(text, names):
+    assert posix_only(ast.parse(text)) == names
+
+
+@pytest.mark.slow
+def test_a_study_is_run_and_reported_without_the_calls_of_linux_and_without_extras(tmp_path):
+    """Run, report and verify, with everything removed from `os` that Windows has not, and without Snakemake."""
+    kept = "O_DIRECTORY O_NOFOLLOW O_NONBLOCK fork forkpty nice uname getuid geteuid"  # Python's own library uses these
+    calls = " ".join(name for name in CALLS["os"].split() if name not in kept.split())
+    program = WITHOUT.format(modules=sorted(MODULES), optional=sorted(OPTIONAL), calls=calls)
+    (tmp_path / "small.yaml").write_text(STUDY, encoding="utf-8")
+    for words in (["run", "small.yaml", "-q"], ["report", "small"], ["verify", "results/small"]):
+        done = subprocess.run([sys.executable, "-c", program, *words], cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "results" / "small" / "report.html").is_file()
+
+
+def test_large_room_is_reserved_where_the_system_has_no_call_for_it(tmp_path, monkeypatch):
+    from trackroller import files
+
+    monkeypatch.delattr(files.os, "posix_fallocate", raising=False)
+    with open(tmp_path / "room", "w+b") as file:
+        files.reserve(file, (1 << 20) + 7)
+    assert (tmp_path / "room").stat().st_size == (1 << 20) + 7
+
+
+def test_text_files_have_the_newlines_of_every_system(tmp_path):
+    from trackroller.files import write_text
+
+    write_text(tmp_path / "a.txt", "one\ntwo\n")
+    assert (tmp_path / "a.txt").read_bytes() == b"one\ntwo\n"
