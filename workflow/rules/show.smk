@@ -51,7 +51,9 @@ rule report:
         figures=f"{RESULTS}/figures",
         sensitivity=f"{RESULTS}/sensitivity.nc",
         code=digest_file(
-            f"{RESULTS}/code", "trackroller.report.pages.study", "trackroller.analysis.stored_study"
+            f"{RESULTS}/code",
+            "trackroller.report.pages.study",
+            "trackroller.analysis.stored_study",
         ),
     output:
         report(
