@@ -26,10 +26,10 @@ def sizes(total: int, smallest: int = 16, points: int = 7) -> np.ndarray:
     -------
     Increasing sizes, shape (m,).
     """
-    found = [total]
-    while len(found) < points and found[-1] // 2 >= smallest:
-        found.append(found[-1] // 2)
-    return np.array(found[::-1])
+    falling = [total]
+    while len(falling) < points and falling[-1] // 2 >= smallest:
+        falling.append(falling[-1] // 2)
+    return np.array(falling[::-1])
 
 
 def course(

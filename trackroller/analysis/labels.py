@@ -173,11 +173,11 @@ def correlated_pairs(design: SampledDesign) -> list[tuple[str, str, float]]:
 
 def correlated(design: SampledDesign) -> str:
     """Return a warning of correlated factors, or an empty text; see `correlated_pairs`."""
-    told = [
+    warnings = [
         f"{factor_name(one)} and {factor_name(other)} are correlated (rank correlation {rho:.2f})"
         for one, other, rho in correlated_pairs(design)
     ]
-    return f"; {', '.join(told)}: the index of each includes the influence of both" if told else ""
+    return f"; {', '.join(warnings)}: the index of each includes the influence of both" if warnings else ""
 
 
 def labelled(design: SampledDesign, columns: list[Output], results: list[Estimates], at: np.ndarray) -> xr.Dataset:

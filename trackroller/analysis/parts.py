@@ -39,7 +39,7 @@ def parts_of(
     _high, and conditional_rows (output, level). Empty if the study file asks for neither. A grid has no interval, a
     random sample or a table no conditional_ST.
     """
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     coords: dict[str, Any] = {}
     if asked.groups:
         groups = all_groups(asked.groups, design.factors)
@@ -49,14 +49,14 @@ def parts_of(
         members = [", ".join(map(factor_name, names)) for names in groups.values()]
         coords["group_members"] = ("group", np.array(members, dtype=object))
         estimates = [of_groups(column.values, design, groups, seed, resamples) for column in columns]
-        found |= stacked(estimates, ("output", "group"))
+        variables |= stacked(estimates, ("output", "group"))
     if category := asked.conditional_on:
         levels = design.factors[category].levels
         coords["level"] = ("level", np.array([label(level) for level in levels], dtype=object), {"factor": category})
         coords["factor"] = np.array(list(design.factors), dtype=object)
         estimates = [within_levels(column.values, design, category, seed, resamples) for column in columns]
-        found |= stacked(estimates, ("output", "level", "factor"))
-    return xr.Dataset(found, coords | {"output": np.array([c.name for c in columns], dtype=object)})
+        variables |= stacked(estimates, ("output", "level", "factor"))
+    return xr.Dataset(variables, coords | {"output": np.array([c.name for c in columns], dtype=object)})
 
 
 def of_groups(
@@ -131,8 +131,8 @@ def within_levels(
     code = {level: i for i, level in enumerate(levels)}
     level_of = np.array([code[value] for value in design.columns[category].tolist()])
     one = {"grid": _grid_level, "saltelli": _saltelli_level}.get(design.method, _sample_level)
-    found = [one(y, design, place, level_of == i, seed, resamples) for i in range(len(levels))]
-    return {name: np.stack([part[name] for part in found]) for name in found[0]}
+    by_level = [one(y, design, place, level_of == i, seed, resamples) for i in range(len(levels))]
+    return {name: np.stack([part[name] for part in by_level]) for name in by_level[0]}
 
 
 def _spread(values: np.ndarray, place: int) -> np.ndarray:
@@ -191,6 +191,6 @@ def _sample_level(
     y: np.ndarray, design: SampledDesign, place: int, inside: np.ndarray, seed: int, resamples: int
 ) -> Estimates:
     rows = inside & np.isfinite(y)
-    found = firsts(y[rows], np.delete(design.places[rows], place, axis=1), np.delete(design.ordered, place), seed)
+    shares = firsts(y[rows], np.delete(design.places[rows], place, axis=1), np.delete(design.ordered, place), seed)
     out: Estimates = {"conditional_rows": np.array(rows.sum())}
-    return out | {f"conditional_S1{end}": _spread(found[f"first{end}"], place) for end in ENDS}
+    return out | {f"conditional_S1{end}": _spread(shares[f"first{end}"], place) for end in ENDS}

@@ -7,7 +7,14 @@ from scipy import stats
 
 from trackroller.analysis.pairs import held_out, orthonormal
 
-DEGREES = (12, 8, 5, 3, 2, 1)  # of the functions of each factor; the best prediction wins
+DEGREES = (
+    12,
+    8,
+    5,
+    3,
+    2,
+    1,
+)  # of the polynomials of each factor; the degree with the smallest held-out residuals counts
 
 
 def probabilities(
@@ -28,12 +35,13 @@ def probabilities(
 
     Notes
     -----
-    The bounds are those of Clopper and Pearson for an effective number of samples p (1 - p) / var(p) [1]_. A Latin
-    hypercube has at most n / (n - 1) times the variance of a random sample, and it takes away the part that is a sum
-    of functions of the single factors [2]_. var(p) is therefore the variance that such a sum misses, over n. The sum
-    is fitted, and its error is that for held-out rows. A grown hypercube with a share of empty strata keeps this share
-    of the part taken away. With few events (or few non-events) the fit proves little: the
-    effective number is at most n times the smaller of both counts. Coverage: ``validation/probability_intervals.py``.
+    The bounds are those of Clopper and Pearson for the effective number of samples p (1 - p) / var(p) [1]_.
+
+    A stratified sample removes the part of the variance that is a sum of functions of the single factors [2]_. This
+    function fits such a sum, and takes var(p) as the variance of the residuals at held-out rows, divided by n. A Latin
+    hypercube that has grown has empty strata; their share of the removed part counts again. Few events (or few
+    non-events) support a fit badly. The effective number of samples is therefore at most n times the smaller of the
+    numbers of events and non-events. ``validation/probability_intervals.py`` measures the coverage.
 
     References
     ----------

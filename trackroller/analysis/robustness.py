@@ -71,14 +71,14 @@ def robustness(
     goals = [statistic(goal) for goal in config.pareto]
     wanted += [output for kind, output in goals if kind not in ("", "probability") and output not in wanted]
     columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed)
-    found = []
+    by_output = []
     for column in columns:
         scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size)).reshape(shape)
-        found.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
+        by_output.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
     out = xr.Dataset(coords=_coordinates(design, shape, columns))
-    for key in found[0] if found else ():
+    for key in by_output[0] if by_output else ():
         axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        out[key] = (axes, np.stack([one[key] for one in found]), {"comment": "in the units of the output"})
+        out[key] = (axes, np.stack([one[key] for one in by_output]), {"comment": "in the units of the output"})
     events = np.stack([regime == i for i in range(len(REGIMES))]).reshape(-1, shape[1]).T.astype(float)
     chances = dict(zip(("", "_low", "_high"), probabilities(events, *inner_sample(design)), strict=True))
     for end, value in chances.items():

@@ -58,7 +58,7 @@ class Settings:
     seed: int = 0
 
 
-class Found(NamedTuple):
+class Estimated(NamedTuple):
     """Estimates for one output, how many rows, blocks, effects or cells they used, and the sizes of their course."""
 
     estimates: indices.Estimates
@@ -67,7 +67,7 @@ class Found(NamedTuple):
     sizes: np.ndarray = np.zeros(0, dtype=int)
 
 
-def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
+def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     groups, second = design.meta.get("groups"), bool(design.meta["second_order"])
     count = len(groups or design.factors)
     block = design.blocks(y)
@@ -79,7 +79,7 @@ def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     measures = tuple(dict.fromkeys(("first", *how.measures) if groups else how.measures))
     given = given_data(own.ravel(), design.places, design.ordered, how.seed, measures, how.resamples)
     if groups:
-        return Found(given, int(np.isfinite(block).all(axis=1).sum()), blocks)
+        return Estimated(given, int(np.isfinite(block).all(axis=1).sum()), blocks)
     out = sobol(y, count, second, how.seed, how.resamples)
     at = convergence.sizes(blocks)
     lean = block[:, np.r_[0 : count + 1, -1]]  # the course needs no second order
@@ -88,10 +88,10 @@ def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
         return sobol(lean[:blocks].ravel(), count, False, how.seed, how.resamples)
 
     out |= convergence.course(part, at, part(blocks) if second else out, ("S1", "ST")) | given
-    return Found(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
+    return Estimated(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
 
 
-def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
+def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     step = len(design.factors) + 1
 
     def part(paths: int) -> indices.Estimates:
@@ -102,21 +102,21 @@ def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
     at = convergence.sizes(total, smallest=4)
     out = part(total)
     out |= convergence.course(part, at, out, ("mu_star",))
-    return Found(out, int(out["effects_used"].sum()), total * (step - 1), at)
+    return Estimated(out, int(out["effects_used"].sum()), total * (step - 1), at)
 
 
-def _grid(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
+def _grid(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     out = indices.grid_shares(y.reshape(design.meta["shape"]))
     out |= given_data(y, design.unit, design.ordered, how.seed, how.measures, how.resamples)
-    return Found(out, int(out.pop("cells_used")), int(out.pop("cells")))
+    return Estimated(out, int(out.pop("cells_used")), int(out.pop("cells")))
 
 
-def _coded(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
+def _coded(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     out = indices.effects(y, design.unit, design.listed, design.method != "plackett_burman")
-    return Found(out, int(out.pop("rows_used")), len(y))
+    return Estimated(out, int(out.pop("rows_used")), len(y))
 
 
-def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
+def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     ordered, places = design.ordered, design.places
     measures = tuple(dict.fromkeys(("first", *how.measures)))  # `first` ranks the factors
     out = given_data(y, places, ordered, how.seed, measures, how.resamples)
@@ -129,10 +129,10 @@ def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Found:
         return firsts(y[::every], places[::every], ordered, how.seed)
 
     out |= convergence.course(part, at, out, ("first",))
-    return Found(out, int(out.pop("rows_used")), len(y), at)
+    return Estimated(out, int(out.pop("rows_used")), len(y), at)
 
 
-_METHODS: dict[str, Callable[[np.ndarray, SampledDesign, Settings], Found]] = {
+_METHODS: dict[str, Callable[[np.ndarray, SampledDesign, Settings], Estimated]] = {
     "saltelli": _saltelli,
     "morris": _morris,
     "grid": _grid,
@@ -177,15 +177,15 @@ def analyse(results: StudyResults) -> xr.Dataset:
     columns = outputs(ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed)
     if not columns or not design.factors:
         raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
-    found = [_METHODS[design.method](column.values, design, how) for column in columns]
-    for one in found:
+    by_output = [_METHODS[design.method](column.values, design, how) for column in columns]
+    for one in by_output:
         one.estimates.pop("rows_used", None)
-    result = labelled(design, columns, [one.estimates for one in found], found[0].sizes)
+    result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
     result = result.merge(parts_of(design, columns, given, how.seed, how.resamples))
-    result = result.assign(_quality(result, design, columns, found))
+    result = result.assign(_quality(result, design, columns, by_output))
     if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
-        told = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
-        result["correlated"] = ("factor", np.array([name in tied for name in design.factors], np.int8), told)
+        words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
+        result["correlated"] = ("factor", np.array([name in tied for name in design.factors], np.int8), words)
     result = result.assign(first_order_sums(result, design.method != "table"))
     result.attrs = {
         **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
@@ -203,13 +203,13 @@ def analyse(results: StudyResults) -> xr.Dataset:
 
 
 def _quality(
-    result: xr.Dataset, design: SampledDesign, columns: list[Output], found: list[Found]
+    result: xr.Dataset, design: SampledDesign, columns: list[Output], by_output: list[Estimated]
 ) -> dict[str, tuple[str, np.ndarray, dict[str, str]]]:
     """Return the variables that say how many rows the indices of each output use, and whether these suffice."""
-    share = np.array([one.used / max(1, one.total) for one in found])
+    share = np.array([one.used / max(1, one.total) for one in by_output])
     unit = _UNIT.get(design.method, "rows")
-    notes = [note(column, one.used, one.total, unit) for column, one in zip(columns, found, strict=True)]
-    bounds = [_bounds(one.estimates, design.method) for one in found]
+    notes = [note(column, one.used, one.total, unit) for column, one in zip(columns, by_output, strict=True)]
+    bounds = [_bounds(one.estimates, design.method) for one in by_output]
     if design.meta.get("groups"):
         bounds = list(zip(result["group_ST_low"].values, result["group_ST_high"].values, strict=True))
     wanted = convergence.HALF_WIDTH_MORRIS if design.method == "morris" else convergence.HALF_WIDTH

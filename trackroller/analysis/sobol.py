@@ -60,13 +60,13 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
     used = block[np.isfinite(block).all(axis=1)]
     whole, single = (1 << count) - 1, [1 << j for j in range(count)]
     double = [one | other for one, other in combinations(single, 2)] if second_order else []
-    found = closed_indices(used, count, second_order, [*single, *(whole ^ j for j in single), *double], seed, resamples)
-    first, rest, both = np.split(found, [count, 2 * count], axis=1)
+    drawn = closed_indices(used, count, second_order, [*single, *(whole ^ j for j in single), *double], seed, resamples)
+    first, rest, both = np.split(drawn, [count, 2 * count], axis=1)
     out: Estimates = {"blocks": np.array(len(block)), "blocks_used": np.array(len(used))}
     out |= with_bounds("S1", first) | with_bounds("ST", 1 - rest)
     if second_order:
         i, j = np.triu_indices(count, 1)
-        table = np.full((len(found), count, count), np.nan)
+        table = np.full((len(drawn), count, count), np.nan)
         table[:, i, j] = both - first[:, i] - first[:, j]
         out |= with_bounds("S2", table)
     return out
@@ -109,20 +109,20 @@ def closed_indices(
     return np.concatenate(drawn)
 
 
-def with_bounds(name: str, found: np.ndarray) -> Estimates:
+def with_bounds(name: str, drawn: np.ndarray) -> Estimates:
     """Return an index with its 95 % bounds.
 
     Parameters
     ----------
     name : name of the index
-    found : the estimate, then its resamples, shape (1 + resamples, ...)
+    drawn : the estimate, then its resamples, shape (1 + resamples, ...)
 
     Returns
     -------
     name, name_low and name_high, each shape (...).
     """
-    low, high = percentile_bounds(found[1:])
-    return {name: found[0], f"{name}_low": low, f"{name}_high": high}
+    low, high = percentile_bounds(drawn[1:])
+    return {name: drawn[0], f"{name}_low": low, f"{name}_high": high}
 
 
 def _resampled(rows: int, resamples: int, seed: int) -> Iterator[np.ndarray]:
