@@ -50,7 +50,7 @@ def test_smallest_ball_is_the_minimax():
     rng = np.random.default_rng(2)
     points, height = rng.normal(size=(6, 40, 3)), rng.uniform(0, 1, (6, 40))
     for own, lift in zip(points, height, strict=True):
-        value = smallest_ball(own.T, lift)
+        value, _ = smallest_ball(own.T, lift)
         start = np.append(own.mean(0), 30.0)
         inside = {"type": "ineq", "fun": lambda v, own=own, lift=lift: v[3] - np.sum((own - v[:3]) ** 2, axis=1) - lift}
         tried = minimize(lambda v: v[3], start, constraints=[inside], method="SLSQP", options={"ftol": 1e-10})

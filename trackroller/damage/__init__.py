@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from trackroller.damage import bearing, catalogue, fatigue, heat, rating, shakedown, static, verdict
+from trackroller.damage import bearing, catalogue, fatigue, heat, multiaxial, rating, shakedown, static, verdict
 from trackroller.damage.limit import TRACTIONS, Limit, declarations
 
-_FILES = (static, fatigue, heat, rating, bearing, catalogue, shakedown, heat)
+_FILES = (static, fatigue, heat, multiaxial, rating, bearing, catalogue, shakedown, heat, multiaxial)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 
@@ -15,6 +15,11 @@ def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
     """Return the limits that groups of outputs ask for; the group `limits` without another one asks for all."""
     named = tuple(limit for limit in LIMITS.values() if limit.group in outputs)
     return tuple(LIMITS.values()) if verdict.GROUP in outputs and not named else named
+
+
+def judged(outputs: Collection[str]) -> tuple[Limit, ...]:
+    """Return the limits asked for that belong to the verdict."""
+    return tuple(limit for limit in asked(outputs) if limit.verdict is not None)
 
 
 def of_patches(outputs: Collection[str]) -> tuple[Limit, ...]:

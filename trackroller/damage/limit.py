@@ -112,7 +112,7 @@ class Limit:
     evaluate : callable
         Function of a `Solved` that returns the results by name.
     verdict : callable
-        Function of a `Solved` and of the results that returns a `Verdict`.
+        Function of a `Solved` and of the results that returns a `Verdict`; None if the verdict leaves the limit out.
     needs : tuple of str
         What has to be computed first: the groups "peak_stress" and "friction_work" of the solver, and `TRACTIONS`.
     results : tuple of Variable
@@ -137,7 +137,7 @@ class Limit:
     title: str
     group: str
     evaluate: Callable[[Solved], Results]
-    verdict: Callable[[Solved, Results], Verdict]
+    verdict: Callable[[Solved, Results], Verdict] | None = None
     meaning: str = ""
     needs: tuple[str, ...] = ()
     results: tuple[Variable, ...] = ()

@@ -49,6 +49,7 @@ def verdict(solved: Solved, limits: Sequence[Limit], numbers: Sequence[int], unk
     used, hours, reached = (np.full((n, len(limits), 2), np.nan) for _ in range(3))
     concerned = np.array([[body in limit.bodies for body in BODIES] for limit in limits]).reshape(-1, 2)
     for i, limit in enumerate(limits):
+        assert limit.verdict is not None
         found = limit.verdict(solved, dict(solved.values))
         if found.utilisation is not None:
             used[:, i] = found.utilisation

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from trackroller.errors import InputError, check_names, unknown_name
-from trackroller.materials.material import Material
+from trackroller.materials.material import Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import complete_curve
 from trackroller.parameters import FRICTION_LEVELS, PARAMETERS, Parameter
@@ -155,6 +155,10 @@ class EntryParser:
             remedy = "Give these values, or write `like: NAME` to take them from another material."
             given_names = ", ".join(map(str, entry)) or "nothing"
             raise InputError(where, given_names, f"it lacks {', '.join(missing)}", remedy)
+        numbers = {key: value.value for key, value in records.items()}
+        numbers["fatigue_limit"] = numbers["fatigue_strength_ratio"] * numbers["tensile_strength"]
+        for key in contradictions(numbers).keys() - given.keys():  # inherited, and no longer true of this material
+            del records[key]
         fields: dict[str, Any] = {key: value.value for key, value in records.items()} | {
             "name": name,
             "records": records,

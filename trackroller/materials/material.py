@@ -16,6 +16,25 @@ _OfLimits = make_dataclass(
 )
 
 
+def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
+    """Return the values of limits that contradict R_m or sigma_D of a material, with what is allowed.
+
+    Parameters
+    ----------
+    values : mapping
+        Values of the material by name, `fatigue_limit` among them; None or nothing where a value is not given.
+    """
+    strength, limit, out = values["tensile_strength"], values["fatigue_limit"], {}
+    if (values.get("yield_strength") or 0.0) > strength:
+        out["yield_strength"] = f"it must not exceed R_m = {strength:g} MPa"
+    torsion = values.get("fatigue_limit_torsion")
+    if torsion is not None and not 0.5 < torsion / limit < 1.0:
+        out["fatigue_limit_torsion"] = (
+            f"it must lie between 0.5 and 1 times sigma_D = {limit:g} MPa, for Findley's and Dang Van's criteria"
+        )
+    return out
+
+
 @dataclass(frozen=True)
 class Material(_OfLimits):  # type: ignore[misc, valid-type]
     """A material whose S-N curve runs through (N_Rm, R_m) and (N_k, sigma_D).
@@ -83,11 +102,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
                 "Give the lower number of cycles to the tensile strength.",
             )
 
-        for name, of, symbol in (("yield_strength", "tensile_strength", "R_m"),):
-            value, bound = getattr(self, name, None), getattr(self, of)
-            if value is not None and value > bound:
-                allowed = f"it must not exceed {symbol} = {bound:g} MPa"
-                raise InputError(f"{where}.{name}", value, allowed, "Correct one of the two values.")
+        for name, allowed in contradictions(vars(self) | {"fatigue_limit": self.fatigue_limit}).items():
+            raise InputError(f"{where}.{name}", getattr(self, name), allowed, "Correct one of the two values.")
 
     @property
     def fatigue_limit(self) -> float:

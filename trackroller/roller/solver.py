@@ -11,7 +11,7 @@ from numba.core.registry import cpu_target
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.settings import converged_up_to
-from trackroller.damage import asked, of_patches, verdict
+from trackroller.damage import asked, judged, of_patches, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS
@@ -297,7 +297,7 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     grouped = {"first_to_fail": "life", "limiting_mechanism": verdict.GROUP}
     flags |= {name: block.values[name] for name, group in grouped.items() if group in options.outputs}
     if verdict.GROUP in options.outputs:
-        attrs["limits"] = " ".join(limit.name for limit in asked(options.outputs))
+        attrs["limits"] = " ".join(limit.name for limit in judged(options.outputs))
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     ds = build({name: block.values[name] for name in keep}, flags, attrs, single)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, of_patches, verdict
+from trackroller.damage import LIMITS, asked, judged, of_patches, verdict
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Solved, lacks
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
@@ -56,8 +56,8 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None
         if TRACTIONS not in limit.needs:  # the others are there: `patch_limits`
             v |= limit.evaluate(solved)
     if verdict.GROUP in options.outputs:
-        names = list(LIMITS)
-        v |= verdict.verdict(solved, wanted, [names.index(limit.name) for limit in wanted], len(names))
+        names, counted = list(LIMITS), judged(options.outputs)
+        v |= verdict.verdict(solved, counted, [names.index(limit.name) for limit in counted], len(names))
 
 
 def patch_limits(results: Results, options: Options) -> None:

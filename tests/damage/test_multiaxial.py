@@ -1,0 +1,117 @@
+"""Multiaxial fatigue criteria against closed forms and brute force."""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import trackroller as tr
+from trackroller.damage import multiaxial as m
+from trackroller.errors import InputError
+from trackroller.halfspace.stress import principal_stresses, von_mises
+
+TIME = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+K, F = m.findley_constants(np.array(300.0), np.array(190.0))
+A, B = m.dang_van_constants(np.array(300.0), np.array(190.0))
+
+
+def history(bending=0.0, torsion=0.0, mean=0.0):
+    path = np.zeros((TIME.size, 6))
+    path[:, 0], path[:, 3] = mean + bending * np.sin(TIME), torsion * np.sin(TIME)
+    return path
+
+
+def tensors(path):
+    return path[:, [[0, 3, 5], [3, 1, 4], [5, 4, 2]]]
+
+
+def turned(path, seed):
+    turn = Rotation.random(random_state=seed).as_matrix()
+    s = turn @ tensors(path) @ turn.T
+    return np.stack([s[:, 0, 0], s[:, 1, 1], s[:, 2, 2], s[:, 0, 1], s[:, 1, 2], s[:, 0, 2]], axis=1)
+
+
+def test_constants_make_both_limits_just_bearable():
+    """Fully reversed bending and torsion at their limits give a utilisation of 1 by both criteria."""
+    for path in (history(bending=300.0), history(torsion=190.0)):
+        assert m.findley(path, float(K)) == pytest.approx(float(F), rel=1e-4)
+        assert m.dang_van(path, float(A)) == pytest.approx(float(B), rel=1e-6)
+
+
+def test_closed_forms_of_the_amplitude_and_of_combined_stress():
+    path = history(200.0, 90.0, mean=500.0)
+    assert m.von_mises_amplitude(path) == pytest.approx(np.sqrt(200**2 + 3 * 90**2), rel=1e-12)
+    both = history(200.0, 90.0)
+    root = np.sqrt(200**2 + 4 * 90**2)
+    assert m.findley(both, float(K)) == pytest.approx(0.5 * (K * 200 + np.sqrt(1 + K**2) * root), rel=1e-4)
+    assert m.dang_van(both, float(A)) == pytest.approx(root / 2 + A * 200 / 3, rel=1e-6)
+    shifted = history(200.0, 90.0, mean=-1000.0)
+    assert m.dang_van(shifted, float(A), credit_pressure=False) == pytest.approx(root / 2, rel=1e-6)
+    assert m.dang_van(shifted, float(A)) == pytest.approx(root / 2 + A * (-1000 + 200) / 3, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_frame_does_not_matter_and_brute_force_agrees(seed):
+    rng = np.random.default_rng(seed)
+    waves = rng.normal(size=(3, 6)) * 100
+    path = sum(np.sin((i + 1) * TIME + rng.uniform(0, 6))[:, None] * w for i, w in enumerate(waves)) - 80 * np.eye(6)[2]
+    value = m.findley(path, float(K))
+    normals = rng.normal(size=(2000, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    best = 0.0
+    for n in normals:
+        traction = tensors(path) @ n
+        normal = traction @ n
+        shear = traction - normal[:, None] * n
+        chord = np.linalg.norm(shear[:, None] - shear[None], axis=2).max()
+        best = max(best, 0.5 * chord + K * normal.max())
+    assert best <= value * (1 + 1e-12) and value == pytest.approx(best, rel=0.01)
+    for other in (turned(path, seed), turned(path, seed + 50)):
+        assert m.findley(other, float(K)) == pytest.approx(value, rel=5e-3)
+        assert m.dang_van(other, float(A)) == pytest.approx(m.dang_van(path, float(A)), rel=1e-3)
+        assert m.von_mises_amplitude(other) == pytest.approx(m.von_mises_amplitude(path), rel=1e-12)
+
+
+def test_coordinates_of_the_deviator():
+    stress = np.random.default_rng(3).normal(size=(20, 6))
+    u, mean = m.deviators(stress), stress[:, :3].mean(axis=1)
+    assert np.sum(u**2, axis=1) == pytest.approx(von_mises(stress) ** 2 / 3, rel=1e-12)
+    assert m.largest_principal(u, mean) == pytest.approx(principal_stresses(stress)[:, 0], rel=1e-9)
+
+
+def test_skipped_lines_do_not_change_the_result():
+    rng = np.random.default_rng(5)
+    paths = rng.normal(size=(30, 20, 6)) * rng.uniform(0.2, 1, (30, 1, 1))
+    values = [m.findley(path, 0.3) for path in paths]
+    called = []
+    found = m.governing(paths, np.array(values) * 1.1, lambda path: called.append(1) or m.findley(path, 0.3))
+    assert found == max(values) and len(called) < 30
+
+
+def test_a_frictionless_roller_has_the_amplitude_of_its_path():
+    """Amplitudes grow with friction, Findley's and Dang Van's faster than the peak stress."""
+    steel = {"like": "1.7225-normalised", "fatigue_limit_torsion": 216.0}
+    case = {"motor_force": 0, "axial_force": 0, "roller_material": steel, "guide_material": steel}
+    cases = [tr.Case(**case, friction_coefficient=mu) for mu in (0.0, 0.4)]
+    ds = tr.solve(cases, ("multiaxial", "peak_stress"), contact_model="sliding").sel(body="roller", contact=1)
+    peak, half = ds.peak_stress.values, ds.von_mises_amplitude.values
+    assert (half < peak).all() and (half > 0.49 * peak).all()
+    grown = [float(ds[name][1] / ds[name][0]) for name in ("peak_stress", "findley_stress", "dang_van_stress")]
+    assert grown[0] < grown[1] < grown[2]
+    assert (ds.dang_van_stress <= ds.dang_van_stress_without_pressure).all()
+
+
+def test_limits_outside_the_range_of_the_criteria_are_refused():
+    for torsion in (170.0, 380.0):
+        with pytest.raises(InputError, match="fatigue_limit_torsion"):
+            tr.solve(
+                tr.Case(roller_material={"like": "1.7225-normalised", "fatigue_limit_torsion": torsion}), "multiaxial"
+            )
+
+
+def test_a_placeholder_that_contradicts_a_given_value_is_left_out():
+    """R_m = 400 MPa of the user's own material lies below the yield strength that it would inherit."""
+    soft = tr.Case(roller_material={"like": "1.7225-normalised", "tensile_strength": 400.0}, motor_force=0)
+    ds = tr.solve(soft, ("shakedown", "limits", "peak_stress"), contact_model="sliding")
+    assert (
+        np.isnan(ds.shakedown_utilisation.sel(body="roller")).all() and "no yield_strength" in ds.attrs["limits_notes"]
+    )
