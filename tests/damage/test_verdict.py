@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import trackroller as tr
+from trackroller.cli.case import groups_of
+from trackroller.cli.main import app
 from trackroller.damage import LIMITS, asked
 from trackroller.damage.limit import Limit, Solved, Verdict
 from trackroller.damage.verdict import verdict
+from trackroller.errors import InputError
 
 NAMES = list(LIMITS)
 
@@ -57,7 +61,8 @@ def test_a_limit_of_the_roller_does_not_concern_the_guide():
 
 def test_asked_limits_follow_from_the_groups():
     assert [own.name for own in asked(("forces", "life", "limits"))] == ["fatigue"]
-    assert [own.name for own in asked(("forces", "limits"))] == NAMES
+    everything = [name for name in NAMES if name != "multiaxial"]  # which has no verdict
+    assert [own.name for own in asked(("forces", "limits"))] == everything
     assert asked(("forces", "contact")) == ()
 
 
@@ -86,3 +91,14 @@ def test_another_failure_probability_needs_the_scatter_of_the_material():
 def test_nothing_is_computed_that_was_not_asked_for():
     ds = tr.solve(tr.Case(motor_force=0), outputs=("forces", "contact"), contact_model="sliding")
     assert not {"utilisation", "rating_life_hours", "life_cycles", "limiting_mechanism"} & set(ds.data_vars)
+
+
+def test_the_command_line_prints_one_table():
+    ran = CliRunner().invoke(app, ["solve", "--limits", "static,rating", "--set", "contact_model=sliding"])
+    assert (
+        ran.exit_code == 0 and "static failure" in ran.output and "roller  first limit: standard rating" in ran.output
+    )
+    assert "rating: the case gives no guide_overrollings_per_hour" in ran.output and "maker's" not in ran.output
+    assert groups_of("all")[-1] == "limits" and "multiaxial" not in groups_of("all")
+    with pytest.raises(InputError, match="Did you mean 'rating'"):
+        groups_of("ratings")

@@ -50,8 +50,9 @@ def groups_of(words: str) -> tuple[str, ...]:
     """Return the groups of outputs of the limits `all`, or of limits whose names are separated by commas."""
     from trackroller.damage import LIMITS  # heavy: numpy and scipy
 
-    names = list(LIMITS) if words == "all" else [word.strip() for word in words.split(",")]
-    check_names("--limits", names, (*LIMITS, "all"))
+    known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
+    names = known if words == "all" else [word.strip() for word in words.split(",")]
+    check_names("--limits", names, (*known, "all"))
     return (*dict.fromkeys(LIMITS[name].group for name in names), "limits")
 
 

@@ -7,14 +7,16 @@ from collections.abc import Collection
 from trackroller.damage import bearing, catalogue, fatigue, heat, multiaxial, rating, shakedown, static, verdict
 from trackroller.damage.limit import TRACTIONS, Limit, declarations
 
-_FILES = (static, fatigue, heat, multiaxial, rating, bearing, catalogue, shakedown, heat, multiaxial)
+_FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, multiaxial)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 
 def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
-    """Return the limits that groups of outputs ask for; the group `limits` without another one asks for all."""
+    """Return the limits that groups of outputs ask for; `limits` without another one asks for all with a verdict."""
     named = tuple(limit for limit in LIMITS.values() if limit.group in outputs)
-    return tuple(LIMITS.values()) if verdict.GROUP in outputs and not named else named
+    if verdict.GROUP in outputs and not named:
+        return tuple(limit for limit in LIMITS.values() if limit.verdict is not None)
+    return named
 
 
 def judged(outputs: Collection[str]) -> tuple[Limit, ...]:
