@@ -82,7 +82,10 @@ def integrals(
     n = np.size(friction)
     law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
     given = (*_geometry(ellipse, slip), travel_speed / slip.rolling_radius)
-    patches = Patches(*(np.array(np.broadcast_to(v, n), dtype=float, order="C") for v in given))
+    columns = np.empty((len(given), n))
+    for column, values in zip(columns, given, strict=True):
+        column[:] = values
+    patches = Patches(*columns)
     out = Sums(*(np.empty(n) for _ in range(4)))
     model, table, rule = spin_model_index(spin_model), law.knots, Rule(*clustered_rule(nodes))
     share_rows(lambda first, last: integrate(first, last, patches, model, table, rule, out), n, 32)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -12,8 +13,13 @@ class Rows:
 
     def take(self, index) -> Any:
         """Return the entries `index` (integer or boolean array) of every field; a field that is None stays None."""
-        values = (getattr(self, field.name) for field in dataclasses.fields(self))  # type: ignore[arg-type]
-        return type(self)(*(_part(value, index) for value in values))
+        names = _names(type(self))  # type: ignore[arg-type]
+        return type(self)(*[_part(getattr(self, name), index) for name in names])
+
+
+@functools.cache
+def _names(kind: type) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
 
 
 def _part(value: Any, index: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -173,6 +174,23 @@ def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, d
     return ("case", "body")[: values.ndim], values.astype(np.int32), attrs
 
 
+@cache
+def _sides() -> xr.Coordinates:
+    """Return the coordinates `contact` and `body` with their indexes."""
+    import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
+
+    return xr.Dataset(
+        coords={
+            "contact": (
+                "contact",
+                np.array([1, 2], dtype=np.int32),
+                {"long_name": "contact, 1 at +x_R, 2 at -x_R", "units": "1"},
+            ),
+            "body": ("body", np.array(["roller", "guide"]), {"long_name": "body"}),
+        }
+    ).coords
+
+
 def build(
     values: Mapping[str, np.ndarray], flags: Mapping[str, np.ndarray], attrs: Mapping[str, Any], single: bool
 ) -> xr.Dataset:
@@ -207,24 +225,21 @@ def build(
             meta["comment"] = COMMENTS[name]
         variables[name] = (("case", *v.dims), array, meta)
     variables |= {name: _flag(name, array) for name, array in flags.items()}
-    coords: dict[str, Any] = {
-        "contact": (
-            "contact",
-            np.array([1, 2], dtype=np.int32),
-            {"long_name": "contact, 1 at +x_R, 2 at -x_R", "units": "1"},
-        ),
-        "body": ("body", np.array(["roller", "guide"]), {"long_name": "body"}),
-    }
+    coords = _sides().copy()
+    further: dict[str, Any] = {}
     if "utilisation" in values:
-        coords["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
+        further["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
     if any(name.startswith("stress_") for name in values):
-        coords["component"] = (
+        further["component"] = (
             "component",
             np.array(["xx", "yy", "zz", "xy", "yz", "zx"]),
             {"long_name": "stress component"},
         )
-    ds = xr.Dataset(variables, coords=coords, attrs=dict(attrs))
-    return ds.isel(case=0) if single else ds
+    if single:
+        variables = {name: (dims[1:], array[0], meta) for name, (dims, array, meta) in variables.items()}
+    made = {name: xr.Variable(*parts) for name, parts in variables.items()}
+    ds = xr.Dataset(made, coords=coords, attrs=dict(attrs))
+    return ds.assign_coords(further) if further else ds
 
 
 def joined(blocks: Iterable[xr.Dataset]) -> xr.Dataset:

@@ -42,7 +42,7 @@ def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Datas
     xarray.Dataset
         The same results; `reason` is "" for solved cases, and missing if all cases are solved.
     """
-    regime, converged = (np.atleast_1d(ds[name].values) for name in ("regime", "converged"))
+    regime, converged = (np.atleast_1d(ds.variables[name].values) for name in ("regime", "converged"))
     failed, loose = regime == FAILED, (regime == ROLLING) & (converged == 0)
     if not (failed | loose).any():
         return ds

@@ -68,6 +68,8 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
 
     def changed(self, **values: Any) -> Options:
         """Return the options with other values for some of them."""
+        if all(getattr(self, name) == value for name, value in values.items()):
+            return self
         return Options(**{**vars(self), **values})
 
     def attributes(self) -> dict[str, Any]:

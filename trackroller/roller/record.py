@@ -43,7 +43,8 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     values = plain_inputs(case)
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
         values["friction_coefficient"] = float(to_table(case, database).friction_coefficient[0])
-    return ds.assign_attrs({CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))})
+    ds.attrs |= {CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))}
+    return ds
 
 
 def with_design(ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase | None) -> xr.Dataset:

@@ -159,10 +159,11 @@ def solve(
     if hasattr(cases, "data_vars"):
         return _solve_design(cases, given, database)
     single = isinstance(cases, Case) or hasattr(cases, "keys")
+    database = load_database() if database is None else database
     ds = _solve_table(to_table(cases, database), Options(**given), single)
     if not single:
         return ds
-    return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database or load_database())
+    return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database)
 
 
 def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: MaterialDatabase | None) -> xr.Dataset:
@@ -300,18 +301,17 @@ def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         attrs["limits"] = " ".join(limit.name for limit in judged(options.outputs))
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
-    ds = build({name: block.values[name] for name in keep}, flags, attrs, single)
-    return ds
+    return build({name: block.values[name] for name in keep}, flags, attrs, single)
 
 
 def _tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
-    ds["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
+    ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
     cheaper = DECLARED[options.contact_model].cheaper
     model = options.contact_model
-    if cheaper and np.any(ds.contact_model_used.values == CONTACT_MODELS.index(cheaper)):
+    if cheaper and np.any(ds.variables["contact_model_used"].values == CONTACT_MODELS.index(cheaper)):
         model = cheaper
     for name, errors in error_attributes(options.expected_errors(model, constant)).items():
-        if name in ds:
-            ds[name].attrs.update(errors)
+        if name in ds.variables:
+            ds.variables[name].attrs.update(errors)

@@ -175,13 +175,15 @@ def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, n
     beyond = roller.motor_force > complete
     # a law by interpolation or by elements reaches the complete friction within its error only
     locks = np.flatnonzero(~beyond & (roller.motor_force > NEARLY * complete))
-    brakes = Roller(roller.loads, roller.law, roller.rows[locks])
-    beyond[locks] = brakes.torque(_forces_at(brakes, whole.high[locks])) > 0
+    if locks.size:
+        brakes = Roller(roller.loads, roller.law, roller.rows[locks])
+        beyond[locks] = brakes.torque(_forces_at(brakes, whole.high[locks])) > 0
     drives = np.flatnonzero(roller.motor_force < 0)
-    spins = Roller(roller.loads, roller.law, roller.rows[drives])
-    torque = spins.torque(_forces_at(spins, whole.low[drives]))
-    # where the law gives no forces for this patch, the complete friction decides
-    beyond[drives] = np.where(np.isnan(torque), -spins.motor_force > complete[drives], torque < 0)
+    if drives.size:
+        spins = Roller(roller.loads, roller.law, roller.rows[drives])
+        torque = spins.torque(_forces_at(spins, whole.low[drives]))
+        # where the law gives no forces for this patch, the complete friction decides
+        beyond[drives] = np.where(np.isnan(torque), -spins.motor_force > complete[drives], torque < 0)
     return whole, beyond, np.zeros(beyond.size, bool)
 
 
