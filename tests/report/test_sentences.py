@@ -218,6 +218,6 @@ def test_pairs_agree_with_a_closed_form():
     view = view_of(ds)
     said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
     assert said.text == (
-        "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold in the median of 6 pairs of valid "
-        "designs that differ in nothing else, in all of them."
+        "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold (median of 6 pairs of valid "
+        "designs that differ in nothing else; same direction in all pairs)."
     )

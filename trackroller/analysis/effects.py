@@ -9,6 +9,7 @@ import numpy as np
 from scipy.stats import binom
 
 from trackroller.analysis.table import MOST_LEVELS, StudyView
+from trackroller.parameters import PARAMETERS
 
 if TYPE_CHECKING:
     pass
@@ -101,6 +102,18 @@ def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> 
     matrix = np.full((int(key.max()) + 1, len(levels)), np.nan)
     matrix[key, [place[v] for v in table[factor]]] = np.log10(table[column].to_numpy(dtype=float))
     return matrix[(~np.isnan(matrix)).sum(axis=1) > 1], levels
+
+
+def also_changed(view: StudyView, factor: str, rows: np.ndarray) -> list[str]:
+    """Name the parameters that change with a factor where all other factors are the same.
+
+    Such a parameter is computed from the factor, or taken from the database, as the friction of a pair of materials.
+    """
+    others = [f for f in view.factors if f != factor]
+    given = [p for p in (*PARAMETERS, "friction_coefficient_value") if p in view.table and p not in view.factors]
+    table = view.table[rows]
+    groups = table.groupby(others, dropna=False, sort=False) if others else table.groupby(np.zeros(len(table)))
+    return [p.removesuffix("_value") for p in given if (groups[p].nunique(dropna=False) > 1).any()]
 
 
 def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:

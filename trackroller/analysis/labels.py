@@ -142,12 +142,13 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
     text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
     left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
     if left:
-        text += f"; {' and '.join(left)} rows left out of every index and never filled in; "
-        text += "their occurrence is analysed as an output of its own"
+        text += f"; {' and '.join(left)} rows are left out of the indices and never filled in; "
+        text += "their occurrence is an output of its own, whose indices use all rows"
     else:
         text += "; no row left out for its regime"
-    missed = 0 if allowed is None else int((~allowed).sum())
-    return text + (f"; {missed} rows miss a constraint and are left out of every index" if missed else "")
+    kept = np.isin(regime, [REGIMES.index(name) for name in keep])
+    missed = 0 if allowed is None else int((kept & ~allowed).sum())
+    return text + (f"; {missed} further rows miss a constraint and are left out of the same indices" if missed else "")
 
 
 def correlated_pairs(design: SampledDesign) -> list[tuple[str, str, float]]:

@@ -14,6 +14,7 @@ import xarray as xr
 ENDS = ("low", "high")
 SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
 SIZED = ("mu_star", "effect")  # indices with the unit of the output; all others are shares of variance
+USABLE = 0.5  # share of the design below which an index decides nothing
 HEADLINES = {"saltelli": "ST", "morris": "mu_star", "grid": "main_share"}
 
 
@@ -55,6 +56,16 @@ def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
     rows = zip(map(str, part["factor"].values), map(str, names), *estimate(part, index).tolist(), strict=True)
     ranks = [rank for rank in map(Rank._make, rows) if np.isfinite(rank.value)]
     return sorted(ranks, key=lambda r: -abs(r.value) if index in SIGNED else -r.value)
+
+
+def used_share(sens: xr.Dataset, output: str) -> float:
+    """Return the share of the design that the indices of an output use [1]."""
+    return float(sens["used_share"].sel(output=output)) if "used_share" in sens else 1.0
+
+
+def decisive(sens: xr.Dataset, output: str) -> bool:
+    """Return whether an output has an index that uses at least half of the design."""
+    return bool(order(sens, output)) and used_share(sens, output) >= USABLE
 
 
 def ranked_factors(sens: xr.Dataset | None, column: str, among: Sequence[str]) -> dict[str, float]:

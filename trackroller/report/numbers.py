@@ -11,6 +11,7 @@ from trackroller.study.design.levels import NAMED, short
 
 UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°"}
 UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm"}
+SMALL_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -155,6 +156,14 @@ def capital(text: str) -> str:
 def listing(words: Sequence[str], last: str = "and") -> str:
     """Join words: 'a', 'a and b', 'a, b and c'; 'none' for an empty list."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else "none"
+
+
+def shortened(words: Sequence[str], most: int = 4) -> str:
+    """Join words; of more than `most` words the last stand as 'and three more', 'and 12 more'."""
+    if len(words) <= most:
+        return listing(words)
+    left = len(words) - most + 1
+    return f"{', '.join(words[: most - 1])} and {SMALL_NUMBERS.get(left, str(left))} more"
 
 
 def unit_text(units: str) -> str:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 POINTS, ROUNDS = 17, 7  # cases a round on each search, and rounds: the range shrinks by 16 each time
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
+_FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}  # limits of one field
 
 
 @dataclass(frozen=True)
@@ -39,11 +40,15 @@ class Limits:
     self_locking_friction : float
         Friction coefficient [1] from which friction alone carries the lateral load of a contact; inf beyond 2, the
         largest coefficient; NaN if the roller has lifted without being locked.
+    lift_off_friction : float
+        Friction coefficient [1], above that of the case, from which a contact lifts off; inf beyond 2; NaN if a contact
+        has lifted.
     """
 
     axial_force: tuple[float, float]
     motor_force: tuple[float, float]
     self_locking_friction: float
+    lift_off_friction: float = math.nan
 
 
 def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase | None = None) -> Limits:
@@ -86,27 +91,30 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     now, free = holds([nominal]), holds([replace(nominal, motor_force=0.0)])
     lifted, rolls = not now["axial_force"][0], free["motor_force"][0]
     start = 0.0 if lifted else case.axial_force
-    searches = [("axial_force", start, -span), ("axial_force", start, span), ("friction_coefficient", 0.0, _FRICTION)]
+    searches = [("axial_force", start, -span), ("axial_force", start, span), ("locking", 0.0, _FRICTION)]
+    friction = nominal.friction_coefficient
+    searches += [("lifting", float(friction) if isinstance(friction, (int, float)) else 0.0, _FRICTION)]
     if rolls and not lifted:
         searches += [("motor_force", 0.0, -span), ("motor_force", 0.0, span)]
-    lowest, highest, locking, *motor = _edges(holds, nominal, searches)
-    return Limits((lowest, highest), (motor[0], motor[1]) if motor else (math.nan, math.nan), locking)
+    lowest, highest, locking, lifting, *motor = _edges(holds, nominal, searches)
+    return Limits((lowest, highest), (motor[0], motor[1]) if motor else (math.nan, math.nan), locking, lifting)
 
 
 def _conditions(ds: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return for each searched field which cases lie on the near side of its limit."""
+    """Return for each searched limit which cases lie on the near side of its limit."""
     regime = ds.regime.values
     return {
         "axial_force": np.isin(regime, (ROLLING, FULL_SLIP)),
         "motor_force": regime == ROLLING,
-        "friction_coefficient": (ds.validity.values & _LOCKED) == 0,
+        "locking": (ds.validity.values & _LOCKED) == 0,
+        "lifting": np.isin(regime, (ROLLING, FULL_SLIP)),
     }
 
 
 def _edges(
     holds: Callable[[list[Case]], dict[str, np.ndarray]], case: Case, searches: Sequence[tuple[str, float, float]]
 ) -> list[float]:
-    """Return for each search (field, start, end) the last value from the start at which the field's condition holds.
+    """Return for each search (limit, start, end) the last value from the start at which the condition holds.
 
     NaN if it does not hold at the start, and infinity with the sign of the direction if it holds as far as the end. A
     round solves the cases of all searches in one batch.
@@ -116,7 +124,9 @@ def _edges(
     going = list(range(len(searches)))
     for _ in range(ROUNDS):
         values = {i: np.linspace(*ranges[i], POINTS) for i in going}
-        near = holds([replace(case, **{searches[i][0]: float(v)}) for i in going for v in values[i]])
+        near = holds(
+            [replace(case, **{_FIELD.get(searches[i][0], searches[i][0]): float(v)}) for i in going for v in values[i]]
+        )
         for row, i in enumerate(tuple(going)):
             far = np.flatnonzero(~near[searches[i][0]].reshape(-1, POINTS)[row])
             if far.size and far[0]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -69,7 +69,7 @@ def collect(view: StudyView) -> list[Column]:
     columns += _results(ds, dims, view)
     columns += _states(ds, dims, view)
     if len(view.table) <= MOST_DETAILED:
-        columns += _details(ds, dims, {column.name for column in columns})
+        columns += _details(ds, dims, {column.name for column in columns}, view)
     return columns
 
 
@@ -120,7 +120,7 @@ def _results(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Col
         *(n for text in view.study.get("constraints") or () for n in goals.names_in(text)),
     ]
     names += [n for n in dict.fromkeys(asked) if n not in names and n not in view.table and n not in PARAMETERS]
-    return [_output(found, "output") for found in _found(ds, dims, names)]
+    return [_output(found, "output", view) for found in _found(ds, dims, names)]
 
 
 def _found(ds: xr.Dataset, dims: tuple[str, ...], names: Iterable[str]) -> list[Output]:
@@ -134,12 +134,16 @@ def _found(ds: xr.Dataset, dims: tuple[str, ...], names: Iterable[str]) -> list[
     return found
 
 
-def _output(found: Output, role: str) -> Column:
+def _output(found: Output, role: str, view: StudyView) -> Column:
+    if "life" in found.name:  # a roller that skids, and a body above its tensile strength, have no fatigue life
+        body = next((b for b in BODIES if b in found.name and view.by_body), "")
+        overloaded = view.flagged("static", body) if "static" in view.flags else np.zeros(len(view.table), dtype=bool)
+        found = replace(found, values=np.where(view.rolling & ~overloaded, found.values, np.nan))
     values = found.values.astype(np.float32) if role == "detail" else found.values
     return Column(found.name, capital(found.long_name), unit_text(found.units), role, values, log="life" in found.name)
 
 
-def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str]) -> list[Column]:
+def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], view: StudyView) -> list[Column]:
     """Return figures of each contact and body, under names such as `peak_stress[1,roller]`."""
     names = []
     for variable in (n for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)):
@@ -149,7 +153,7 @@ def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str]) -> list[Col
             name = f"{variable}[{','.join(keys)}]" if keys else variable
             if name not in known and f"{variable}_{keys[0] if keys else ''}" not in known:
                 names.append(name)
-    return [_output(found, "detail") for found in _found(ds, dims, names)]
+    return [_output(found, "detail", view) for found in _found(ds, dims, names)]
 
 
 def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:

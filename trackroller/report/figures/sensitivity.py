@@ -43,8 +43,8 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
     It answers: which factor decides, and how sure is that?
     """
     index = headline(sens)
-    ranks = order(sens, output)[:MAX_BARS]
-    if not ranks:
+    ranks, said = order(sens, output)[:MAX_BARS], indices.tornado(sens, output)
+    if said.kind != "index":  # left out without a finding
         return None
     figure = style.new_figure(22 + 6.0 * len(ranks))
     axes = figure.add_subplot()
@@ -72,7 +72,7 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
         f"{capital(indices.INDEX_WORDS[index])} of each factor on {indices.of_output(sens, output)}; whiskers: 95 % "
         f"intervals. {sens.attrs.get('treatment', '')}."
     )
-    return figure, style.FigureInfo(f"tornado-{output}", caption, indices.tornado(sens, output).text)
+    return figure, style.FigureInfo(f"tornado-{output}", caption, said.text)
 
 
 def _axis(sens: xr.Dataset, output: str, index: str) -> str:

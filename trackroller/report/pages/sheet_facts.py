@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from trackroller.analysis.table import BODIES
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, REGIMES
-from trackroller.report.numbers import life, number, plain, rounded, unit_text
+from trackroller.report.numbers import life, listing, number, plain, rounded, unit_text
 from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source
 from trackroller.report.words.flags import Flag, flags_of
 from trackroller.roller.geometry import rolling_radius
@@ -106,9 +106,11 @@ def collect(ds: xr.Dataset) -> Facts:
     regime = REGIMES[int(ds["regime"])]
     found = limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
-    lives = _lives(ds, inputs, materials)
+    lifeless = {body: _no_life(regime, body, contacts) for body in BODIES}
+    contacts = [_without_life(contact, lifeless) for contact in contacts]
+    lives = _lives(ds, inputs, materials, lifeless)
     return Facts(
-        verdict=_verdict(regime, ds, lives, found, inputs),
+        verdict=_verdict(regime, ds, lives, lifeless, found, inputs),
         reason=str(ds["reason"].item()) if "reason" in ds else "",
         inputs=[input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
         materials=body_materials(stored),
@@ -167,20 +169,38 @@ def _body(own: xr.Dataset, body: str, material: Material) -> BodyFacts:
     return BodyFacts(body, peak, place, peak / material.tensile_strength, peak / material.fatigue_limit, cycles, hours)
 
 
-def _lives(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]) -> list[Row]:
+def _no_life(regime: str, body: str, contacts: list[ContactFacts]) -> str:
+    """Say why a body has no fatigue life: overload or a skidding roller; an empty text if it has one."""
+    over = max((b.of_strength for contact in contacts for b in contact.bodies if b.body == body), default=0.0)
+    if over > 1:
+        return f"the peak stress is {rounded(over, 2)} times its tensile strength"
+    return "the roller skids: friction heat and wear decide" if regime == "full_slip" else ""
+
+
+def _without_life(contact: ContactFacts, lifeless: Mapping[str, str]) -> ContactFacts:
+    """Drop the lives of the bodies that have no fatigue life."""
+    kept = [replace(b, cycles=math.nan, hours=math.nan) if lifeless[b.body] else b for b in contact.bodies]
+    return replace(contact, bodies=kept)
+
+
+def _lives(
+    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
+) -> list[Row]:
     """Return the life of each body, at 10, 50 and 90 % failure probability where its material has scatter."""
     rows = []
     unknown = {"guide": "not known: give guide_overrollings_per_hour", "roller": "not defined in this regime"}
     for body in (b for b in BODIES if f"{b}_life_hours" in ds):
         hours, material = float(ds[f"{body}_life_hours"]), materials[body]
-        if material.scatter_in_cycles or material.scatter_in_stress:
+        if lifeless[body]:
+            rows.append(Row(f"{body}, no fatigue life", lifeless[body]))
+        elif material.scatter_in_cycles or material.scatter_in_stress:
             for p in PROBABILITIES:
                 text = life(_hours_at(ds, body, inputs, material, p))
                 rows.append(Row(f"{body}, until {100 * p:.0f} % have failed", text, "h"))
         elif math.isnan(hours):
             rows.append(Row(f"{body}, median life", unknown[body]))
         else:
-            rows.append(Row(f"{body}, median life (its material has no scatter)", life(hours), "h"))
+            rows.append(Row(f"{body}, median life (no scatter of its material is known)", life(hours), "h"))
     return rows
 
 
@@ -195,8 +215,15 @@ def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Material, pr
     return float(np.min(cycles / (math.nan if rate is None else rate)))
 
 
-def _verdict(regime: str, ds: xr.Dataset, lives: list[Row], found: Limits, inputs: Mapping[str, Any]) -> str:
-    """Return the summary of the sheet: regime, life of the roller, distance to lift-off."""
+def _verdict(
+    regime: str,
+    ds: xr.Dataset,
+    lives: list[Row],
+    lifeless: Mapping[str, str],
+    found: Limits,
+    inputs: Mapping[str, Any],
+) -> str:
+    """Return the summary of the sheet: what rules (lift-off, overload, skidding, life) and the distance to lift-off."""
     if regime == "failed":
         return f"No solution: {ds['reason'].item()}"
     if regime == "lift_off":
@@ -204,11 +231,16 @@ def _verdict(regime: str, ds: xr.Dataset, lives: list[Row], found: Limits, input
         return (
             f"A contact lifts off. Both contacts carry load for axial forces from {rounded(low)} to {rounded(high)} N."
         )
-    parts = ["Rolls." if regime == "rolling" else "Skids: the motor force exceeds what friction transmits."]
-    if "roller_life_hours" in ds and math.isfinite(float(ds["roller_life_hours"])):
+    over = [f"at the {body} {why}" for body, why in lifeless.items() if "tensile strength" in why]
+    parts = [f"Overloaded: {listing(over)}."] if over else []
+    if regime == "full_slip":
+        parts.append("Skids: the motor force exceeds what friction transmits.")
+    elif not over:
+        parts.append("Rolls.")
+    if not any(lifeless.values()) and "roller_life_hours" in ds and math.isfinite(float(ds["roller_life_hours"])):
         own = [row for row in lives if row.words.startswith("roller")]
-        told = ", ".join(f"{row.value} h ({_probability(row.words)})" for row in own[:2])
-        parts.append(f"The roller lasts {told}; contact {_weakest(ds)} decides.")
+        hours = ", ".join(f"{row.value} h ({_probability(row.words)})" for row in own[:2])
+        parts.append(f"The roller lasts {hours}; contact {_weakest(ds)} decides.")
     axial = inputs["axial_force"]
     reserve = min(found.axial_force[1] - axial, axial - found.axial_force[0])
     if math.isfinite(reserve):
@@ -244,7 +276,10 @@ def limit_rows(found: Limits, inputs: Mapping[str, Any]) -> list[Row]:
     if any(map(math.isfinite, found.motor_force)):
         drive, brake = map(rounded, found.motor_force)
         rows.append(Row("full slip: the roller does not skid for motor forces", f"{drive} to {brake}", "N"))
-    lock = found.self_locking_friction
-    told = f"from {rounded(lock)} (now {number(inputs['friction_coefficient'])})"
+    lock, lifts, now = found.self_locking_friction, found.lift_off_friction, number(inputs["friction_coefficient"])
     special = "none up to 2" if math.isinf(lock) else "not defined: a contact has lifted"
-    return [*rows, Row("self-locking by friction", told if math.isfinite(lock) else special)]
+    locks = f"from {rounded(lock)} (now {now})" if math.isfinite(lock) else special
+    rows.append(Row("self-locking: friction alone carries the lateral load for friction coefficients", locks))
+    if math.isfinite(lifts):
+        rows.append(Row("lift-off: a contact lifts for friction coefficients", f"from {rounded(lifts)} (now {now})"))
+    return rows

@@ -18,7 +18,8 @@ def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
     index, rows = headline(sens), []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
-        ranks = [f"{r.name} {index_text(part.sel(factor=r.factor), index)}" for r in order(sens, output)[:4]]
+        ranks = [f"{r.name} {index_text(part.sel(factor=r.factor), index)}" for r in order(sens, output)]
+        ranks = [*ranks[:4], *([f"{len(ranks) - 4} more"] if len(ranks) > 4 else [])]
         mark = " *" if error and output in FRICTION_OUTPUTS else ""
         rows.append([capital(of_output(sens, output)) + mark, "; ".join(ranks) or "–", str(part["note"].item())])
     heads = ["Output", f"Factors that matter most ({INDEX_WORDS[index]})", "Computed from"]

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from trackroller.analysis.table import BODIES, OUTSIDE, StudyView
+from trackroller.analysis.table import BODIES, MOST_LEVELS, OUTSIDE, StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.numbers import count, listing, quantity, setting
+from trackroller.report.numbers import capital, count, listing, quantity, setting, shortened
 from trackroller.report.words.flags import OF_BODY, of_body, words_of
 from trackroller.report.words.sentence import Sentence
 
@@ -32,12 +32,27 @@ def valid_designs(view: StudyView) -> Sentence:
         text += f"; {kept} inside the model: elsewhere {_reason_words(reasons)}."
     if inside and view.met is not None:
         told = listing([f"`{limit}`" for limit in view.study["constraints"]])
-        text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {told}."
+        text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {told}.{_removed(view)}"
     if valid and valid < rolls:
         text += f" Statements on life and stress use the {count(valid)} unless they name another set"
         text += "; sensitivity indices also count the designs outside the model." if inside < rolls else "."
     values = {"total": total, "rolling": rolls, "inside": inside, "valid": valid, "lost": lost, "reasons": reasons}
     return Sentence("valid", text, values, np.ones(total, dtype=bool))
+
+
+def _removed(view: StudyView) -> str:
+    """Name the levels that meet the constraints nowhere, and the factors that have one level left."""
+    said = []
+    for name in view.factors if view.valid.any() else ():
+        own, levels = view.table[name], view.levels(name)
+        before = [v for v in levels if (own[view.inside] == v).any()] if len(levels) <= MOST_LEVELS else []
+        left = [v for v in before if (own[view.valid] == v).any()]
+        gone = [setting(name, v) for v in before if v not in left]
+        if gone and len(left) == 1:
+            said.append(f" Only {setting(name, left[0])} meets the constraints.")
+        elif gone:
+            said.append(f" {capital(shortened(gone))} meet{'s' * (len(gone) == 1)} the constraints nowhere.")
+    return "".join(said)
 
 
 def _outside(view: StudyView) -> list[tuple[str, str, np.ndarray]]:

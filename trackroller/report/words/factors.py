@@ -12,6 +12,7 @@ from trackroller.analysis.effects import (
     MOST,
     UNCHANGED,
     Effect,
+    also_changed,
     class_effect,
     comparable,
     paired_effect,
@@ -19,6 +20,7 @@ from trackroller.analysis.effects import (
 )
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import capital, count, level_text, listing, long_name, rounded, setting, times
+from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence
 from trackroller.study.design.levels import NAMED
 
@@ -82,27 +84,29 @@ def _of_pairs(
     view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
 ) -> Sentence:
     """State the median change of designs that differ in one factor only."""
+    changed = [long_name(name) for name in also_changed(view, effect.factor, rows)]
     pairs = f"{count(effect.size)} pairs of valid designs that differ in nothing else"
+    pairs += f" than the {listing(changed)} that follows from it" if changed else ""
     parts = [p for p in parts if p[2].size >= FEWEST_PAIRS]
     up = effect.ratio > 1
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     same = effect.rising if up else effect.falling
     if max(effect.ratio, 1 / effect.ratio) <= 1 + UNCHANGED and not against:
-        text = f"{_span(view, effect)} changes the {words} by less than 2 % in the median of {pairs}."
+        text = f"{_span(view, effect)} changes the {words} by less than 2 % (median of {pairs})."
         return Sentence("pairs_same", text, values, rows)
     if against or same < MOST * effect.size:
         text = (
-            f"{_span(view, effect)} acts in both directions: of {pairs} the {words} rises in {count(effect.rising)} "
-            f"and falls in {count(effect.falling)}"
+            f"{_span(view, effect)} acts in both directions: the {words} rises in {count(effect.rising)} and falls in "
+            f"{count(effect.falling)} of {pairs}"
         )
-        told = _by_category(parts, words) if against else []
-        values["strata"] = [(c, v, e.ratio) for c, v, e in parts] if told else []
-        return Sentence("pairs_both", f"{text}{'; median ' if told else ''}{', '.join(told)}.", values, rows)
-    text = (
-        f"{_span(view, effect)} {_verb(words, up)} the {words} {_fold(effect)} in the "
-        f"median of {pairs}, and in {'all' if same == effect.size else count(same)} of them."
-    )
-    return Sentence("pairs", text.replace(", and in all of them", ", in all of them"), values, rows)
+        by_category = _by_category(parts, words) if against else []
+        values["strata"] = [(c, v, e.ratio) for c, v, e in parts] if by_category else []
+        medians = f"; the median is {', '.join(by_category)}" if by_category else ""
+        return Sentence("pairs_both", f"{text}{medians}.", values, rows)
+    agree = "in all pairs" if same == effect.size else f"in {count(same)} pairs"
+    text = f"{_span(view, effect)} {_verb(words, up)} the {words} {_fold(effect)}"
+    text += f" (median of {pairs}; same direction {agree})."
+    return Sentence("pairs", text, values, rows)
 
 
 def _by_category(parts: Strata, words: str) -> list[str]:
@@ -111,9 +115,8 @@ def _by_category(parts: Strata, words: str) -> list[str]:
     for category, _, effect in parts:
         spread.setdefault(category, []).append(np.log(effect.ratio))
     category = max(spread, key=lambda c: max(spread[c]) - min(spread[c]))
-    ways = ("longer", "shorter") if "life" in words else ("higher", "lower")
     return [
-        f"{_fold(e)} {ways[0] if e.ratio > 1 else ways[1]} with {setting(c, v)}"
+        f"{_fold(e)} {_direction(words, e.ratio > 1)} with {setting(c, v)}"
         if e.ratio != 1
         else f"unchanged with {setting(c, v)}"
         for c, v, e in parts
@@ -125,30 +128,33 @@ def _of_classes(
     view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
 ) -> Sentence:
     """State the change of the median between the lowest and the highest third of a factor, with its interval."""
-    name = long_name(effect.factor)
-    start, end = (level_text(effect.factor, v, words=False) for v in (effect.low, effect.high))
+    low_class, high_class = at_most(effect.factor, effect.low), at_least(effect.factor, effect.high)
     low, high = effect.interval
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in parts if p[2].interval[0] > 1 or p[2].interval[1] < 1]
     ways = {e.ratio > 1 for _, _, e in opposed}
     values["strata"] = [(c, v, e.ratio, e.interval) for c, v, e in parts]
-    ends = f"{start} and from {end}"
     if len(ways) == 2:
-        told = [f"{_fold(e)} {'up' if e.ratio > 1 else 'down'} with {setting(c, v)}" for c, v, e in opposed]
-        text = f"Between the thirds of the valid designs with {name} up to {ends} the median {words} goes "
-        return Sentence("classes_both", f"{text}{listing(told)}.", values, rows)
+        turns = [f"{_fold(e)} {_direction(words, e.ratio > 1)} with {setting(c, v)}" for c, v, e in opposed]
+        text = f"{capital(high_class)}, compared with {low_class}: the median {words} of the valid designs is "
+        return Sentence("classes_both", f"{text}{listing(turns)}.", values, rows)
     if low <= 1 <= high or against:
         kinds = f" common to every {listing(sorted({long_name(c) for c, _, _ in against}), 'and')}" if against else ""
         text = (
-            f"No effect of {name} on the {words}{kinds} is found: between the thirds with {name} up to {ends} the "
-            f"median changes by a factor of {rounded(effect.ratio)} (95 % interval {rounded(low)} to {rounded(high)})."
+            f"No effect of {long_name(effect.factor)} on the {words}{kinds} is found: with {high_class} the median of "
+            f"the valid designs is {rounded(effect.ratio)} times that with {low_class} (95 % interval {rounded(low)} "
+            f"to {rounded(high)})."
         )
         return Sentence("classes_none", text, values, rows)
     up = effect.ratio > 1
     bounds = (low, high) if up else (1 / high, 1 / low)
     text = (
-        f"A {name} from {end} up, instead of one up to {start}, {_verb(words, up)} the median {words} "
-        f"{_fold(effect)} (95 % interval {rounded(bounds[0])} to {rounded(bounds[1])}; "
-        f"the outer thirds of the valid designs, {count(effect.size)} or more in each)."
-    ).replace("A a", "An a")
+        f"{capital(high_class)} instead of {low_class} {_verb(words, up)} the median {words} {_fold(effect)} (95 % "
+        f"interval {rounded(bounds[0])} to {rounded(bounds[1])}; the outer thirds of the valid designs, "
+        f"{count(effect.size)} or more in each)."
+    )
     return Sentence("classes", text, values, rows)
+
+
+def _direction(words: str, up: bool) -> str:
+    return ("longer" if up else "shorter") if "life" in words else ("higher" if up else "lower")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.ranking import headline, order, robust_design
+from trackroller.analysis.ranking import decisive, headline, order, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital, count
@@ -66,9 +66,11 @@ def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
     lives = sorted((n for n in names if "life" in n), key=lambda n: "roller" not in n)
     if robust_design(sens):
         return [best_point(sens, lives[0])] if lives else []
-    ranked = [n for n in [*lives, *names] if order(sens, n)]
-    if not ranked:
-        return []
-    said, more = indices.decides(sens, ranked[0]), part_sentences(sens, ranked[0])
+    ranked = [n for n in dict.fromkeys([*lives, *names]) if order(sens, n)]
+    first = next((n for n in ranked if decisive(sens, n)), None)
+    skipped = [indices.decides(sens, n) for n in ranked[:1] if n != first]  # why the life decides nothing
+    if first is None:
+        return [*skipped]
+    said, more = indices.decides(sens, first), part_sentences(sens, first)
     by_group = "group_ST" in sens and headline(sens) == "first"  # the design serves groups better than factors
-    return [*more, said] if by_group else [said, *more]
+    return [*skipped, *([*more, said] if by_group else [said, *more])]

@@ -8,9 +8,19 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import advice
-from trackroller.analysis.labels import factor_name
-from trackroller.analysis.ranking import SIGNED, Rank, estimate, headline, order
-from trackroller.report.numbers import capital, count, level_text, listing, percent, plus_minus, rounded, unit_text
+from trackroller.analysis.labels import RELIABLE, factor_name
+from trackroller.analysis.ranking import SIGNED, USABLE, Rank, decisive, estimate, headline, order, used_share
+from trackroller.report.numbers import (
+    capital,
+    count,
+    level_text,
+    listing,
+    percent,
+    plus_minus,
+    rounded,
+    shortened,
+    unit_text,
+)
 from trackroller.report.words.sentence import Sentence
 
 HALF = "± is half the 95 % interval"
@@ -62,8 +72,7 @@ def caveat(sens: xr.Dataset, output: str) -> str:
     """
     part, said, more = sens.sel(output=output), [], _times(sens, output)
     if "reliable" in part and not int(part["reliable"]):
-        used = float(part["used_share"]) * 100
-        said.append(f"Only {used:.0f} % of the design could be used: {part['note'].item()}.")
+        said.append(f"Rows that could be used: {part['note'].item()}.")
     if headline(sens) in ("first", "S1") and "first_order_sum_note" in part:
         said += [why] if (why := str(part["first_order_sum_note"].item())) else []
     if np.isfinite(more):
@@ -83,7 +92,13 @@ def decides(sens: xr.Dataset, output: str) -> Sentence:
     if not ranks:
         text = f"No index can be given for {what}: {sens.sel(output=output)['note'].item()}."
         return Sentence("no_index", text, {"output": output})
+    used = used_share(sens, output)
+    if used < USABLE:
+        text = f"No factor is named as decisive for {what}: its indices use only {percent(used)} of the design."
+        return Sentence("no_index", text, {"output": output, "used": used})
     text = _range_words(sens, output, ranks) if index in ("mu_star", "effect") else _share_words(ranks, what, index)
+    if used < RELIABLE:
+        text = f"{text[:-1]}; the index uses {percent(used)} of the design."
     if tied := _correlated(sens):
         text = f"{text[:-1]}; {listing(tied)} are correlated, and the index of each holds influence of the others."
     values = {"output": output, "index": index, "ranks": [(r.factor, r.value, r.low, r.high) for r in ranks]}
@@ -101,11 +116,11 @@ def _share_words(ranks: list[Rank], what: str, index: str) -> str:
     told = f"{percent(first.value, first.low, first.high)} of the variance of {what} ({INDEX_WORDS[index]})"
     text = f"{capital(first.name)} {verb} {told}"
     small = [r for r in others if (r.high if np.isfinite(r.high) else r.value) < SMALL]
-    more = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in others[:3] if r not in small]
-    text += f", {listing(more)}" if more else ""
+    more = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in others if r not in small]
+    text += f", {shortened(more)}" if more else ""
     if small:
         many = "each " if len(small) > 1 else ""
-        text += f"; {listing([r.name for r in small])} {many}less than {100 * SMALL:.0f} %"
+        text += f"; {shortened([r.name for r in small])} {many}less than {100 * SMALL:.0f} %"
     return text + "."
 
 
@@ -117,12 +132,12 @@ def _range_words(sens: xr.Dataset, output: str, ranks: list[Rank]) -> str:
     text += f"{unit}{' on average' if index == 'mu_star' else ''}"
     more = [
         f"{r.name} by {plus_minus(r.value, r.low, r.high)}{unit}"
-        for r in ranks[1:4]
+        for r in ranks[1:]
         if abs(r.value) >= 0.1 * abs(first.value)
     ]
-    text += f", {listing(more)}" if more else ""
+    text += f", {shortened(more)}" if more else ""
     small = [r.name for r in ranks if abs(r.value) < 0.1 * abs(first.value)]
-    text += f"; {listing(small)} by less than a tenth of the largest" if small else ""
+    text += f"; {shortened(small)} by less than a tenth of the largest" if small else ""
     return text + "."
 
 
@@ -185,7 +200,8 @@ def overview(sens: xr.Dataset) -> Sentence:
     lead: dict[str, list[str]] = {}
     first = {}
     for output in map(str, sens["output"].values):
-        if ranks := order(sens, output):
+        if decisive(sens, output):
+            ranks = order(sens, output)
             first[output] = ranks[0].factor
             lead.setdefault(ranks[0].name, []).append(str(sens.sel(output=output)["output_name"].item()))
     if not lead:

@@ -11,6 +11,7 @@ from trackroller.analysis.groups import DRIVE, Groups, classes
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import level_text, long_name, number, rounded, setting, short_levels
 
+LOADS = ("radial_force",)  # negative by definition: less than a bound means more load
 COLOURS = 5  # most groups that get a colour each
 
 
@@ -28,6 +29,18 @@ def _drive(low: float, high: float) -> str:
         return level_text(DRIVE, low)
     least, most = sorted((abs(low), abs(high)))
     return f"{'driven' if low < 0 else 'braked'}, {rounded(least, 2)} to {rounded(most, 2)} N"
+
+
+def at_most(name: str, value: Any) -> str:
+    """Name the values up to a bound: 'axial force up to 5 N'; of a load that is negative by definition the heavier."""
+    bound = level_text(name, value, words=False)
+    return f"{long_name(name)} of {bound} or heavier" if name in LOADS else f"{long_name(name)} up to {bound}"
+
+
+def at_least(name: str, value: Any) -> str:
+    """Name the values from a bound on: 'axial force from 5 N up'; of a load that is negative the lighter."""
+    bound = level_text(name, value, words=False)
+    return f"{long_name(name)} of {bound} or lighter" if name in LOADS else f"{long_name(name)} from {bound} up"
 
 
 def held_words(held: Mapping[str, Any]) -> str:

@@ -8,9 +8,10 @@ import numpy as np
 
 from trackroller.analysis.table import MOST_LEVELS, StudyView
 from trackroller.report.numbers import count, level_text, listing, long_name, number, setting, share
+from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence
 
-FEW = 20  # fewer events are named one by one, without a cause
+FEW = 20  # fewer events without a common level or range are named one by one, without a cause
 
 
 def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:
@@ -31,21 +32,23 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
     values: dict[str, Any] = {"count": cases, "of": whole}
     if cases == whole:
         return Sentence("everywhere", f"{what} occurs in all {count(whole)} designs.", values, among)
-    if cases < FEW:
-        named = [int(i) for i in np.flatnonzero(hit)]
-        text = f"{what} occurs in {cases} of {count(whole)} designs: case{'s' * (cases > 1)} "
-        return Sentence("cases", f"{text}{listing([str(i) for i in named])}.", values | {"cases": named}, among)
     head = f"{what} occurs in {count(cases)} of {count(whole)} designs ({share(cases, whole)})"
     only = _confined(view, hit, among)
-    if only:
-        inside = among.copy()
-        for name, levels in only:
-            inside &= meets(view, name, levels)
-        met = int(inside.sum())
+    inside = among.copy()
+    for name, levels in only:
+        inside &= meets(view, name, levels)
+    met = int(inside.sum())
+    # few events may share levels by chance, unless all designs at these levels have the event
+    common = met == cases and all(isinstance(levels, list) for _, levels in only)
+    if only and (cases >= FEW or common):
         places = listing([f"at {_levels_words(view, name, levels)}" for name, levels in only])
         there = "all" if met == cases else f"{count(cases)} of the {count(met)}"
         text = f"{head}, only {places}: in {there} designs there."
         return Sentence("only", text, values | {"conditions": only, "inside": met}, among)
+    if cases < FEW:
+        named = [int(i) for i in np.flatnonzero(hit)]
+        text = f"{what} occurs in {cases} of {count(whole)} designs: case{'s' * (cases > 1)} "
+        return Sentence("cases", f"{text}{listing([str(i) for i in named])}.", values | {"cases": named}, among)
     most = _most_frequent(view, hit, among)
     if most is None:
         return Sentence("share", f"{head}.", values, among)
@@ -94,9 +97,9 @@ def _levels_words(view: StudyView, name: str, levels: Any) -> str:
         own = view.table[name]
         low, high = levels
         if low <= own.min():
-            return f"{long_name(name)} up to {level_text(name, high, words=False)}"
+            return at_most(name, high)
         if high >= own.max():
-            return f"{long_name(name)} from {level_text(name, low, words=False)} up"
+            return at_least(name, low)
         return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
     first = setting(name, levels[0])
     return listing([first, *(level_text(name, v) for v in levels[1:])], "or")
