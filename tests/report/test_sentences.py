@@ -110,7 +110,7 @@ def test_plus_minus_is_half_the_interval_in_sentence_and_table():
 
 def with_error(middle):
     """Return a sample whose friction energy misses the work put in by about `middle`."""
-    factors = {"axial_force": {"uniform": [0, 50]}, "velocity": {"uniform": [10, 60]}}
+    factors = {"roller_profile_radius": {"uniform": [-9, -7]}, "contact_angle": {"uniform": [30, 40]}}
     asked = parse_study({"name": "e", "design": "lhs", "samples": 60, "factors": factors})
     ds = asked.design()
     power = np.random.default_rng(3).uniform(1, 5, 60)

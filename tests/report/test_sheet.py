@@ -103,6 +103,34 @@ def test_the_verdict_names_what_decides(solved, facts):
     assert facts["skidding"].verdict.startswith("Skids")
 
 
+def test_overload_and_skidding_rule_before_any_life(solved, facts):
+    """No life stands on the sheet of a body that breaks at once, or of a roller that skids."""
+    over, skid = facts["overloaded"], facts["skidding"]
+    worst = float(solved["overloaded"].peak_stress.sel(body="roller").max()) / 720.0
+    assert worst > 1 and over.verdict.startswith(f"Overloaded: at the roller the peak stress is {worst:.2g} times its")
+    assert "lasts" not in over.verdict + skid.verdict and skid.verdict.startswith("Skids")
+    for fact, why in ((over, "tensile strength"), (skid, "skids")):
+        assert [why in row.value for row in fact.lives] == [True] * len(fact.lives) and fact.lives
+        assert all(np.isnan([body.cycles, body.hours]).all() for contact in fact.contacts for body in contact.bodies)
+    assert "lasts" in facts["example"].verdict and "Overloaded" not in facts["example"].verdict
+    page = render(solved["overloaded"])
+    assert "no fatigue life" in page and "overrollings," not in page
+
+
+def test_limits_over_friction_include_lift_off():
+    """Free rolling at 55 N: friction alone lifts contact 1; just below the stated coefficient both contacts carry."""
+    case = tr.Case(motor_force=0, axial_force=55, friction_coefficient=0.05)
+    lifts = limits(case, "sliding").lift_off_friction
+    assert 0.05 < lifts < 2
+    for share, regime in ((0.99, 0), (1.01, 2)):
+        changed = tr.Case(motor_force=0, axial_force=55, friction_coefficient=share * lifts)
+        assert int(solve_sliding(changed, "forces").regime) == regime
+    rows = {
+        row.words.split(":")[0]: row.value for row in collect(solve_sliding(case)).limits if "friction" in row.words
+    }
+    assert rows["lift-off"].startswith("from ") and "now 0.05" in rows["lift-off"]
+
+
 def test_a_lift_off_answers_with_the_axial_force_that_holds(facts):
     bound = re.search(r"to ([\d.]+) N", facts["lifted"].verdict)
     assert bound is not None

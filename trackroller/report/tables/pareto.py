@@ -11,7 +11,7 @@ from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import Life, capital
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
-from trackroller.report.words.pareto import goal_heading, goal_words, goals_of
+from trackroller.report.words.pareto import end_places, goal_heading, goal_words, goals_of
 from trackroller.report.words.sentence import Sentence
 from trackroller.study.file.goals import statistic
 
@@ -26,7 +26,8 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
         return None
     first, way = goals[0]
     best = best[np.argsort(front[first].values[best] * (-1 if way == "max" else 1), kind="stable")]
-    shown = best[np.unique(np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int))]
+    spread = np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int)
+    shown = best[np.union1d(spread, np.flatnonzero(np.isin(best, end_places(front))))]  # the sentence names the ends
     names = [n for n, _ in goals] + [str(n) for n in front.data_vars if n not in (*dict(goals), "optimal", "beyond")]
     arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
     columns = [_column(front, name, shown) for name in names]
@@ -41,7 +42,8 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     note += f" {capital(front.attrs['judged'])}." if front.attrs.get("judged") else ""
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
     if len(best) > len(rows):
-        note += f" The table shows {len(rows)} of the {len(best)} {kind}s, spread evenly along the first goal."
+        note += f" The table shows {len(rows)} of the {len(best)} {kind}s, spread evenly along the first goal, and the"
+        note += " best of each goal."
     note += f" {error.text}" if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
     return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
 

@@ -25,6 +25,13 @@ def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:
     return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]  # type: ignore[misc]
 
 
+def end_places(front: xr.Dataset) -> list[int]:
+    """Return for each goal the place of the optimal design that is best in it, shape (goals,)."""
+    best = np.flatnonzero(front["optimal"].values == 1)
+    signs = [(front[name].values[best].astype(float), -1.0 if way == "max" else 1.0) for name, way in goals_of(front)]
+    return [int(best[np.argmin(sign * values)]) for values, sign in signs]
+
+
 def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
     """State the size and the ends of a Pareto set, and how many of its designs lie outside the model.
 
@@ -41,9 +48,7 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
     if not len(best):
         return Sentence("pareto", f"No {kind} is left. {left}{model}", values)
     ends = []
-    for name, way in goals:
-        table = front[name].values[best].astype(float)
-        at = int(best[np.argmax(table) if way == "max" else np.argmin(table)])
+    for (name, _), at in zip(goals, end_places(front), strict=True):
         ends.append((name, int(front["row"][at]), {g: float(front[g].values[at]) for g, _ in goals}))
     told = [f"{goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
     alike = all(end[2] == ends[0][2] for end in ends) and len(np.unique(_goal_table(front)[best], axis=0)) == 1
