@@ -84,7 +84,7 @@ test-slurm: $(STAMP)
 
 # the slow tests, 10,000 generated inputs, and real runs killed at random moments
 test-long: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m slow
+	EDITS=10000 INTERRUPT_TRIES=200 $(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m slow
 	TRACKROLLER_EXAMPLES=10000 $(BIN)/python -m pytest -q -n 2 tests/cli/test_refusals.py tests/cli/test_fuzz.py
 	$(BIN)/python -m validation.benchmarks.survive
 

@@ -251,3 +251,9 @@ def test_one_parser_serves_factors_constraints_and_stop_conditions():
         comparisons("slip > 0.1 and slip < 0.2", "stop_if")
     with pytest.raises(InputError, match="subscript that does not name the part"):
         evaluate("(slip + 1)[1]", values)
+
+
+def test_a_chain_of_comparisons_may_mix_constants_and_columns():
+    columns = {"a": np.array([-1.0, 0.5, 3.0, 9.0]), "b": np.array([1.0, 1.0, 0.2, 1.0])}
+    assert condition("0 < a < 10 * b", columns).tolist() == [False, True, False, True]
+    assert condition("0 < 1 < a and 2 > 1", columns).tolist() == [False, False, True, True]

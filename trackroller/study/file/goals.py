@@ -20,6 +20,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, field_validator
 
 from trackroller.errors import InputError, unknown_name
@@ -243,7 +244,7 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
         for name in names_in(text):
             if name not in words:
                 raise _unknown("constraints", name, [*words, *REGIMES], config.outputs)
-        dummy: dict[str, Any] = dict.fromkeys(free, 1.0) | {name: "" for name in words[len(free) :]}
+        dummy: dict[str, Any] = dict.fromkeys(free, np.ones(2)) | {name: "" for name in words[len(free) :]}
         dummy |= {name: "" for name, factor in factors.items() if not factor.numeric} | {name: name for name in REGIMES}
         expressions.condition(text, dummy)
 

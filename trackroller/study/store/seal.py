@@ -93,8 +93,8 @@ def check_sealed(path: Path) -> Path:
             why = f"{path} has the SHA-256 {now}, but {known} stands in {path.parent / METADATA}"
     if why is not None:
         raise WorkError(
-            f"{path} was altered or damaged after it was written: {why}. Start `trackroller run` or `trackroller "
-            "report` with the study file: the results are gathered again from the chunks, which are kept."
+            f"{path} was altered or damaged after it was written: {why}. `trackroller run STUDY --report` makes it "
+            "again from the chunks, which are kept."
         )
     return path
 

@@ -1,0 +1,156 @@
+"""Edited inputs stop a run, a grown sample keeps its history, and reports at once do not collide."""
+
+from __future__ import annotations
+
+import multiprocessing
+import shutil
+from pathlib import Path
+
+import fake_solver
+import numpy as np
+import pytest
+import xarray as xr
+
+from trackroller.errors import WorkError
+from trackroller.report.build import build_report
+from trackroller.study.file.load import load_study
+from trackroller.study.run import run_study
+from trackroller.study.store import chunks
+from trackroller.study.store.crate import damaged_files, read_crate
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.inventory import take_inventory
+
+MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
+TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i in range(12))
+POINTS = "x,z\n" + "".join(f"{x},{x * x / 13}\n" for x in np.linspace(-4, 4, 41))
+STUDY = """
+name: sealed
+design: table
+table: cases.csv
+outputs: [forces]
+contact_model: sliding
+chunk_size: 4
+base: {guide_profile: {file: points.csv}}
+normal: halfspace
+"""
+
+
+@pytest.fixture
+def home(tmp_path, monkeypatch):
+    """Return a folder with a study, its table of cases, a measured profile and materials, where the test works."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "config").mkdir()
+    materials = MATERIALS.replace("42CrMo4", "1.7225-quenched-tempered")
+    for name, text in {
+        "study.yaml": STUDY,
+        "cases.csv": TABLE,
+        "points.csv": POINTS,
+        "config/materials.yaml": materials,
+    }.items():
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["study.yaml", "cases.csv", "points.csv", "config/materials.yaml"])
+def test_an_input_that_is_edited_during_a_run_stops_it_before_the_next_chunk(home, solved, name):
+    victim, used = home / name, (home / name).read_bytes()
+
+    def solver(design, database=None, **options):
+        victim.write_bytes(used.replace(b"20,0.1", b"21,0.1") + b"\n# edited\n" * (not name.endswith("cases.csv")))
+        return fake_solver.solve(design)
+
+    with pytest.raises(WorkError, match=rf"{victim.name} was edited.*SHA-256 was [0-9a-f]{{64}} and is [0-9a-f]{{64}}"):
+        run_study(load_study("study.yaml"), solver=solver)
+    assert sum(solved().values()) == 4, "the chunk that was begun"
+    stored = [path.read_bytes() for path in Path("results/sealed/inputs").rglob("*") if path.is_file()]
+    assert used in stored and victim.read_bytes() not in stored, "the bytes that were used"
+    victim.write_bytes(used)
+    run_study(load_study("study.yaml"), solver=fake_solver.solve)
+    assert sum(solved().values()) == 12 and set(solved().values()) == {1}
+
+
+@pytest.mark.parametrize("name", ["study.yaml", "cases.csv", "config/materials.yaml"])
+def test_an_input_that_is_edited_between_load_and_plan_is_refused(home, name):
+    study = load_study("study.yaml")
+    (home / name).write_text((home / name).read_text() + "\n")
+    with pytest.raises(WorkError, match="was edited"):
+        run_study(study, solver=fake_solver.solve)
+
+
+GROWN = """
+name: grown
+design: lhs
+samples: {samples}
+outputs: [forces]
+contact_model: sliding
+chunk_size: 5
+factors: {{axial_force: {{uniform: [20, 50]}}, friction_coefficient: {{uniform: [0.1, 0.3]}}}}
+"""
+
+
+def _grow(samples: int) -> xr.Dataset:
+    Path("grown.yaml").write_text(GROWN.format(samples=samples))
+    return xr.load_dataset(run_study(load_study("grown.yaml"), solver=fake_solver.solve).folder.gathered)
+
+
+@pytest.mark.parametrize("victim", ["inputs/study.yaml", "plan.json", "study.nc", "design.nc"])
+@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_bytes(path.read_bytes()[:-9])])
+def test_a_grown_sample_keeps_its_cases_when_a_file_of_the_study_is_damaged(
+    tmp_path, monkeypatch, solved, victim, damage
+):
+    monkeypatch.chdir(tmp_path)
+    _grow(7)
+    before = _grow(13)
+    damage(Path("results/grown") / victim)
+    again = _grow(13)
+    np.testing.assert_array_equal(again["axial_force"], before["axial_force"])
+    assert _grow(20)["axial_force"].values[:13].tolist() == before["axial_force"].values.tolist()
+    assert set(solved().values()) == {1} and sum(solved().values()) == 20
+
+
+def _draw(view, out_dir: Path) -> list[str]:
+    for number in range(9):
+        (out_dir / f"{number}.svg").write_text("<svg/>")
+    return ["one"]
+
+
+def test_three_reports_at_once_lose_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
+    monkeypatch.chdir(tmp_path)
+    _grow(7)
+    folder = StudyFolder(Path("results/grown"))
+    context = multiprocessing.get_context("fork")
+    runs = [context.Process(target=build_report, args=(folder,)) for _ in range(3)]
+    for process in runs:
+        process.start()
+    for process in runs:
+        process.join(120)
+    assert [process.exitcode for process in runs] == [0, 0, 0]
+    assert len(list((folder.root / "figures").iterdir())) == 9
+    assert damaged_files(folder.root) == {} and "figures/8.svg" in read_crate(folder.root)
+
+
+def test_an_inventory_passes_over_a_file_that_another_process_has_just_replaced(tmp_path, monkeypatch):
+    folder = StudyFolder(tmp_path).create()
+    kept, gone = (np.array([letter * 32]) for letter in (b"a", b"b"))
+    for cases in (kept, gone):
+        chunks.write(folder.chunk(chunk_name(cases)), chunks.failure(cases, "reason").assign_attrs(seconds=1.0))
+    listed = folder.solved_files()
+    monkeypatch.setattr(StudyFolder, "solved_files", lambda self: listed)
+    folder.chunk(chunk_name(gone)).unlink()
+    found = take_inventory(folder)
+    assert found.states["case"].values.tolist() == kept.tolist() and not found.corrupt
+
+
+def test_a_crate_without_the_plan_still_notices_an_altered_result(tmp_path, monkeypatch):
+    monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
+    monkeypatch.chdir(tmp_path)
+    _grow(7)
+    build_report(StudyFolder(Path("results/grown")))
+    shutil.copytree("results/grown", "posted", ignore=shutil.ignore_patterns("plan", "plan.json", "chunks"))
+    shutil.copy("posted/design.nc", "posted/study.nc")
+    from trackroller.study.store.seal import read_result
+
+    with pytest.raises(WorkError, match=r"study\.nc was altered.*ro-crate-metadata"):
+        read_result("posted/study.nc")
