@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import os
+
+# The last digits of a sum depend on how many threads share it. Snakemake gives each job one thread of the linear
+# algebra library, and a command takes one as well, so that both write the same bits. This stands before NumPy's import.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 INTERRUPTED = 130  # exit code after Ctrl-C, as in a shell
 STOPPED = (
     "stopped. The finished chunks of a study are kept, and no file is half written. Start the same command again to go "

@@ -274,7 +274,7 @@ class _Evaluation:
             case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
                 sides = [np.asarray(self.value(part)) for part in (left, *rest)]
                 held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
-                return np.asarray(np.logical_and.reduce(held))
+                return np.asarray(reduce(np.logical_and, held))  # a part of constants has another shape
         raise self.refused(node, type(node).__name__.lower())
 
     def named(self, node: ast.Name | ast.Subscript) -> Any:
