@@ -49,19 +49,33 @@ class WorkError(RuntimeError):
     """Report that the work failed for a reason outside the input, and what to do about it."""
 
 
+CLOSE, CLOSE_SHORT = 0.7, 0.6  # similarity from which on a name, or one of at most four letters, counts as misspelt
+
+
 def nearest(name: str, options: Iterable[str]) -> str | None:
-    """Return the option that is most similar to a name, or None if no option is similar."""
+    """Return the option that a name misspells or abbreviates by whole words, or None if there is no such option."""
     options = list(options)
+    longer = [option for option in options if _words(name) <= _words(option)]
+    if longer:  # of several abbreviated names none is meant for sure
+        return longer[0] if len(longer) == 1 else None
     by_lower = {option.lower(): option for option in options}
-    hit = difflib.get_close_matches(str(name).lower(), list(by_lower), n=1, cutoff=0.5)
+    hit = difflib.get_close_matches(
+        str(name).lower(), list(by_lower), n=1, cutoff=CLOSE if len(str(name)) > 4 else CLOSE_SHORT
+    )
     return by_lower[hit[0]] if hit else None
 
 
+def _words(name: object) -> set[str]:
+    return set(str(name).lower().split("_"))
+
+
 def unknown_name(kind: str, name: str, options: Iterable[str]) -> InputError:
-    """Return the error for a name that is not among `options`; it proposes the most similar option."""
+    """Return the error for a name that is not among `options`; it proposes the names that are meant most likely."""
     options = list(options)
     close = nearest(name, options)
-    remedy = f"Did you mean '{close}'?" if close else "Use one of these names."
+    akin = [option for option in options if _words(name) & _words(option)][:3]
+    remedy = f"Names with a similar meaning: {', '.join(akin)}." if akin else "Use one of these names."
+    remedy = f"Did you mean '{close}'?" if close else remedy
     return InputError(kind, name, "known names are " + ", ".join(map(str, options)), remedy)
 
 

@@ -184,3 +184,20 @@ def test_a_number_is_taken_exactly_if_it_means_one_inside_its_bounds(name, text)
         return
     assert inside, f"{name}: {text} is accepted as {getattr(case, name)}"
     assert getattr(case, name) == number
+
+
+@pytest.mark.parametrize(
+    ("word", "remedy"),
+    [
+        ("radial_force=120", "Write -120. The sign means: < 0 presses the roller on the guide."),
+        ("axis_distance=-20", "Write 20."),
+        ("outer_radius=16", "similar meaning: guide_profile_radius, roller_profile_radius, guide_curve_radius."),
+        ("reliability=0.9", "Use one of these names."),
+        ("friction=0.1", "similar meaning: friction_coefficient, friction_law."),
+        ("angle=30", "Did you mean 'contact_angle'?"),
+        ("velocty=30", "Did you mean 'velocity'?"),
+    ],
+)
+def test_a_remedy_is_named_only_where_it_is_meant(word, remedy, capsys):
+    assert run_app(lambda: app(["solve", "--set", word])) == 2
+    assert remedy in capsys.readouterr().err

@@ -75,6 +75,12 @@ class Parameter:
         parts.append("finite or inf" if self.allow_infinite else "finite")
         return f"{self.long_name} [{self.unit}] must be a number, " + ", ".join(parts)
 
+    def remedy(self, value: float) -> str:
+        """Return what to write instead of a value that only has the wrong sign; '' for any other value."""
+        if not math.isfinite(value) or not self.accepts(-value):
+            return ""
+        return f"Write {-value:g}. The sign means: {self.meaning}."
+
     def accepts(self, value: np.ndarray | float) -> np.ndarray:
         """Return which values are allowed, elementwise, a bool array of the shape of `value`."""
         import numpy as np  # noqa: PLC0415 - the help of the command line needs no arrays and starts faster without

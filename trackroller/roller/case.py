@@ -131,7 +131,7 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
                 raise InputError(name, value, parameter.allowed())
             given = number(name, value)
             if not parameter.accepts(given):
-                raise InputError(name, value, parameter.allowed())
+                raise InputError(name, value, parameter.allowed(), parameter.remedy(given))
             object.__setattr__(self, name, None if math.isnan(given) else given)
             columns[name] = np.array([given])
         for name in MATERIAL_FIELDS:
@@ -216,7 +216,8 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
             ).reshape(n)
         bad = np.flatnonzero(~parameter.accepts(numbers[name]))
         if bad.size:
-            raise InputError(f"{name} (case {bad[0]})", raw[bad[:1]].tolist()[0], parameter.allowed())
+            remedy = parameter.remedy(float(numbers[name][bad[0]]))
+            raise InputError(f"{name} (case {bad[0]})", raw[bad[:1]].tolist()[0], parameter.allowed(), remedy)
     return numbers
 
 

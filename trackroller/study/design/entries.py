@@ -141,7 +141,7 @@ def _number(name: str, value: Any, where: str) -> Any:
         return value
     number = number_or_nan(value)
     if math.isnan(number) or not parameter.accepts(number):
-        remedy = ""
+        remedy = parameter.remedy(number)
         if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
             remedy = f"Did you mean '{close}'?"
         raise InputError(where, value, parameter.allowed(), remedy)
