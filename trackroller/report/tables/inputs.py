@@ -10,7 +10,7 @@ from typing import Any
 from trackroller.analysis.table import StudyView
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES, REQUIRED
-from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.roller.record import is_default
@@ -35,7 +35,9 @@ class Row:
 
 
 def is_told(name: str, value: Any) -> bool:
-    """Return whether an input stands on the sheet: mappings and the guide only if they are given."""
+    """Return whether an input stands on the sheet: mappings, the guide and fields of limits only if they are given."""
+    if name in OF_LIMITS:
+        return not is_default(name, value)
     return value is not None or name not in (*MAPPING_FIELDS, "guide_overrollings_per_hour")
 
 
