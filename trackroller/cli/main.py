@@ -5,6 +5,7 @@ Exit codes: 0 done, 1 the work failed, 2 the input is wrong, 3 an error of the p
 
 from __future__ import annotations
 
+import codecs
 import functools
 import io
 import signal
@@ -253,9 +254,10 @@ def main() -> None:
     Every error is one line on stderr; an error of the program leaves its traceback in a log file that the line names. A
     warning is one line too, which is printed once.
     """
+    codecs.register_error("plain", _plain)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a terminal without UTF-8 shows '?' for a sign that it lacks
+            stream.reconfigure(errors="plain")
     print_once = functools.cache(_print_line)
     warnings.showwarning = lambda message, *_: print_once(str(message))
     code = run_app(app)
@@ -287,6 +289,14 @@ def run_app(command: Callable[[], object]) -> int:
     except Exception as exc:
         return _tell(f"internal error, {type(exc).__name__}. Please report it with the log {_log(exc)}", 3)
     return 0
+
+
+def _plain(error: UnicodeError) -> tuple[str, int]:
+    """Replace signs that a terminal without UTF-8 lacks; a minus must not become a question mark."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    signs = {"\N{MINUS SIGN}": "-", "\N{MULTIPLICATION SIGN}": "x", "\N{RIGHTWARDS ARROW}": "->"}
+    return "".join(signs.get(sign, "?") for sign in error.object[error.start : error.end]), error.end
 
 
 def _print_line(text: str) -> None:
