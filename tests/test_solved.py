@@ -119,3 +119,11 @@ def test_a_run_with_a_folder_goes_on_where_it_stopped(tmp_path):
     again = tr.run(parse_study(SMALL), progress=False, results=tmp_path)
     xr.testing.assert_equal(first.data, again.data)
     assert (tmp_path / "s" / "study.nc").is_file()
+
+
+def test_best_refuses_a_sample_in_which_no_design_repeats():
+    """A Latin hypercube has each design once, at one condition: the error names the design that can answer."""
+    factors = {"roller_profile_radius": {"uniform": [-8, -6.5]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
+    data = {"name": "sample", "design": "lhs", "samples": 8, "factors": factors, "contact_model": "sliding"}
+    with pytest.raises(tr.InputError, match="design: inner_outer"):
+        tr.run(data, progress=False).best()

@@ -113,9 +113,17 @@ class Solved(StudyResults):
         Returns
         -------
         pandas.DataFrame
-            Rows of `trackroller.analysis.designs.Designs.table`; empty for a study without choices or lives.
+            Rows of `trackroller.analysis.designs.Designs.table`; empty for a study without a valid case.
+
+        Raises
+        ------
+        InputError
+            If no design repeats, as in most random samples, so that designs cannot be compared.
         """
         designs = Designs.of(self.view)
+        if designs is not None and not designs.comparable:
+            remedy = "Give the choices as lists and the conditions as distributions with design: inner_outer."
+            raise InputError("design", self.design.method, "designs that share their conditions", remedy)
         return pd.DataFrame() if designs is None else designs.table.head(count)
 
     def to_table(self) -> pd.DataFrame:

@@ -15,7 +15,7 @@ from trackroller.analysis.designs import Designs, lift_off_margin, slip_margin
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.designs import best_table
-from trackroller.report.words.designs import best_design
+from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.roller.limits import limits
 from trackroller.study.file.load import parse_study
@@ -294,3 +294,21 @@ def test_equal_designs_tie_and_one_design_is_no_set():
     ds, _ = solved(factors={"friction_coefficient": {"values": [0.1, 0.2]}})
     view = view_of(ds)
     assert pareto_sentence(study_pareto(view), view).text.startswith("One design is left, so there is no Pareto set")
+
+
+def test_targets_are_met_by_designs():
+    """Designs that meet a life of the pair in their conditions, by a group-by on raw rows."""
+    ds, frame = solved(analysis={"target": {"min": 100}})
+    view = view_of(ds)
+    assert view.study["analysis"]["target"] == {"pair_life_hours": {"min": 100}}
+    hits = (frame["valid"] & (frame["pair_life_hours"] >= 100)).groupby([frame[n] for n in CHOICES]).sum()
+    said = target_of_designs(view, "life of the pair of at least 100 h")
+    assert sorted(said.values["met"]) == sorted(hits) and 0 < max(hits) < 12
+    (radius, material), most = hits.idxmax(), hits.max()
+    assert said.text.startswith("Life of the pair of at least 100 h: none of 6 designs meets it in all conditions; ")
+    assert f"{material} on " in said.text and f"radius −{-radius:g} mm does most often, in {most} of 12." in said.text
+    row = next(r for r in best_table(view).rows if r[0] == "Meets the targets in")
+    assert row[1] == f"{hits[Designs.of(view).table.iloc[0][CHOICES[0]], material]} of 12"
+    ds, _ = solved(base={}, analysis={"target": {"min": 100}})
+    said = target_of_designs(view_of(ds), "life of the pair of at least 100 h")
+    assert "give `guide_overrollings_per_hour`" in said.text

@@ -76,7 +76,7 @@ def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
         "static",
     )
     assert [w for w in wanted if w not in text] == []
-    assert text.count("<figure") == 5
+    assert text.count("<figure") == 6
     assert re.search(r"<figcaption><strong>[^<]+\.</strong> Figure 1\. ", text)
     heads = [text.index(f">{head}</h2>") for head in ("In short", "Decide", "Why", "Where it ends", "Proof")]
     assert heads == sorted(heads)

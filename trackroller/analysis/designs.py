@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from trackroller.analysis.limits import column
 from trackroller.analysis.robustness import b10
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import FIRST_TO_FAIL, MATERIAL_FIELDS
@@ -208,6 +209,20 @@ class Designs:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""
         rows: np.ndarray = self.place == design
         return rows
+
+    def targets_met(self) -> np.ndarray | None:
+        """Return the number of cases of each design that are valid and meet every target of the study, (designs,).
+
+        None without the key `analysis.target`.
+        """
+        view, hit = self.view, self.usable.copy()
+        wanted = (view.study.get("analysis") or {}).get("target")
+        if not wanted:
+            return None
+        for name, ends in wanted.items():
+            values = column(view.data, view.dims, name, view.base, view.factors)[0].astype(float)
+            hit &= (values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf))
+        return self._count(hit)
 
     def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
         """Return the case of each design with the worst value among its valid cases, -1 without one.

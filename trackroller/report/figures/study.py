@@ -14,6 +14,7 @@ from trackroller.analysis.ranking import robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
+from trackroller.report.figures.designs import lives_by_design
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
@@ -30,7 +31,7 @@ from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
 
 Draw = Callable[[], style.Drawn]
-OF_CASES = (by_factor, life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)
+OF_CASES = (lives_by_design, by_factor, life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)
 FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
 

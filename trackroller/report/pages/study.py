@@ -38,7 +38,7 @@ MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 PLACES = ("decide", "why", "ends", "models")  # sections with tables and figures
 SECTIONS = {  # where a figure stands, by the beginning of its name
-    "decide": ("pareto-front", "robustness-"),
+    "decide": ("designs", "pareto-front", "robustness-"),
     "ends": ("regime_map", "forces_against"),
     "models": ("models-",),
 }

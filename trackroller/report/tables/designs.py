@@ -34,12 +34,15 @@ def best_table(view: StudyView) -> Table | None:
     if designs.conditions:
         for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")):
             rows.append([words, *(f"{count(int(row[name]))} of {count(int(row['cases']))}" for row in best)])
+    if (met := designs.targets_met()) is not None:
+        found = designs.table.index[: len(best)]
+        rows.append(
+            ["Meets the targets in", *(f"{count(int(met[i]))} of {count(int(designs.size[i]))}" for i in found)]
+        )
     marks = {(i, j) for i, row in enumerate(rows) for j in range(2, len(row)) if row[j] != row[1]}
-    one = not designs.choices
-    heads, title = (
-        ["", *(["All conditions"] if one else _heads(best))],
-        "Life of the design" if one else "Best valid designs",
-    )
+    several = bool(designs.choices)
+    heads, title = ["", *(_heads(best) if several else ["All conditions"])], "Best valid designs"
+    title = title if several else "Life of the design"
     note = _note(designs)
     return Table("best_designs", title, heads, rows, note, frozenset(marks))
 

@@ -83,6 +83,47 @@ def best_design(view: StudyView) -> list[Sentence]:
     return said
 
 
+def target_of_designs(view: StudyView, words: str) -> Sentence | None:
+    """Say how many designs meet the study's targets in all their conditions, and which one meets them most often.
+
+    Parameters
+    ----------
+    view : the study
+    words : the targets in words
+
+    Returns
+    -------
+    The sentence; None without a target, or if the study cannot compare its designs.
+    """
+    designs = Designs.of(view)
+    met = designs.targets_met() if designs is not None and designs.comparable else None
+    if designs is None or met is None:
+        return None
+    shares = met / designs.size
+    best, every = int(np.argmax(shares)), int((shares == 1).sum())
+    many = count(len(met))
+    values = {"met": met.tolist(), "every": every, "best": best}
+    if len(met) == 1:
+        text = f"{capital(words)}: met in {count(int(met[0]))} of {count(int(designs.size[0]))} conditions"
+    elif not designs.conditions:
+        text = f"{capital(words)}: met by {count(every)} of {many} designs"
+    else:
+        text = f"{capital(words)}: {count(every) if every else 'none'} of {many} designs "
+        text += f"{'meet' if every > 1 else 'meets'} it in all conditions"
+        if not met.any():
+            text += ", and none in any"
+        elif not every:
+            row = designs.table[designs.table.index == best].iloc[0]
+            text += f"; {design_words(designs, row)} does most often, in {count(int(met[best]))} of "
+            text += f"{count(int(designs.size[best]))}"
+    text += f"; {GUIDE_UNKNOWN}" if "pair_life_hours" in _targets(view) and alone(designs) else ""
+    return Sentence("target_of_designs", f"{text}.", values, designs.usable)
+
+
+def _targets(view: StudyView) -> dict[str, Any]:
+    return dict((view.study.get("analysis") or {}).get("target") or {})
+
+
 def _life(designs: Designs, row: pd.Series) -> str:
     """Write worst, median and best life of a design, with the conditions in which it is valid."""
     unit = designs.goal[2]

@@ -13,12 +13,12 @@ from trackroller.report.words import indices
 from trackroller.report.words.accuracy import accuracy, friction_error, full_sliding
 from trackroller.report.words.cases import valid_designs
 from trackroller.report.words.design_points import best_point
-from trackroller.report.words.designs import best_design
+from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.regimes import occurrence
 from trackroller.report.words.samples import samples
 from trackroller.report.words.sentence import Sentence
-from trackroller.report.words.targets import target
+from trackroller.report.words.targets import target, target_words
 
 Line = tuple[str, list[Sentence]]
 
@@ -35,7 +35,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     """
     sens = view.analysis
     robust = sens is not None and robust_design(sens)
-    met = [target(sens, -1)] if sens is not None and "target" in sens.dims else []  # the last one joins several
+    met = [_target(view)]
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
         ("Valid designs", [valid_designs(view), stopped(view)]),
@@ -46,6 +46,15 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
         ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
+
+
+def _target(view: StudyView) -> Sentence | None:
+    """Say how often all targets of the study are met: by designs over their conditions, otherwise by cases."""
+    sens = view.analysis
+    if sens is None or "target" not in sens.dims:
+        return None
+    of_designs = None if robust_design(sens) else target_of_designs(view, target_words(sens, -1))
+    return of_designs or target(sens, -1)  # the last target joins several
 
 
 def stopped(view: StudyView) -> Sentence | None:

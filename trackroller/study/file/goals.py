@@ -21,7 +21,7 @@ from collections.abc import Iterable, Mapping
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, field_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
@@ -33,15 +33,18 @@ from trackroller.study.outputs import DEFAULTS, FIELDS
 MEASURES = ("first", "delta", "pawn", "prcc")
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
+DEFAULT_TARGET = "pair_life_hours"  # of {min: 500} without the name of an output
 STATISTICS = ("b10", "b10_safe", "mean", "standard_deviation", "probability")  # of the design points of inner_outer
 TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table")
 
 
 def targets(value: Any) -> dict[str, dict[str, float]]:
-    """Check the key `analysis.target`: outputs, each with `min` or `max` or both."""
+    """Check the key `analysis.target`: outputs, each with `min` or `max` or both; {min: 500} is `DEFAULT_TARGET`'s."""
     example = "For example {roller_life_hours: {min: 500}}."
     if not isinstance(value, Mapping):
         raise InputError("analysis.target", value, "outputs, each with min or max", example)
+    if value and set(value) <= {"min", "max"}:
+        value = {DEFAULT_TARGET: value}
     for name, limits in value.items():
         where, allowed = f"analysis.target.{name}", "min, max or both, each a number"
         if not isinstance(limits, Mapping) or not limits or not set(limits) <= {"min", "max"}:
@@ -54,6 +57,10 @@ def targets(value: Any) -> dict[str, dict[str, float]]:
         if limits.get("min", -math.inf) >= limits.get("max", math.inf):
             raise InputError(where, dict(limits), "min below max")
     return {str(name).replace(" ", ""): {str(k): float(v) for k, v in limits.items()} for name, limits in value.items()}
+
+
+_ENDS: dict[str, Any] = {"type": "object", "additionalProperties": {"type": "number"}}
+_TARGET: dict[str, Any] = {"type": "object", "additionalProperties": {"anyOf": [_ENDS, {"type": "number"}]}}
 
 
 class Analysis(BaseModel):
@@ -78,7 +85,7 @@ class Analysis(BaseModel):
         False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"
     )
 
-    target: Annotated[dict[str, dict[str, float]], BeforeValidator(targets)] = Field(
+    target: Annotated[dict[str, dict[str, float]], BeforeValidator(targets), WithJsonSchema(_TARGET)] = Field(
         {}, description="output with min or max: the probability to meet it, by design point and by level of a factor"
     )
 

@@ -1,0 +1,67 @@
+"""The life of designs over their conditions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.analysis.designs import Designs
+from trackroller.analysis.table import StudyView
+from trackroller.report.figures import style
+from trackroller.report.numbers import GUIDE_UNKNOWN, capital, count, listing, long_name
+from trackroller.report.words.designs import BEYOND_MEANS, alone, design_words
+
+MOST = 20  # designs shown
+
+
+def lives_by_design(view: StudyView) -> style.Drawn:
+    """Draw the worst life of roller and guide of each design, and the median and best life of the pair.
+
+    It answers: which design keeps its life at its worst condition, and which of its two bodies ends it?
+    """
+    designs = Designs.of(view)
+    if designs is None or not (designs.comparable and designs.rising and designs.conditions) or len(designs.size) < 2:
+        return None
+    table = designs.table[designs.table["valid"] > 0]
+    table = table[np.isfinite(table["worst"])].head(MOST)
+    if len(table) < 2:
+        return None
+    figure = style.new_figure(30 + 5.0 * len(table))
+    axes = figure.subplots()
+    place = np.arange(len(table))[::-1]
+    _draw(axes, designs, table, place)
+    axes.set_yticks(place, [capital(design_words(designs, row)) for _, row in table.iterrows()])
+    axes.set_xlabel(f"life [{designs.goal[2]}]")
+    axes.set_xscale("log")
+    style.log_ticks(axes.xaxis, *axes.get_xlim())
+    axes.grid(axis="y", visible=False)
+    axes.tick_params(axis="y", length=0)
+    figure.legend(loc="outside lower center", ncols=5, columnspacing=1.0, handletextpad=0.4)
+    style.head(figure, "Life of the designs over their conditions")
+    caption = (
+        f"Designs as in the table of the best, over {listing([long_name(n) for n in designs.conditions])}; "
+        f"{len(table)} of {count(len(designs.size))} designs. Lives of the valid conditions. Hollow marks lie beyond "
+        f"the S-N data. {BEYOND_MEANS}"
+    )
+    caption += f" {capital(GUIDE_UNKNOWN)}." if alone(designs) else ""
+    what = "its worst condition, among designs that are valid in as many"
+    what = "nine of ten sampled conditions" if designs.drawn else what
+    said = f"{capital(design_words(designs, table.iloc[0]))} lasts longest in {what}."
+    return figure, style.FigureInfo("designs", caption, said)
+
+
+def _draw(axes: Any, designs: Designs, table: pd.DataFrame, place: np.ndarray) -> None:
+    """Draw a line from the worst to the best life of each design, with marks; hollow marks lie beyond the S-N data."""
+    colours = style.palette(4)
+    best = table["best"].replace(np.inf, np.nan).fillna(table["worst"])
+    axes.hlines(place, table["worst"], best, color="0.75", linewidth=3, zorder=1, label="worst to best condition")
+    axes.plot(table["median"], place, color="0.1", marker="|", markersize=7, linestyle="none", label="median")
+    for body, marker, colour in (("roller", "o", colours[0]), ("guide", "s", colours[3])):
+        if alone(designs) and body == "guide":
+            continue
+        lives, beyond = table[f"worst_{body}"].to_numpy(), table[f"worst_{body}_beyond"].to_numpy(dtype=bool)
+        faces = [(1.0, 1.0, 1.0) if hollow else colour for hollow in beyond]
+        look = {"marker": marker, "s": 26, "edgecolors": colour, "linewidths": 1.1, "zorder": 3}
+        axes.scatter(lives, place, c=faces, label=f"worst of the {body}", **look)
