@@ -201,3 +201,11 @@ def test_a_number_is_taken_exactly_if_it_means_one_inside_its_bounds(name, text)
 def test_a_remedy_is_named_only_where_it_is_meant(word, remedy, capsys):
     assert run_app(lambda: app(["solve", "--set", word])) == 2
     assert remedy in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["solve", "--nonsense", "3"], ["frobnicate"], ["plan"], ["run", "s.yaml", "--cores", "x"], ["solve", "--set"]],
+)
+def test_a_usage_error_is_one_line_that_names_the_help(words, capsys):
+    assert "--help`." in _refused(capsys, *words)

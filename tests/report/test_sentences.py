@@ -17,6 +17,7 @@ from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.cases import validity_table
 from trackroller.report.tables.design_points import robust_tables
+from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import SLIDING_ERROR, friction_error, full_sliding
 from trackroller.report.words.cases import valid_designs
 from trackroller.report.words.factors import effect_of
@@ -209,6 +210,18 @@ def test_tables_are_exported_as_csv_and_one_workbook_with_units_in_the_head(tmp_
     numbers = [float(v.text) for v in sheet.iter("{http://schemas.openxmlformats.org/spreadsheetml/2006/main}v")]
     life = next(row for row in tables[0].rows if row[0] == "Life of the roller, worst condition [h]")
     assert set(life[1:]) <= set(numbers)
+
+
+def test_texts_that_a_spreadsheet_would_run_are_inert_in_csv_files(tmp_path):
+    import csv
+
+    hostile = ["=cmd|'/C calc'!A0", "+1+1", "@SUM(A1)", "-2+3", "\tx"]
+    harmless = ["-6.4", "1.7225-normalised", "−7 mm", -3.5, 1e-5]
+    paths = export([Table("t", "Title", ["Name", "=head"], [[text, 1] for text in hostile + harmless])], tmp_path)
+    with paths[0].open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    assert [row[0] for row in rows[1:]] == [f"'{text}" for text in hostile] + [str(v) for v in harmless]
+    assert rows[0] == ["Name", "'=head"]
 
 
 def test_pairs_agree_with_a_closed_form():

@@ -112,6 +112,8 @@ def test_wrong_configuration_is_told_without_a_traceback(place):
         ({"study": "nowhere.yaml"}, "nowhere.yaml"),
         ({"study": [1]}, "study"),
         ({"results": 3}, "results"),
+        ({"results": "out{x}"}, "results = .out.x..* without braces"),
+        ({"study": "a{b}/tiny.yaml"}, "study = .* without braces"),
     ],
 )
 def test_wrong_configuration_names_its_key(place, monkeypatch, wrong, named):

@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
+from typer.exceptions import TyperException
 
 from trackroller import __version__
 from trackroller.cli import INTERRUPTED, STOPPED
@@ -26,7 +28,24 @@ from trackroller.files import interrupts_wait_for_files
 from trackroller.numerics.threads import check_threads
 from trackroller.parameters import options_text
 
+
+class _Commands(TyperGroup):
+    """Commands whose usage errors are one line on stderr."""
+
+    def main(self, *args: Any, **settings: Any) -> Any:
+        """Run a command; raise `SystemExit` with its exit code."""
+        try:
+            code = super().main(*args, **settings | {"standalone_mode": False})
+        except TyperException as exc:
+            text, context = exc.format_message().rstrip("."), getattr(exc, "ctx", None)
+            if text:  # a group of commands without arguments has printed its help
+                _print_line(f"{text}. See `{context.command_path if context else 'trackroller'} --help`.")
+            code = exc.exit_code
+        raise SystemExit(code)
+
+
 app = typer.Typer(
+    cls=_Commands,
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,

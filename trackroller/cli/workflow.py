@@ -60,7 +60,16 @@ def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = T
         raise InputError("results", results, "the path of a folder", advice.replace("study=", "results=", 1))
     if not Path(study).exists() and (source / study).is_file():
         study = str(source / study)
+    for key, path in (("study", study), ("results", results)):
+        _check_braces(key, path)
     return {"study": study, "results": results}
+
+
+def _check_braces(key: str, path: str) -> None:
+    """Refuse a path with braces, which Snakemake reads as a wildcard."""
+    if {"{", "}"} & set(path):
+        remedy = "Rename the file or folder, or solve the study with `trackroller run`, which takes any path."
+        raise InputError(key, path, "a path without braces, as Snakemake reads braces as wildcards", remedy)
 
 
 def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], None] | None = None) -> Plan:
@@ -107,7 +116,10 @@ def study_inputs(study: Study) -> list[str]:
     if study.config.table is not None:
         found.append(str(study.table_path))
     user = find_user_file()
-    return found + ([str(user)] if user is not None else [])
+    found += [str(user)] if user is not None else []
+    for path in found:
+        _check_braces("input file", path)
+    return found
 
 
 def captions(study: Study, folder: StudyFolder) -> dict[str, str]:

@@ -32,11 +32,18 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
     for table in tables:
         path = folder / f"{table.name}.csv"
         with path.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([table.heads, *table.rows])
+            csv.writer(file).writerows([_inert(value) for value in row] for row in [table.heads, *table.rows])
         paths.append(path)
     book = folder / "tables.xlsx"
     write_whole(book, lambda beside: _save(beside, tables))
     return [*paths, book]
+
+
+def _inert(value: Any) -> Any:
+    """Return a cell with an apostrophe before a text that a spreadsheet would run as a formula; numbers stay."""
+    if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
+        return value
+    return value if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?", value) else f"'{value}"
 
 
 def _save(path: Path, tables: Sequence[Table]) -> None:
