@@ -205,7 +205,7 @@ def test_a_remedy_is_named_only_where_it_is_meant(word, remedy, capsys):
 
 @pytest.mark.parametrize(
     "words",
-    [["solve", "--nonsense", "3"], ["frobnicate"], ["plan"], ["run", "s.yaml", "--cores", "x"], ["solve", "--set"]],
+    [["solve", "--nonsense", "3"], ["frobnicate"], ["report"], ["run", "s.yaml", "--cores", "x"], ["solve", "--set"]],
 )
 def test_a_usage_error_is_one_line_that_names_the_help(words, capsys):
     assert "--help`." in _refused(capsys, *words)
