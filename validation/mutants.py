@@ -112,8 +112,8 @@ DECISIONS = {
     "bent": ("report/words/indices.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
     "pareto-end": (
         "report/words/pareto.py",
-        'np.argmax(table) if way == "max"',
-        'np.argmax(table) if way == "min"',
+        '-1.0 if way == "max" else 1.0',
+        '1.0 if way == "max" else -1.0',
         WORDS,
     ),
     "same-share": ("report/words/targets.py", "- share[worst] < SAME", "- share[worst] > SAME", TARGETS),

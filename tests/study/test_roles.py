@@ -22,7 +22,7 @@ def roles(data):
 def test_the_program_knows_who_sets_each_parameter():
     """Loads, friction, speed and the curve come from the use; geometry and materials from the designer."""
     use = {name for name, role in ROLE_OF.items() if role == "condition"}
-    forces = {name for name in PARAMETERS if name.endswith("_force")}
+    forces = {name for name in PARAMETERS if name.endswith("_force")} - {"permissible_radial_force"}
     others = {"friction_coefficient", "friction_law", "velocity", "guide_curve_radius", "guide_overrollings_per_hour"}
     assert use == forces | others
     assert roles({"factors": LISTS}) == {"friction_coefficient": "condition", "roller_profile_radius": "choice"}

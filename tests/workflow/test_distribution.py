@@ -46,7 +46,7 @@ def test_ci_runs_its_parts():
     text = (ROOT / ".ci" / "run").read_text()
     assert subprocess.run(["sh", "-n", str(ROOT / ".ci" / "run")], check=False).returncode == 0
     (parts,) = re.findall(r"set -- ([a-z ]+)$", text, re.M)
-    assert parts.split() == ["lint", "test", "python", "wheel", "browser", "cluster", "docs"]
+    assert parts.split() == ["lint", "test", "python", "wheel", "browser", "cluster", "docs", "validate", "image"]
     assert all(f"part_{part}()" in text for part in parts.split())
     made = re.findall(r"\bmake ([a-z-]+)", text)
     targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M)

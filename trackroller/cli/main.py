@@ -18,34 +18,17 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
-from typer.exceptions import TyperException
 
 from trackroller import __version__
 from trackroller.cli import INTERRUPTED, STOPPED
+from trackroller.cli.usage import Commands, print_line
 from trackroller.errors import InputError, WorkError
 from trackroller.files import interrupts_wait_for_files
 from trackroller.numerics.threads import check_threads
 from trackroller.parameters import options_text
 
-
-class _Commands(TyperGroup):
-    """Commands whose usage errors are one line on stderr."""
-
-    def main(self, *args: Any, **settings: Any) -> Any:
-        """Run a command; raise `SystemExit` with its exit code."""
-        try:
-            code = super().main(*args, **settings | {"standalone_mode": False})
-        except TyperException as exc:
-            text, context = exc.format_message().rstrip("."), getattr(exc, "ctx", None)
-            if text:  # a group of commands without arguments has printed its help
-                _print_line(f"{text}. See `{context.command_path if context else 'trackroller'} --help`.")
-            code = exc.exit_code
-        raise SystemExit(code)
-
-
 app = typer.Typer(
-    cls=_Commands,
+    cls=Commands,
     add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -277,7 +260,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="plain")
-    print_once = functools.cache(_print_line)
+    print_once = functools.cache(print_line)
     warnings.showwarning = lambda message, *_: print_once(str(message))
     code = run_app(app)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # nothing is left to stop
@@ -318,12 +301,8 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
     return "".join(signs.get(sign, "?") for sign in error.object[error.start : error.end]), error.end
 
 
-def _print_line(text: str) -> None:
-    print("trackroller: " + " ".join(text.split()), file=sys.stderr)
-
-
 def _tell(line: str, code: int) -> int:
-    _print_line(line)
+    print_line(line)
     return code
 
 

@@ -12,8 +12,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.signal import fftconvolve
-from scipy.special import erf
 
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Limit, Results, Solved, Verdict, optional, variables, worst
@@ -45,6 +43,8 @@ def cell_temperature(steps: tuple[float, float], nodes: tuple[int, int], decay: 
     The mean over the cell of exp(-V (r + y)/(2 kappa))/(2 pi r), written as an integral over the diffusion length
     w = sqrt(4 kappa t) of the time t since the heat was released; it holds for V = 0 and under the cell itself.
     """
+    from scipy.special import erf  # heavy, and planning reads only the declaration below
+
     (hx, hy), (nx, ny) = steps, nodes
     low, high = math.log(min(hx, hy) / REACH), math.log(REACH * max(nx * hx, ny * hy))
     w = np.exp(np.arange(low, high, STEP))[:, None]
@@ -80,6 +80,8 @@ def flash(
     numpy.ndarray
         Rise, (n, contact, body) [K].
     """
+    from scipy.signal import fftconvolve  # heavy, and planning reads only the declaration below
+
     out = np.full((*t.x.shape[:2], 2), np.nan)
     for case, contact in t.patches():
         at = case, contact

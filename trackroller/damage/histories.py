@@ -10,10 +10,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy import fft
-
-from trackroller.halfspace import influence
-from trackroller.halfspace.stress import FRICTION_SIGNS
 
 PADDING = 0.25  # nodes beyond the patch along y over those of the patch, on each side
 # over the smaller semi-axis; the stresses that decide lie at 0.3 to 0.8, or under high friction at the surface
@@ -87,6 +83,10 @@ def _spectra(sides: tuple[float, float], nodes: tuple[int, int], poisson_ratio: 
     numpy.ndarray
         (depth, load, component, y, x), complex.
     """
+    from scipy import fft  # heavy, as is the compiled room below: planning reads only the declarations of the limits
+
+    from trackroller.halfspace import influence
+
     (gx, gy), (nx, ny) = sides, nodes
     size = nx, ny + int(PADDING * ny)
     small = 0.5 * min(nx * gx, ny * gy)
@@ -101,6 +101,8 @@ def _spectra(sides: tuple[float, float], nodes: tuple[int, int], poisson_ratio: 
 
 def _lengths(nodes: tuple[int, int]) -> tuple[int, int]:
     """Return lengths along y and x for a convolution whose wrapped ends are cut off."""
+    from scipy import fft  # heavy, see _spectra
+
     nx, ny = nodes
     return fft.next_fast_len(2 * (ny + int(PADDING * ny)) - 1, real=True), fft.next_fast_len(2 * nx - 1, real=True)
 
@@ -128,6 +130,10 @@ def planes(tractions: Tractions, case: int, contact: int, poisson_ratio: np.ndar
     The stresses are those of `halfspace.stress.stress_on_grid`. Patches of equal shape share the kernels, bodies of
     equal nu the stresses of pressure and shear.
     """
+    from scipy import fft  # heavy, as is the compiled room below, see _spectra
+
+    from trackroller.halfspace.stress import FRICTION_SIGNS
+
     t, at = tractions, (case, contact)
     nodes = t.x.shape[-1], t.y.shape[-1]
     steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]

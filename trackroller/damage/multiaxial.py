@@ -17,7 +17,6 @@ import numpy as np
 from trackroller.damage.histories import Tractions, planes
 from trackroller.damage.limit import TRACTIONS, Limit, Results, Solved, optional, variables
 from trackroller.damage.shakedown import smallest_ball
-from trackroller.halfspace.stress import max_shear
 
 COARSE, KEPT, ROUNDS = 92, 3, 7  # planes searched first, those refined, and how often the step is halved
 
@@ -119,6 +118,8 @@ def dang_van(path: np.ndarray, a: float, credit_pressure: bool = True) -> float:
     tau is the largest shear of the deviator around the centre of the smallest ball that holds the path. Without
     `credit_pressure` a negative sigma_h counts as 0.
     """
+    from trackroller.halfspace.stress import max_shear  # heavy, and planning reads only the declaration below
+
     centre = ball_centre(deviators(path))
     hydrostatic = path[:, :3].mean(axis=1)
     x = deviators(path) - centre

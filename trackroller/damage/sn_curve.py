@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri
 
 from trackroller.errors import InputError, check_names
 from trackroller.materials.sn_curve import curve_exponent
@@ -148,6 +147,8 @@ class SNCurve:
         The scatter is log-normal (DIN 50100:2016). With the standard normal deviate u of the probability, lg N shifts
         by u lg(T_N)/2.563 and lg sigma_D by u lg(T_S)/2.563.
         """
+        from scipy.special import ndtri  # heavy, and planning reads only the declarations of the limits
+
         _, limit, _, knee = self._points
         if not np.any(np.asarray(self.failure_probability) != 0.5):
             return limit, knee

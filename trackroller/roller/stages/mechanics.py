@@ -233,7 +233,7 @@ def settle(results: Results) -> None:
     """Take the mark of convergence from rolling rows with a force, a pressure or a peak that is no finite number."""
     v, rolls = results.values, results.regime == eq.ROLLING
     for name in FINITE & v.keys():
-        given = np.isfinite(v[name]).reshape(results.scene.n, -1).all(axis=1)
+        given = np.isfinite(v[name]).all(axis=tuple(range(1, v[name].ndim)))
         unsearched = results.stopped if name == "peak_stress" else False
         results.converged = results.converged & (given | ~rolls | unsearched)
 

@@ -1,0 +1,29 @@
+"""Errors in the use of the command line, in one line each."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from typer.core import TyperGroup
+from typer.exceptions import TyperException
+
+
+def print_line(text: str) -> None:
+    """Print a message on stderr in one line, after the name of the program."""
+    print("trackroller: " + " ".join(text.split()), file=sys.stderr)
+
+
+class Commands(TyperGroup):
+    """Commands whose usage errors are one line on stderr."""
+
+    def main(self, *args: Any, **settings: Any) -> Any:
+        """Run a command; raise `SystemExit` with its exit code."""
+        try:
+            code = super().main(*args, **settings | {"standalone_mode": False})
+        except TyperException as exc:
+            text, context = exc.format_message().rstrip("."), getattr(exc, "ctx", None)
+            if text:  # a group of commands without arguments has printed its help
+                print_line(f"{text}. See `{context.command_path if context else 'trackroller'} --help`.")
+            code = exc.exit_code
+        raise SystemExit(code)
