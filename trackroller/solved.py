@@ -32,7 +32,7 @@ class Solved(StudyResults):
 
     `trackroller.run` and `trackroller.open_study` return it.
 
-    Attributes
+    Parameters
     ----------
     study : Study
         The checked study; `config` is what its file says.

@@ -36,11 +36,14 @@ OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # fl
 class StudyResults:
     """A solved study, which analysis and report take.
 
-    Attributes
+    Parameters
     ----------
-    study : the checked study
-    design : its design, with the places of the rows and the groups of factors
-    results : the solved study that the table was made from
+    study : Study
+        The checked study.
+    design : SampledDesign
+        Its design, with the places of the rows and the groups of factors.
+    data : xarray.Dataset
+        The results, over the factors of a grid or along `case`.
     """
 
     study: Study

@@ -106,13 +106,14 @@ class Limit:
     ----------
     name, title : str
         Name in data sets, and its words in tables, sheets and reports.
-    group, meaning : str
-        Group of `outputs` that brings the results, with its meaning for the documentation. A group of the solver has
-        its meaning there.
+    group : str
+        Group of `outputs` that brings the results.
     evaluate : callable
         Function of a `Solved` that returns the results by name.
     verdict : callable
         Function of a `Solved` and of the results that returns a `Verdict`; None if the verdict leaves the limit out.
+    meaning : str
+        Meaning of the group for the documentation. A group of the solver has its meaning there.
     needs : tuple of str
         What has to be computed first: the groups "peak_stress" and "friction_work" of the solver, and `TRACTIONS`.
     results : tuple of Variable

@@ -78,10 +78,13 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
     guide_profile, roller_profile : mapping or None
         Drawn or measured cross-sections, for the option `normal="halfspace"`; see
         `trackroller.contact.profiles.canonical`.
-
-    Other Parameters
-    ----------------
-    Fields that the limits declare, such as `permissible_radial_force`; see "Parameters, options and results".
+    permissible_radial_force : float or None
+        Permissible radial force of ring or stud, > 0 [N], for the limit `bearing`.
+    heat_transfer_coefficient, cooled_area, ambient_temperature : float or None
+        Heat transfer of the roller [W/(m2 K)], the surface that loses heat [mm2] and the temperature of the air [degC],
+        for the limit `heat`.
+    bearing, catalogue : mapping or None
+        Bearing inside the roller and limits of a maker's catalogue; see "Parameters, options and results".
 
     Raises
     ------
