@@ -73,14 +73,20 @@ def written(ds, folder, name):
     return write_explorer(view_of(ds), folder / f"{name}.html")
 
 
+def with_known_lives(ds):
+    """Leave out the lives of rollers that skid, lift off or break: they have none, in the page as in the package."""
+    known = (ds["regime"] == 0) & ((ds["validity"] & 4) == 0)
+    return ds.assign({name: ds[name].where(known) for name in ds.data_vars if "life" in name})
+
+
 @pytest.fixture(scope="module")
 def grid():
-    return grid_study(FACTORS)
+    return with_known_lives(grid_study(FACTORS))
 
 
 @pytest.fixture(scope="module")
 def sample():
-    return as_table(sampled_study(400))
+    return with_known_lives(as_table(sampled_study(400)))
 
 
 @pytest.fixture(scope="module")
@@ -236,7 +242,7 @@ def test_goals_that_are_statistics_compare_design_points(browser, place):
 
 
 def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, grid):
-    constraints = ["roller_peak_stress < 250 or axial_force == 0", "regime != full_slip"]
+    constraints = ["roller_peak_stress < 200 or axial_force == 0", "regime != full_slip"]
     told = yaml.safe_load(grid.attrs["study"]) | {"constraints": constraints}
     told["factors"] = {name: told["factors"][name] for name in grid.dims if name in told["factors"]}
     ds = grid.assign_attrs(study=yaml.safe_dump(told, sort_keys=False))
@@ -251,7 +257,8 @@ def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, gri
     assert lost and f"{lost} constraints not met" in page.run("document.querySelector('.counts').textContent")
     assert shown(page)[1] == view.valid.sum()
     page.run("trackroller.select({constraints: ['not met']})")
-    assert shown(page)[0] == grid_size() - out.sizes["row"]
+    met = (view.table["peak_stress_roller"] < 200) | (view.table["axial_force"] == 0)
+    assert shown(page)[0] == int((~met | (view.regime == 1)).sum()) > 0
     page.close()
 
 
@@ -489,12 +496,14 @@ def test_studies_of_every_form_open_without_a_complaint(browser, place, name):
     page.close()
 
 
-def test_a_hundred_thousand_rows_are_all_there(browser, place):
+def test_a_selection_among_a_hundred_thousand_cases_holds_the_cases_that_are_shown(browser, place):
     ds = sampled_study(100_000)
     page = browser.open(written(ds, place, "large"))
-    mask = (ds["friction_coefficient"] <= 0.2).values
+    rows = np.array(page.run("trackroller.selected()"))
+    mask = (ds["friction_coefficient"] <= 0.2).values[rows]
     page.run("trackroller.select({friction_coefficient: [0.02, 0.2]})")
-    assert shown(page)[0] == mask.sum()
+    assert shown(page)[0] == mask.sum() and 40_000 < len(rows) <= 50_000
+    assert page.run("trackroller.selected()") == rows[mask].tolist()
     assert page.run("document.querySelectorAll('.cases .row').length") < 60 and page.complaints == []
     page.close()
 

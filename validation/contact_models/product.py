@@ -23,6 +23,7 @@ from trackroller.roller.case import Case
 from trackroller.roller.solver import solve
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
+from trackroller.study.store.seal import sealing
 from validation.contact_models import patches as ladder_patches
 
 if TYPE_CHECKING:
@@ -46,7 +47,8 @@ def compare(study_file: Path, out: Path) -> None:
     analyse_study(gathered, analysis)
     draw_study(gathered, analysis, str(figures))
     base = {k: v for k, v in study.config.base.items() if k not in study.factors}
-    draw_patches(Case.from_dict(base), figures)
+    with sealing(figures):  # the pictures of the patch join the figures of the study
+        draw_patches(Case.from_dict(base), figures)
     write_errors(gathered, out / "contact_models.json")
     report_study(gathered, str(figures), analysis, str(out / "report.html"))
 

@@ -51,7 +51,7 @@ export function table(model) {
     if (!column) return;
     const keys = column.codes ?? column.values;
     const sign = sort.down ? -1 : 1;
-    const missing = (v) => Number.isNaN(v) || (column.codes && v < 0);
+    const missing = (v) => Number.isNaN(v) || (column.codes !== undefined && v < 0);
     rows.sort((a, b) => {
       const [p, q] = [keys[a], keys[b]];
       if (missing(p) || missing(q)) return missing(p) - missing(q) || a - b; // rows without a value stand last
