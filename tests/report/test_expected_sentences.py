@@ -231,7 +231,7 @@ def test_columns_of_many_levels_survive_packing(count):
 def test_a_sample_for_the_page_keeps_a_thousand_cases_of_each_state():
     """A share of half a percent would be 250 of 50,000 cases; a state of up to 1,000 cases keeps all of them."""
     state = np.repeat([0, 1, 2, 3], [990_000, 5_000, 1_000, 3])
-    shown = np.bincount(state[sample_rows(state, np.zeros(len(state), dtype=bool))])
+    shown = np.bincount(state[sample_rows(state, np.zeros(len(state), dtype=bool), 50_000)])
     assert shown[1:].tolist() == [1_000, 1_000, 3] and 47_000 < shown[0] < 50_000
 
 

@@ -7,6 +7,7 @@ import json
 import re
 import shlex
 import zlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from typer.testing import CliRunner
 from trackroller.analysis.pareto import pareto
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.report.explorer.pack import pack
+from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, affordable_rows, pack
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
 from trackroller.report.explorer.sample import sample_rows
@@ -117,7 +118,9 @@ def test_a_large_study_is_sampled_with_all_rare_states_and_kept_cases():
 
 
 def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
-    monkeypatch.setattr("trackroller.report.explorer.page.sample_rows", lambda s, k: sample_rows(s, k, most=300))
+    monkeypatch.setattr(
+        "trackroller.report.explorer.page.sample_rows", lambda s, k, most: sample_rows(s, k, min(most, 300))
+    )
     monkeypatch.setattr("trackroller.report.explorer.sample.RARE", 10)
     ds = as_table(sampled_study(2_000), pareto={"roller_life_hours": "max", "friction_coefficient": "max"})
     content = explorer(view_of(ds))
@@ -214,3 +217,13 @@ def test_a_folder_without_results_is_refused(tmp_path):
         open_study(tmp_path)
     done = CliRunner().invoke(app, ["explore", str(tmp_path / "missing")])
     assert done.exit_code != 0
+
+
+def test_a_page_of_many_cases_and_columns_stays_below_its_size():
+    """Random numbers do not compress: 40 such columns leave room for a fifth of 60,000 cases."""
+    rng = np.random.default_rng(0)
+    columns = [Column(f"x{i}", "x", "mm", "output", rng.normal(size=60_000)) for i in range(40)]
+    rows = affordable_rows(columns)
+    _, block = pack([replace(c, values=c.values[:rows]) for c in columns])
+    assert 0.97 * MOST_BYTES < len(block) < 1.03 * MOST_BYTES and rows < 15_000
+    assert affordable_rows([Column("x", "x", "mm", "output", np.zeros(60_000))]) == MOST_ROWS

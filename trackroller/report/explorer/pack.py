@@ -6,11 +6,16 @@ import base64
 import math
 import zlib
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from trackroller.report.explorer.rows import Column
+
+# a page of 6 MB, its figures included, can be sent by mail and opens in three seconds
+MOST_BYTES, MOST_ROWS = 4_500_000, 50_000
+PROBED = 2_000
 
 
 def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
@@ -44,6 +49,17 @@ def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
         parts.append(part)
         start += len(part)
     return header, base64.b64encode(zlib.compress(b"".join(parts), 9)).decode("ascii")
+
+
+def affordable_rows(columns: Sequence[Column]) -> int:
+    """Return how many cases a page can show in `MOST_BYTES`, `MOST_ROWS` at most.
+
+    The bytes a case needs are measured on evenly spaced cases, because compression decides them.
+    """
+    step = max(1, len(columns[0].values) // PROBED)
+    probe = [replace(column, values=column.values[::step]) for column in columns]
+    count = max(1, len(probe[0].values))
+    return min(MOST_ROWS, int(MOST_BYTES * count / len(pack(probe)[1])))
 
 
 def _numbers(column: Column) -> np.ndarray:

@@ -19,7 +19,7 @@ from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.files import write_text
-from trackroller.report.explorer.pack import pack, plain_level
+from trackroller.report.explorer.pack import affordable_rows, pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.explorer.sample import extreme_rows, sample_rows
 from trackroller.report.html import render
@@ -49,7 +49,7 @@ def explorer(view: StudyView) -> dict[str, Any]:
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
     kept = pareto_rows(view, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
-    rows = sample_rows(state, kept)
+    rows = sample_rows(state, kept, affordable_rows(columns))
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
         columns.append(Column("row", "Row", "", "row", rows.astype(float)))

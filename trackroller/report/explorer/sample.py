@@ -6,11 +6,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-MOST_ROWS = 50_000  # cases that a page shows: 4 to 5 MB, which can be sent by mail and open in three seconds
 RARE = 1_000  # states with at most so many cases keep all of them
 
 
-def sample_rows(state: np.ndarray, keep: np.ndarray, most: int = MOST_ROWS, seed: int = 1) -> np.ndarray:
+def sample_rows(state: np.ndarray, keep: np.ndarray, most: int, seed: int = 1) -> np.ndarray:
     """Choose the cases to show.
 
     Parameters
