@@ -66,13 +66,8 @@ def interrupted_runs(place, tries, seed):
     assert set(STOPPED_CODES) & set(codes)
 
 
-@pytest.mark.long
-def test_interrupted_runs_end_with_a_sentence_and_go_on(tmp_path):
-    interrupted_runs(tmp_path, 6, seed=1)
-
-
 @pytest.mark.slow
-def test_many_interrupted_runs_end_with_a_sentence_and_go_on(tmp_path):
+def test_interrupted_runs_end_with_a_sentence_and_go_on(tmp_path):
     interrupted_runs(tmp_path, TRIES, seed=2)
 
 
