@@ -14,7 +14,7 @@ import xarray as xr
 
 from trackroller.files import interrupts_wait_for_files
 
-TRIES = int(os.environ.get("INTERRUPT_TRIES", "40"))
+TRIES = int(os.environ.get("INTERRUPT_TRIES", "12"))
 STUDY = """
 name: stopped
 factors:
