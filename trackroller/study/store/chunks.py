@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import netCDF4
@@ -19,7 +19,6 @@ import xarray as xr
 from trackroller.files import write_whole
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
-from trackroller.study.store.folder import Tell
 from trackroller.study.store.identity import chunk_name
 
 FAILED = REGIMES.index("failed")
@@ -122,10 +121,3 @@ def read_sound(
             corrupt[path] = str(exc)
         except FileNotFoundError:  # a running process has just forgotten the failed cases of this file
             continue
-
-
-def remove_corrupt(corrupt: Mapping[Path, str], tell: Tell) -> None:
-    """Name and remove damaged files."""
-    for path, why in corrupt.items():
-        tell(f"corrupt results, their cases are solved again: {why}")
-        path.unlink(missing_ok=True)
