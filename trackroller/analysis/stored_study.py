@@ -5,6 +5,7 @@ This is the only place that reads a study file from the attribute of a data set.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,12 +21,15 @@ from trackroller.study.file.load import checked_keys
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.seal import read_result
+from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 _REMEDY = "Run the study again."
+NOTICE = "notice"  # attribute with a sentence that every page of the study shows at its top
+_EARLIER = "Another version of the solver made these results. `trackroller run` with the study file solves them anew."
 
 
 def read_results(source: xr.Dataset | Path | str) -> StudyResults:
@@ -51,6 +55,7 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
         If the file was altered after it was written.
     """
     data = source if isinstance(source, xr.Dataset) else read_result(_file(Path(source)))
+    data = data.assign_attrs(_checked_version(data))
     study = _study(data)
     design = restored(data, study.parsed, case_dims(data, study.factors))
     if "options" in data.attrs and "case" in data.dims:  # the cases of a design beside their results: not labelled yet
@@ -71,6 +76,20 @@ def _file(path: Path) -> Path:
         allowed = "a folder results/NAME with study.nc, or such a file"
         raise InputError("study", str(path), allowed, "Run the study to its end first.")
     return file
+
+
+def _checked_version(data: xr.Dataset) -> dict[str, str]:
+    """Refuse results in another format; return the notice for results of another solver, {} for those of this one."""
+    solver, written = data.attrs.get("solver_digest"), data.attrs.get("store_format")
+    if solver is None or (solver == solver_digest() and written == STORE_FORMAT):
+        return {}
+    if written != STORE_FORMAT:
+        name = f"study.nc of {data.attrs.get('study_name')}"
+        raise InputError(
+            name, f"format {written}", f"results in format {STORE_FORMAT}; another version wrote it", _REMEDY
+        )
+    warnings.warn(_EARLIER, stacklevel=3)
+    return {NOTICE: _EARLIER}
 
 
 def _study(data: xr.Dataset) -> Study:

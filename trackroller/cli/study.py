@@ -80,6 +80,8 @@ def print_status(name: str, results: Path) -> int:
         print(f"time left {duration(status.seconds_left)} on one core")
     else:
         print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
+    if status.outdated:
+        print("outdated  another version of the solver made the results: the next run solves every case anew")
     if regimes := [f"{count} {name}" for name, count in status.regimes.items() if count]:
         print(f"regimes   {', '.join(regimes)}")
     for reason, count in status.by_reason.items():

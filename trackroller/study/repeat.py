@@ -82,7 +82,7 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     if not 0 <= number < len(place):
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
     if place[number] < 0:
-        raise WorkError("this case is not solved yet: run the study first.")
+        raise WorkError("this case is not solved by this version of the program: run the study first.")
     options, group = options_of_cases(design, {})
     state = found.states.isel(case=place[[number]])
     before = chunks.read(found.paths[state["file"].item()]).isel(case=state["row"].values)

@@ -43,8 +43,8 @@ class Status:
         Cases a second of one processor, measured or estimated.
     measured : bool
         Whether `speed` was measured on solved cases of this study.
-    gathered : bool
-        Whether `study.nc` exists.
+    gathered, outdated : bool
+        Whether `study.nc` exists, and whether another version of the solver made the files.
     corrupt : list of str
         Damaged or altered files, and what is wrong with each.
     """
@@ -57,6 +57,7 @@ class Status:
     speed: float
     measured: bool
     gathered: bool
+    outdated: bool
     by_level: dict[tuple[str, str], int] = field(default_factory=dict)
     corrupt: list[str] = field(default_factory=list)
 
@@ -123,6 +124,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         speed=found.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
         measured=seconds > 0,
         gathered=folder.gathered.is_file(),
+        outdated=folder.of_another_solver,
         corrupt=[
             *found.corrupt.values(),
             *(f"{path}: it is gone" for path in folder.lost_files()),

@@ -167,6 +167,7 @@ def write_explorer(view: StudyView, out: Path) -> Path:
     content = {
         "name": str(view.study.get("name", "")),
         "description": str(view.study.get("description", "")),
+        "notice": view.attrs.get("notice", ""),
         "explorer": explorer(view),
     }
     write_text(out, secured(render("explorer.html.j2", content)))

@@ -42,7 +42,7 @@ SECTIONS = {  # where a figure stands, by the beginning of its name
     "ends": ("regime_map", "forces_against"),
     "models": ("models-",),
 }
-_ELSEWHERE = "study materials comment title coordinates Conventions life_conventions sign_conventions design"
+_ELSEWHERE = "notice study materials comment title coordinates Conventions life_conventions sign_conventions design"
 _NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS}  # attributes that do not stand in the record
 
 

@@ -17,9 +17,11 @@ import portalocker
 from trackroller.errors import InputError
 from trackroller.files import disk_error, write_text
 from trackroller.study.store.seal import is_sealed, read_result
+from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]
+STORE_FORMAT = 1  # raise it when a file of the store gets another meaning; other formats are refused by name
 LOCK = {True: portalocker.LockFlags.SHARED, False: portalocker.LockFlags.EXCLUSIVE}
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
 
@@ -97,12 +99,18 @@ class StudyFolder:
         return self
 
     def record(self) -> dict[str, Any]:
-        """Return the record of the plan; {} if there is none or it was altered, which its digest shows."""
+        """Return the record of the plan; {} if there is none, it was altered, or its format is not this version's."""
         try:
             record = json.loads(self.plan_file.read_text(encoding="utf-8"))
-            return record if record.pop("digest") == _digest(record) else {}
+            sound = record.pop("digest") == _digest(record) and record.pop("store_format") == STORE_FORMAT
+            return record if sound else {}
         except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
             return {}
+
+    @property
+    def of_another_solver(self) -> bool:
+        """Return whether the study was planned with another version of the solver."""
+        return bool(self.record().get("solver_digest", solver_digest()) != solver_digest())
 
     def earlier(self) -> dict[str, Any]:
         """Return the study as it was planned or gathered last, {} if neither record is sound."""
@@ -113,7 +121,8 @@ class StudyFolder:
 
     def write_record(self, record: Mapping[str, Any]) -> None:
         """Write the record of the plan with its digest."""
-        write_text(self.plan_file, json.dumps({**record, "digest": _digest(record)}) + "\n")
+        stored = {"store_format": STORE_FORMAT, **record}
+        write_text(self.plan_file, json.dumps({**stored, "digest": _digest(stored)}) + "\n")
 
 
 def _digest(record: Mapping[str, Any]) -> str:

@@ -100,8 +100,8 @@ def study_of_folder(folder: StudyFolder) -> Study:
     record = folder.record()
     if not record and folder.plan_file.exists():
         raise WorkError(
-            f"{folder.plan_file} was altered, damaged or written by an earlier version (its digest differs). Start "
-            "`trackroller run` with the study file: it plans anew and keeps every finished case."
+            f"{folder.plan_file} was altered or damaged (its digest differs), or another version wrote it. Start "
+            "`trackroller run` with the study file: it plans anew and keeps every case that is still valid."
         )
     for name, stored in record.get("inputs", {}).items():
         path = folder.inputs / name

@@ -18,7 +18,6 @@ from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
 from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder
 from trackroller.study.store.seal import altered
-from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -71,7 +70,7 @@ def working_plan(
 
 def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Plan:
     """Remove damaged files, and plan anew unless the plan on the disk accounts for every case."""
-    if folder.record().get("solver_digest", solver_digest()) != solver_digest():
+    if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     study = with_history(study, folder)  # before an altered study.nc, which also has the history, is removed
     _remove_altered(folder, tell)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from trackroller import __version__
 from trackroller.roller.dataset import file_attributes
+from trackroller.study.store.folder import STORE_FORMAT
 from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
         "seed": config.seed,
         "accuracy": str(config.accuracy),
         "solver_digest": solver_digest(),
+        "store_format": STORE_FORMAT,
         "versions": json.dumps(versions()),
         "git_commit": git_commit(),
         "materials": json.dumps(values, default=str),
