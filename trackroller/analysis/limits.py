@@ -107,5 +107,5 @@ def allowed_cases(
         return None
     rows, factors = int(np.prod([ds.sizes[d] for d in dims])), list(factors)
     names = sorted({name for text in texts for name in names_in(text)})
-    values = {name: column(ds, dims, name, config.base, factors)[0] for name in names}
+    values = {name: column(ds, dims, name, config.values, factors)[0] for name in names}
     return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))

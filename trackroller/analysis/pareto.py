@@ -103,7 +103,7 @@ def pareto(
     ds, design, dims = results.data, results.design, results.dims
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
-    columns = {name: column(ds, dims, name, results.config.base, design.columns) for name in names}
+    columns = {name: column(ds, dims, name, results.config.values, design.columns) for name in names}
     values = {name: found[0] for name, found in columns.items()}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])

@@ -109,7 +109,7 @@ class StudyView:
         ds, dims = results.data, list(results.dims)
         table = pd.DataFrame(case_columns(ds, dims))
         names = factor_names(ds, dims, results.design, table)
-        base = base_values(ds, results.config.base)
+        base = base_values(ds, results.config.values)
         full = int(np.prod([table[f].nunique(dropna=False) for f in names], dtype=float)) if names else 1
         grid = full == len(table) and not (len(names) == 1 and dims == ["case"] and len(table) > 60)
         for name in dims:  # a dimension of one level is held by itself

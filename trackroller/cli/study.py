@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any, TextIO
 
 import numpy as np
 from rich.filesize import decimal
 
 from trackroller.cli.case import case_of, is_study
 from trackroller.errors import InputError
+from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report.terminal import print_table
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain as stages_of
@@ -33,6 +36,7 @@ def run_with_progress(
 ) -> None:
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
     study = load_study(path)
+    _print_not_given(study.config.not_given, {*study.config.base, *study.factors}, sys.stderr)
     with progress_bar(study.name, not quiet) as bar:
         plan = run_study(
             study,
@@ -162,10 +166,19 @@ def _print_study(path: Path, results: Path) -> None:
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     print(f"time      {times} ({told} cases/s: {status.speed:.3g})")
     print(f"disk      about {decimal(status.total * bytes_a_case(study.config.outputs))}")
+    _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
+
+
+def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO | None = None) -> None:
+    """Print the values that are taken from the paper's example, and ask about a drive that is not given."""
+    for line in filter(None, (not_given_text(values), drive_question(values, named))):
+        print(line, file=to)
 
 
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
     case, told = case_of(path, words)
+    values = case.as_dict()
+    _print_not_given({name: values[name] for name in case.not_given}, values.keys() - set(case.not_given))
     if no_shortcuts:
         told["shortcuts"] = False
     _print_stages(to_table(case), Options(**told))

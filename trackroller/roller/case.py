@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, make_dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -22,7 +22,8 @@ from trackroller.parameters import (
     OF_LIMITS,
     PARAMETERS,
 )
-from trackroller.roller.fields import FIELDS, Default, mapping_text, number, own_friction, own_frictions
+from trackroller.parameters.example import EXAMPLE, Default, DefaultName
+from trackroller.roller.fields import FIELDS, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.table import CaseTable, MaterialArrays
 
@@ -31,7 +32,7 @@ __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", 
 
 _LimitFields = make_dataclass(
     "_LimitFields",
-    [(name, Any, field(default=None if math.isnan(p.default) else p.default)) for name, p in OF_LIMITS.items()]
+    [(name, Any, field(default=EXAMPLE.get(name))) for name in OF_LIMITS]
     + [(name, Any, field(default=None)) for name in MAPPING_FIELDS if name not in MECHANICAL_MAPPINGS],
     frozen=True,
     kw_only=True,
@@ -86,6 +87,11 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
     bearing, catalogue : mapping or None
         Bearing inside the roller and limits of a maker's catalogue; see "Parameters, options and results".
 
+    Attributes
+    ----------
+    not_given : tuple of str
+        Parameters that were not given, whose values are those of the paper's example.
+
     Raises
     ------
     InputError
@@ -104,27 +110,30 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
 >= 1e-06 deg, < 90 deg, finite
     """
 
-    axis_distance: float = PARAMETERS["axis_distance"].default
-    guide_profile_radius: float = PARAMETERS["guide_profile_radius"].default
-    roller_profile_radius: float = PARAMETERS["roller_profile_radius"].default
-    guide_curve_radius: float = PARAMETERS["guide_curve_radius"].default
-    contact_angle: float = PARAMETERS["contact_angle"].default
-    radial_force: float = PARAMETERS["radial_force"].default
-    axial_force: float = PARAMETERS["axial_force"].default
-    motor_force: float = PARAMETERS["motor_force"].default
-    friction_coefficient: float | str | None = Default(PARAMETERS["friction_coefficient"].default)
-    velocity: float = PARAMETERS["velocity"].default
+    axis_distance: float = EXAMPLE["axis_distance"]
+    guide_profile_radius: float = EXAMPLE["guide_profile_radius"]
+    roller_profile_radius: float = EXAMPLE["roller_profile_radius"]
+    guide_curve_radius: float = EXAMPLE["guide_curve_radius"]
+    contact_angle: float = EXAMPLE["contact_angle"]
+    radial_force: float = EXAMPLE["radial_force"]
+    axial_force: float = EXAMPLE["axial_force"]
+    motor_force: float = EXAMPLE["motor_force"]
+    friction_coefficient: float | str | None = EXAMPLE["friction_coefficient"]
+    velocity: float = EXAMPLE["velocity"]
     guide_overrollings_per_hour: float | None = None
-    roller_material: Any = "1.7225-normalised"
-    guide_material: Any = "1.7225-normalised"
+    roller_material: Any = EXAMPLE["roller_material"]
+    guide_material: Any = EXAMPLE["guide_material"]
     friction_law: Any = None
     guide_profile: Any = None
     roller_profile: Any = None
+    not_given: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         columns: dict[str, np.ndarray] = {}
         if isinstance(self.friction_coefficient, Default):
             object.__setattr__(self, "friction_coefficient", own_friction(self.friction_law))
+        missing = tuple(name for name, value in vars(self).items() if isinstance(value, (Default, DefaultName)))
+        object.__setattr__(self, "not_given", missing)
         for name, parameter in PARAMETERS.items():
             value = getattr(self, name)
             if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
@@ -141,6 +150,7 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
             if not isinstance(value := getattr(self, name), (str, Mapping, Material)) or value == "":
                 allowed = "a material is a name of the database or a mapping with its values"
                 raise InputError(name, value, allowed, "`trackroller materials list` shows the names.")
+            object.__setattr__(self, name, str(value) if isinstance(value, DefaultName) else value)
         for name in MAPPING_FIELDS:
             text = mapping_text(name, getattr(self, name))
             object.__setattr__(self, name, json.loads(text) if text else None)

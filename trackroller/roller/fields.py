@@ -15,6 +15,7 @@ from trackroller.errors import InputError
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.rows import once_each
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.point_files import read_points
 
 FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
@@ -82,14 +83,10 @@ def number(name: str, value: Any) -> float:
     return number_in(value, name, parameter.allowed())
 
 
-class Default(float):
-    """A default that `Case` can distinguish from a number that the user gave."""
-
-
 def own_friction(law: Any) -> float:
     """Return the friction at rest of a case without friction coefficient: that of its law's table, or the default."""
     own = friction_laws.at_rest(law) if isinstance(law, (str, Mapping)) and law else None
-    return PARAMETERS["friction_coefficient"].default if own is None else own
+    return EXAMPLE["friction_coefficient"] if own is None else own
 
 
 def own_frictions(laws: np.ndarray) -> np.ndarray:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
 
 CASE, MATERIALS, STUDY = "case", "materials", "study"  # names of attributes: JSON, JSON, YAML
+NOT_GIVEN = "not_given"  # attribute: JSON list of the parameters that were not given
 
 
 def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Dataset:
@@ -38,12 +39,13 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     Returns
     -------
     xarray.Dataset
-        The same result with two more attributes.
+        The same result with three more attributes.
     """
     values = plain_inputs(case)
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
         values["friction_coefficient"] = float(to_table(case, database).friction_coefficient[0])
     ds.attrs |= {CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))}
+    ds.attrs[NOT_GIVEN] = json.dumps(case.not_given)
     return ds
 
 
@@ -99,6 +101,12 @@ def inputs_of(ds: xr.Dataset) -> dict[str, Any]:
 def case_of_result(ds: xr.Dataset) -> Case:
     """Return the case that a result was solved for."""
     return Case.from_dict({key: value for key, value in inputs_of(ds).items() if value is not None})
+
+
+def not_given_of(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the values of a solved case that were not given but taken from the paper's example, by name."""
+    values = inputs_of(ds)
+    return {name: values[name] for name in json.loads(ds.attrs.get(NOT_GIVEN, "[]"))}
 
 
 def materials_of(ds: xr.Dataset) -> dict[str, dict[str, Any]]:

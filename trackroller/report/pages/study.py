@@ -15,6 +15,7 @@ from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import headline, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.files import write_text
+from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, long_name, percent, rounded
@@ -90,6 +91,7 @@ def contents(view: StudyView) -> dict[str, Any]:
         "models_said": models.get("said", []),
         "factors": factor_table(view),
         "base": base_rows(view),
+        "not_given": not_given_text(settings.get("not_given", {})),
         "options": options + models_used(view.data) + correlation_row(view),
         "materials": materials_table(attrs),
         "solution": solution_facts(view),

@@ -13,6 +13,7 @@ import xarray as xr
 
 from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, expressions
+from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import readable
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from trackroller.study.file.config import StudyFile
 
 MAX_CASES = 10_000_000  # planned in about a minute; validation/benchmarks/million.py measures it
-DEFAULT_MATERIAL = "1.7225-normalised"
 
 
 def case_columns(known: Any) -> tuple[str, ...]:
@@ -64,7 +64,7 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
         options["table"] = str(table)
     if config.exchange == "groups":
         options["groups"] = config.analysis.groups
-    base = {k: v for k, v in config.base.items() if isinstance(v, float)}
+    base = {k: v for k, v in config.values.items() if isinstance(v, float)}
     design = sample(factors, config.design, config.samples, config.seed, base=base, **options)
     if config.design == "table":
         _check_columns(factors, design)
@@ -120,7 +120,7 @@ def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase)
 def _columns(config: StudyFile, design: SampledDesign, n: int, materials: MaterialDatabase) -> dict[str, np.ndarray]:
     """Return every case field and every further factor as a column of n values."""
     base = {name: parameter.default for name, parameter in PARAMETERS.items()}
-    base |= {name: DEFAULT_MATERIAL for name in MATERIAL_FIELDS} | config.base
+    base |= EXAMPLE | config.values
     base.pop("material_pair", None)
     if pair := config.base.get("material_pair"):
         base |= dict(zip(MATERIAL_FIELDS, pair, strict=True))
@@ -135,7 +135,7 @@ def _columns(config: StudyFile, design: SampledDesign, n: int, materials: Materi
             pairs = np.array([None, *map(_split_pair, pairs)], dtype=object)[1:]
         for i, name in enumerate(MATERIAL_FIELDS):
             columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
-    if "friction_coefficient" not in config.base and "friction_coefficient" not in design.columns:
+    if "friction_coefficient" not in {*config.values, *design.columns}:
         if "friction_law" in columns:
             columns["friction_coefficient"] = own_frictions(columns["friction_law"])
     columns["friction_coefficient"] = _friction(materials, columns)

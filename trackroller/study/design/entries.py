@@ -71,13 +71,14 @@ def choice(value: Any, where: str, options: Collection[str]) -> str:
     return value
 
 
-def base_value(key: Any, value: Any) -> Any:
+def base_value(key: Any, value: Any, section: str = "base") -> Any:
     """Check a value of the base case.
 
     Parameters
     ----------
     key : name of the case field
     value : its value
+    section : name of the study key that holds the values
 
     Returns
     -------
@@ -87,8 +88,8 @@ def base_value(key: Any, value: Any) -> Any:
     ------
     InputError : unknown field, or a value outside its bounds
     """
-    check_names("base", [key], (*CASE_FIELDS, "material_pair"))
-    return _value(key, value, f"base.{key}")
+    check_names(section, [key], (*CASE_FIELDS, "material_pair"))
+    return _value(key, value, f"{section}.{key}")
 
 
 def _value(key: str, value: Any, where: str) -> Any:

@@ -13,7 +13,7 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.options import check_pairs, check_spin_model
-from trackroller.study.design.build import DEFAULT_MATERIAL, MAX_CASES
+from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.draws import check_listed
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
@@ -164,9 +164,9 @@ def _check_materials(study: Study) -> None:
         pairs.append(study.config.base["material_pair"])
     used = {}
     for i, name in enumerate(MATERIAL_FIELDS):
-        given = [study.config.base[name]] if name in study.config.base else []
+        given = [study.config.values[name]] if name in study.config.values else []
         given += [*study.factors.get(name, {}).get("values", []), *(pair[i] for pair in pairs)]
-        materials = dict.fromkeys(given or [DEFAULT_MATERIAL])
+        materials = dict.fromkeys(given)
         used[name.removesuffix("_material")] = [study.materials.material(material) for material in materials]
     check_scatter(study.config, used)
 
@@ -205,7 +205,7 @@ def check_geometry(study: Study) -> None:
 def _ends(study: Study, name: str) -> list[float]:
     factor = study.parsed.get(name)
     if factor is None:
-        return [study.config.base.get(name, PARAMETERS[name].default)]
+        return [study.config.values[name]]
     if factor.discrete:
         return [float(level) for level in factor.levels]
     if factor.kind == "normal":

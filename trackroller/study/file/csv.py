@@ -9,6 +9,12 @@ from pathlib import Path
 from trackroller.errors import InputError
 
 
+def csv_names(text: str, path: Path | str, field: str) -> list[str]:
+    """Return the names of the columns; see `csv_lines`."""
+    head = next((line for line in text.splitlines() if line.strip(" ,")), "")
+    return csv_lines(f"{head}\n{head}", path, field, "line")[0]
+
+
 def csv_lines(text: str, path: Path | str, field: str, what: str) -> tuple[list[str], dict[int, list[str]]]:
     """Return the names of the columns, and the cells of each line by its number in the file, the first line being 1.
 

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
+from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
+from trackroller.parameters.example import not_given
 from trackroller.study.file.checks import check_geometry, cross_check
 from trackroller.study.file.config import StudyFile
+from trackroller.study.file.csv import csv_names
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.study import Study
 from trackroller.yaml_file import parse_mapping
@@ -43,12 +48,25 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     return config
 
 
+def complete(study: Study) -> Study:
+    """Return a study whose key `not_given` holds the value of every parameter that it does not name."""
+    config = study.config
+    names = {*config.base, *study.factors}
+    if config.design == "table" and config.table is not None:
+        names.update(csv_names(read_text(study.table_path, "table", most=math.inf), study.table_path, "table"))
+    laws = study.factors.get("friction_law", {}).get("values", [config.base.get("friction_law")])
+    if any(at_rest(law) is not None for law in laws if law):
+        names.add("friction_coefficient")  # the first value of the table
+    values = not_given(names) | {name: value for name, value in config.not_given.items() if name not in names}
+    return replace(study, config=config.model_copy(update={"not_given": values}))
+
+
 def parse_study(
     data: Mapping[str, Any], path: Path | None = None, database: Any = None, planned: bool = False
 ) -> Study:
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     with noted_reads() as inputs:
-        study = Study(checked_keys(data), path, database, inputs)
+        study = complete(Study(checked_keys(data), path, database, inputs))
         cross_check(study)
         if not planned:
             check_geometry(study)

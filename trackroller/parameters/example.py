@@ -1,0 +1,75 @@
+"""The paper's example: values of parameters that a case or a study does not name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from trackroller.parameters.numbers import OF_LIMITS, PARAMETERS
+
+
+class Default(float):
+    """A number of the example, which `Case` can distinguish from a number that the user gave."""
+
+
+class DefaultName(str):
+    """The material of the example, which `Case` can distinguish from a name that the user gave."""
+
+
+EXAMPLE: dict[str, Any] = {
+    name: Default(p.default) for name, p in PARAMETERS.items() if not math.isnan(p.default)
+} | dict.fromkeys(("roller_material", "guide_material"), DefaultName("1.7225-normalised"))
+_PAIR = ("material_pair", "roller_material", "guide_material")
+
+
+def not_given(named: Iterable[str]) -> dict[str, Any]:
+    """Return the values that are used for the parameters that a file does not name, as plain numbers and names.
+
+    Parameters
+    ----------
+    named : iterable of str
+        Parameters that the file names; `material_pair` stands for both materials.
+    """
+    named = set(named)
+    both = set(_PAIR) if "material_pair" in named else set()
+    return {
+        name: str(value) if isinstance(value, str) else float(value)
+        for name, value in EXAMPLE.items()
+        if name not in named | both
+    }
+
+
+def with_unit(name: str, value: Any) -> str:
+    """Return a parameter with its value and unit, such as 'motor_force -30 N'."""
+    unit = PARAMETERS[name].unit if name in PARAMETERS else "-"
+    shown = f"{value:g}" if isinstance(value, (int, float)) else str(value)
+    return f"{name} {shown}" + ("" if unit == "-" else f" {unit}")
+
+
+def not_given_text(values: Mapping[str, Any]) -> str:
+    """Return what was not given as one sentence, '' if every parameter was given; see `not_given`."""
+    parts = [
+        (head, ", ".join(with_unit(name, value) for name, value in values.items() if (name in OF_LIMITS) is other))
+        for head, other in (("taken from the paper's example", False), ("default", True))
+    ]
+    told = "; ".join(f"{head}: {text}" for head, text in parts if text)
+    return f"not given, {told}" if told else ""
+
+
+def drive_question(values: Mapping[str, Any], named: Iterable[str]) -> str:
+    """Return a question about the drive for a file that names forces but no drive, otherwise ''.
+
+    Parameters
+    ----------
+    values : mapping
+        Parameters that are not given, see `not_given`.
+    named : iterable of str
+        Parameters that the file names.
+    """
+    if "motor_force" not in values or not {"radial_force", "axial_force"} & set(named):
+        return ""
+    return (
+        f"Is the roller driven? motor_force is not given, so {values['motor_force']:g} N is used, as in the paper's "
+        "example: write motor_force: 0 for a free roller, a number < 0 for a driven one and > 0 for a braked one."
+    )
