@@ -113,7 +113,8 @@ def also_changed(view: StudyView, factor: str, rows: np.ndarray) -> list[str]:
     given = [p for p in (*PARAMETERS, "friction_coefficient_value") if p in view.table and p not in view.factors]
     table = view.table[rows]
     groups = table.groupby(others, dropna=False, sort=False) if others else table.groupby(np.zeros(len(table)))
-    return [p.removesuffix("_value") for p in given if (groups[p].nunique(dropna=False) > 1).any()]
+    changed = [p.removesuffix("_value") for p in given if (groups[p].nunique(dropna=False) > 1).any()]
+    return [name for name in changed if name != factor]
 
 
 def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -> Effect | None:

@@ -12,6 +12,8 @@ from trackroller.materials.material import Material
 from trackroller.materials.properties import Value
 from trackroller.parameters import FRICTION_LEVELS
 
+FRICTION = "friction"  # attribute of a result: the coefficients that were taken from the database (JSON)
+
 
 @dataclass(frozen=True)
 class MaterialDatabase:
@@ -106,6 +108,17 @@ class MaterialDatabase:
                 if level in levels:
                     return levels[level]
         raise self._unknown_pair(names, level)
+
+    def friction_record(self, roller: str | Material, guide: str | Material, level: str | None) -> dict[str, Any]:
+        """Return the friction coefficient of a pair as a result records it: pair, level, value, source, placeholder.
+
+        Without a level it is the typical coefficient.
+        """
+        level = level or "typical"
+        found = self.friction(roller, guide, level)
+        pair = " / ".join(self.material(body).name for body in (roller, guide))
+        told = {"value": found.value, "source": found.source, "placeholder": found.placeholder}
+        return {"material_pair": pair, "level": level, **told}
 
     def _names_of(self, body: str | Material) -> tuple[str, ...]:
         """Return the keys of a body in the friction table: its name first, then its family."""

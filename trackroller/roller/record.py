@@ -12,8 +12,9 @@ import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.materials import Material, load_database
+from trackroller.materials.database import FRICTION
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.case import Case, to_table
+from trackroller.roller.case import Case
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,7 +44,9 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     """
     values = plain_inputs(case)
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
-        values["friction_coefficient"] = float(to_table(case, database).friction_coefficient[0])
+        record = database.friction_record(case.roller_material, case.guide_material, values["friction_coefficient"])
+        values["friction_coefficient"] = record["value"]
+        ds.attrs[FRICTION] = json.dumps([record])
     ds.attrs |= {CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))}
     ds.attrs[NOT_GIVEN] = json.dumps(case.not_given)
     return ds
@@ -112,6 +115,16 @@ def not_given_of(ds: xr.Dataset) -> dict[str, Any]:
 def materials_of(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
     """Return the values of both materials of a solved case, by `roller_material` and `guide_material`."""
     return json.loads(ds.attrs[MATERIALS])
+
+
+def friction_records(attrs: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Return the friction coefficients that a result took from the database: pair, level, value, source, placeholder.
+
+    Parameters
+    ----------
+    attrs : attributes of a solved case or study; without such a coefficient the list is empty
+    """
+    return json.loads(str(attrs.get(FRICTION, "[]")))
 
 
 def is_default(name: str, value: Any) -> bool:

@@ -14,7 +14,7 @@ from trackroller.report.pages.spectrum import block_table, life_rows, warnings
 from trackroller.report.terminal import print_table
 from trackroller.report.words.flags import flags_of
 from trackroller.report.words.spectrum import sentences
-from trackroller.roller.record import inputs_of, is_default, materials_of
+from trackroller.roller.record import friction_records, inputs_of, is_default, materials_of
 from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
@@ -115,9 +115,9 @@ def as_json(ds: xr.Dataset) -> str:
     if "case" in ds.attrs:
         inputs = inputs_of(ds)
         told["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
-        told["materials"] = materials_of(ds)
+        told["materials"], told["friction"] = materials_of(ds), friction_records(ds.attrs)
         told["flags"] = [vars(flag) for flag in flags_of(ds)]
-        told["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in ("case", "materials")}
+        told["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in ("case", "materials", "friction")}
         told["versions"] = versions()
     return json.dumps(told)
 

@@ -23,7 +23,15 @@ from trackroller.report.tables.cases import reason_table, regime_table, validity
 from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.designs import best_table
 from trackroller.report.tables.indices import index_table, measure_table, part_tables
-from trackroller.report.tables.inputs import Row, base_rows, correlation_row, factor_table, materials_table, record_rows
+from trackroller.report.tables.inputs import (
+    Row,
+    base_rows,
+    correlation_row,
+    factor_table,
+    friction_table,
+    materials_table,
+    record_rows,
+)
 from trackroller.report.tables.pareto import pareto_table
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.tables.targets import target_tables
@@ -43,7 +51,9 @@ SECTIONS = {  # where a figure stands, by the beginning of its name
     "ends": ("regime_map", "forces_against"),
     "models": ("models-",),
 }
-_ELSEWHERE = "notice study materials comment title coordinates Conventions life_conventions sign_conventions design"
+_ELSEWHERE = (
+    "notice study materials friction comment title coordinates Conventions life_conventions sign_conventions design"
+)
 _NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS}  # attributes that do not stand in the record
 
 
@@ -93,7 +103,7 @@ def contents(view: StudyView) -> dict[str, Any]:
         "base": base_rows(view),
         "not_given": not_given_text(settings.get("not_given", {})),
         "options": options + models_used(view.data) + correlation_row(view),
-        "materials": materials_table(attrs),
+        "materials": [t for t in (materials_table(attrs), friction_table(attrs)) if t],
         "solution": solution_facts(view),
         "used": defaultdict(str, merged),
         "results": set(map(str, view.data.data_vars)),

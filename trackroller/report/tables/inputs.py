@@ -13,7 +13,7 @@ from trackroller.materials.properties import PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, unit_text
 from trackroller.report.tables.table import Table
-from trackroller.roller.record import is_default
+from trackroller.roller.record import friction_records, is_default
 
 MATERIAL_ROWS = (  # attribute, words, unit
     ("youngs_modulus", "Young's modulus E", "MPa"),
@@ -140,6 +140,21 @@ def material_source(values: Mapping[str, Any]) -> str:
     source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
     guesses = values.get("guesses", ())
     return f"{source}." + (f" Guesses without a source: {', '.join(map(plain, guesses))}." if guesses else "")
+
+
+def friction_table(attrs: Mapping[str, Any]) -> Table | None:
+    """List the friction coefficients that a result took from the database; None if it took none."""
+    rows = [
+        [level_text("material_pair", one["material_pair"]), one["level"], float(one["value"]), friction_source(one)]
+        for one in friction_records(attrs)
+    ]
+    heads = ["Pair", "Level", "Friction coefficient μ", "Source"]
+    return Table("friction", "Friction from the database", heads, rows) if rows else None
+
+
+def friction_source(record: Mapping[str, Any]) -> str:
+    """Return where a friction coefficient of the database comes from, and whether it is a placeholder."""
+    return f"{record['source']}{' (placeholder)' * record['placeholder']}"
 
 
 def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import CONTACT_MODELS
-from trackroller.report.numbers import count, percent, rounded
+from trackroller.report.numbers import count, level_text, listing, number, percent, rounded
 from trackroller.report.words.sentence import Sentence
-
-if TYPE_CHECKING:
-    pass
+from trackroller.roller.record import friction_records
 
 SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
+
+
+def friction_guess(view: StudyView) -> Sentence | None:
+    """Name the friction coefficients from the database that are placeholders."""
+    guesses = [r for r in friction_records(view.attrs) if r["placeholder"]]
+    told = [f"{number(r['value'])} ({level_text('material_pair', r['material_pair'])})" for r in guesses]
+    text = f"The friction coefficient {listing(told)} of the database is a placeholder: measure it."
+    return Sentence("friction_guess", text, {"guesses": guesses}) if told else None
 
 
 def friction_error(view: StudyView) -> Sentence | None:

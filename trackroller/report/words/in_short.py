@@ -10,7 +10,7 @@ from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital, count
 from trackroller.report.words import indices
-from trackroller.report.words.accuracy import accuracy, friction_error, full_sliding
+from trackroller.report.words.accuracy import accuracy, friction_error, friction_guess, full_sliding
 from trackroller.report.words.cases import valid_designs
 from trackroller.report.words.design_points import best_point
 from trackroller.report.words.designs import best_design, target_of_designs
@@ -42,7 +42,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
         ("Best design point", [*decides(sens), *met]) if robust else ("What decides", decides(sens)),
         ("Best", [*best_design(view), *([] if robust else met)]),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
-        ("How sure", [friction_error(view), full_sliding(view), *accuracy(view), *compared]),
+        ("How sure", [friction_guess(view), friction_error(view), full_sliding(view), *accuracy(view), *compared]),
         ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]

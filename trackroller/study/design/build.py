@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.materials.database import FRICTION
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, expressions
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions
@@ -100,7 +102,7 @@ def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase)
     as `trackroller.study.design.stored` says.
     """
     n = design.size or 1
-    columns = _columns(config, design, n, materials)
+    columns, friction = _columns(config, design, n, materials)
     data = {}
     for name, parameter in PARAMETERS.items():
         attrs = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
@@ -114,11 +116,13 @@ def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase)
     for name, values in columns.items():
         coords[name] = ("case", readable(values), {"long_name": name.replace("_", " ")})
     places, attrs = stored(design)
-    return xr.Dataset(data, coords | places, {"study_name": config.name, "seed": config.seed, **attrs})
+    return xr.Dataset(data, coords | places, {"study_name": config.name, "seed": config.seed, **attrs, **friction})
 
 
-def _columns(config: StudyFile, design: SampledDesign, n: int, materials: MaterialDatabase) -> dict[str, np.ndarray]:
-    """Return every case field and every further factor as a column of n values."""
+def _columns(
+    config: StudyFile, design: SampledDesign, n: int, materials: MaterialDatabase
+) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Return every case field and further factor as a column of n values, and the attribute of `_friction`."""
     base = {name: parameter.default for name, parameter in PARAMETERS.items()}
     base |= EXAMPLE | config.values
     base.pop("material_pair", None)
@@ -138,11 +142,11 @@ def _columns(config: StudyFile, design: SampledDesign, n: int, materials: Materi
     if "friction_coefficient" not in {*config.values, *design.columns}:
         if "friction_law" in columns:
             columns["friction_coefficient"] = own_frictions(columns["friction_law"])
-    columns["friction_coefficient"] = _friction(materials, columns)
+    columns["friction_coefficient"], friction = _friction(materials, columns)
     for name in PARAMETERS:
         if columns[name].dtype != float:
             columns[name] = _mapped(_number, float, columns[name])
-    return columns
+    return columns, friction
 
 
 def _mapped(function: Callable[..., Any], dtype: type, *columns: np.ndarray) -> np.ndarray:
@@ -163,17 +167,23 @@ def _split_pair(text: str) -> tuple[str, str]:
     return parts[0], parts[1]
 
 
-def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> np.ndarray:
-    """Return friction coefficients as numbers; the pair of materials decides where there is a level or nothing."""
+def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> tuple[np.ndarray, dict[str, str]]:
+    """Return friction coefficients as numbers; the pair of materials decides where there is a level or nothing.
+
+    The second value is an attribute that records the coefficients taken from the database (JSON), empty without one.
+    """
     values = columns["friction_coefficient"]
     if values.dtype != object:
-        return values
+        return values, {}
+    records = []
 
     @functools.cache
     def known(value: Any, roller: str, guide: str) -> float:
         if isinstance(value, (int, float)) and not math.isnan(value):
             return float(value)
-        level = value if isinstance(value, str) and value in FRICTION_LEVELS else "typical"
-        return float(materials.friction(roller, guide, level=level).value)
+        level = value if isinstance(value, str) and value in FRICTION_LEVELS else None
+        records.append(materials.friction_record(roller, guide, level))
+        return float(records[-1]["value"])
 
-    return _mapped(known, float, values, *(_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS))
+    found = _mapped(known, float, values, *(_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS))
+    return found, {FRICTION: json.dumps(records)} if records else {}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from trackroller.materials.database import FRICTION
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.study.design.factors import Factor, readable
@@ -72,7 +73,7 @@ def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> d
     # what `solve` recorded of its materials holds, whatever the database says by now
     recorded = {"materials": attrs["materials"]} if "materials" in attrs else {}
     told = provenance.attributes(study, [] if recorded else names)
-    return kept | {META: design.attrs[META]} | told | recorded
+    return kept | {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs} | told | recorded
 
 
 def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:
