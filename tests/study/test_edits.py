@@ -158,3 +158,10 @@ def test_altered_results_are_refused_by_name_and_never_sealed_again(finished, na
     assert (finished / "ro-crate-metadata.json").read_bytes() == before
     run_study(load_study("study.yaml"), solver=fake_solver.solve)
     assert command(COMMANDS["report"])[0] == 0 and command(COMMANDS["verify"])[0] == 0
+
+
+def test_an_altered_digest_in_a_crate_names_the_crate_and_not_a_sound_file(finished):
+    path = finished / "ro-crate-metadata.json"
+    path.write_text(re.sub(r'("sha256": ")[0-9a-f]{8}', r"\g<1>00000000", path.read_text(), count=1))
+    code, out, err = command(COMMANDS["verify"])
+    assert code == 1 and "ro-crate-metadata.json was altered" in err and not out

@@ -25,7 +25,7 @@ from trackroller.study.repeat import compare
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.provenance import versions
-from trackroller.study.store.seal import METADATA, check_sealed, files_of, read_result, recorded
+from trackroller.study.store.seal import METADATA, check_sealed, files_of, read_result, recorded, sealing
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -60,7 +60,8 @@ def write_crate(root: Path) -> Path:
     inputs, written = files_of(root / INPUTS), [file for path in results for file in files_of(check_sealed(path))]
     graph = _graph(study, root, *([file.relative_to(root).as_posix() for file in files] for files in (inputs, written)))
     text = json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
-    write_text(root / METADATA, text)
+    with sealing(root / METADATA):
+        write_text(root / METADATA, text)
     return root / METADATA
 
 
@@ -127,8 +128,10 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
     ------
     InputError
         If the folder is not a crate of a study.
+    WorkError
+        If the metadata file was altered after it was written.
     """
-    path = Path(root) / METADATA
+    path = check_sealed(Path(root) / METADATA)
     try:
         graph = json.loads(path.read_text(encoding="utf-8"))["@graph"]
         files = {
