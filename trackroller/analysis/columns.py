@@ -26,7 +26,7 @@ CONTACT_RESULTS = (
     "friction_energy_per_distance",
     "stick_area_fraction",
 )
-BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles", "error_estimate")
+BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles", "error_estimate", "fatigue_stress")
 PLAIN_RESULTS = (
     "regime",
     "validity",
@@ -89,7 +89,7 @@ def at_surface(ds: xr.Dataset) -> xr.DataArray:
 
 
 def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return flags, peak stress of the worse contact, its error and place, and the shorter life, shape (n, bodies).
+    """Return flags, peak stress of the worse contact, its error and place, and the shorter life, (n, bodies) each.
 
     Parameters
     ----------
@@ -101,6 +101,8 @@ def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         worse = np.argmax(np.where(np.isnan(peak), -np.inf, peak), axis=1)[:, None]
         for name in (n for n in ("peak_stress", "error_estimate", "at_surface") if n in found):
             told[name] = np.take_along_axis(found[name], worse, axis=1)[:, 0]
+    if "fatigue_stress" in found:
+        told["fatigue_stress"] = np.fmax.reduce(found["fatigue_stress"], axis=1)
     if "life_cycles" in found:
         told["life_cycles"] = np.fmin.reduce(found["life_cycles"], axis=1)
     return told

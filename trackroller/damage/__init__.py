@@ -24,9 +24,16 @@ def judged(outputs: Collection[str]) -> tuple[Limit, ...]:
     return tuple(limit for limit in asked(outputs) if limit.verdict is not None)
 
 
-def of_patches(outputs: Collection[str]) -> tuple[Limit, ...]:
-    """Return the limits asked for that need the tractions of each case."""
-    return tuple(limit for limit in asked(outputs) if TRACTIONS in limit.needs)
+def computed(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
+    """Return the limits asked for, and the one whose stress the life needs by its criterion."""
+    wanted = asked(outputs)
+    paths = fatigue.LIMIT in wanted and life_criterion in fatigue.STRESS_OF
+    return (*wanted, multiaxial.LIMIT) if paths and multiaxial.LIMIT not in wanted else wanted
+
+
+def of_patches(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
+    """Return the limits to compute that need the tractions of each case."""
+    return tuple(limit for limit in computed(outputs, life_criterion) if TRACTIONS in limit.needs)
 
 
 def declared() -> str:

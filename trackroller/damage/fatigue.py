@@ -1,7 +1,7 @@
 """Rolling-contact fatigue by the S-N curve: overrollings and hours to failure of both bodies.
 
-ASSUME: the peak von Mises stress is the amplitude, without a correction for mean stress or size, and one overrolling is
-one cycle, as published.
+ASSUME: the stress of the life criterion is the fully reversed amplitude, without a correction for size, and one
+overrolling is one cycle. The published criterion takes the peak von Mises stress, without a correction for mean stress.
 """
 
 from __future__ import annotations
@@ -12,6 +12,12 @@ from trackroller.damage.limit import SN_SCATTER, Limit, Results, Solved, Verdict
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import SNCurve
 
+# results of `multiaxial` that enter the S-N curve by a life criterion; of the ratios to a limit, 1 stands for sigma_D
+STRESS_OF = {
+    "von_mises_amplitude": "von_mises_amplitude",
+    "findley": "findley_utilisation",
+    "dang_van": "dang_van_utilisation",
+}
 AMPLITUDE = "peak von Mises stress taken as amplitude, one cycle an overrolling, 50 % failure probability"
 
 
@@ -19,6 +25,18 @@ def curve_of(solved: Solved) -> SNCurve:
     """Return the S-N curves of roller and guide at a failure probability of 50 %, values (n, 1, 2)."""
     materials = {name: value[:, None] for name, value in solved.materials.items()}
     return SNCurve.of(materials, solved.options["life_rule"])
+
+
+def amplitude(solved: Solved) -> np.ndarray:
+    """Return the stress that enters the S-N curve by the option `life_criterion`, (n, contact, body) [MPa]."""
+    criterion, values = solved.options["life_criterion"], solved.values
+    if criterion not in STRESS_OF:
+        return values["peak_stress"]
+    name = STRESS_OF[criterion]
+    if criterion == "dang_van" and not solved.options["credit_pressure"]:
+        name = "dang_van_utilisation_without_pressure"
+    limit = 1.0 if criterion == "von_mises_amplitude" else solved.materials["fatigue_limit"][:, None, :]
+    return np.asarray(values[name] * limit)
 
 
 def life(solved: Solved) -> Results:
@@ -29,34 +47,42 @@ def life(solved: Solved) -> Results:
     Parameters
     ----------
     solved : Solved
-        With `peak_stress` [MPa] and `error_estimate` [1], (n, contact, body).
+        With `peak_stress` [MPa] and `error_estimate` [1], (n, contact, body), and by the option `life_criterion` with
+        the results of `multiaxial`.
 
     Returns
     -------
     dict of str to numpy.ndarray
         `life_cycles` [1], `life_error_estimate` [1], `life_hours` [h], each (n, contact, body);
-        `roller_life_hours`, `guide_life_hours`, `pair_life_hours` [h] and the flag `first_to_fail`, each (n,).
+        `roller_life_hours`, `guide_life_hours`, `pair_life_hours` [h] and the flag `first_to_fail`, each (n,). With a
+        criterion other than the published one also `fatigue_stress` [MPa], (n, contact, body).
+
+    Notes
+    -----
+    The error of a stress other than the peak is not estimated, so its life has no error either.
     """
-    stress, curve = solved.values["peak_stress"], curve_of(solved)
+    stress, curve = amplitude(solved), curve_of(solved)
+    published = solved.options["life_criterion"] not in STRESS_OF
+    error = solved.values["error_estimate"] if published else np.full_like(stress, np.nan)
     cycles = curve.life_cycles(stress)
     hours = cycles / solved.overrollings_per_hour[:, None, :]
     roller, guide = np.moveaxis(hours.min(axis=1), 1, 0)
     pair, first = first_failure(roller, guide)
     return {
         "life_cycles": cycles,
-        "life_error_estimate": curve.slope(stress) * solved.values["error_estimate"],
+        "life_error_estimate": curve.slope(stress) * error,
         "life_hours": hours,
         "roller_life_hours": roller,
         "guide_life_hours": guide,
         "pair_life_hours": pair,
         "first_to_fail": first,
-    }
+    } | ({} if published else {"fatigue_stress": stress})
 
 
 def verdict(solved: Solved, results: Results) -> Verdict:
     """Return the utilisation of the fatigue limit and the life at the failure probability, (n, body)."""
     p = solved.options["failure_probability"]
-    curve, stress = curve_of(solved).changed(failure_probability=p), solved.values["peak_stress"]
+    curve, stress = curve_of(solved).changed(failure_probability=p), amplitude(solved)
     known = curve.scatters | (p == 0.5)
     hours = curve.life_cycles(stress) / solved.overrollings_per_hour[:, None, :]
     utilisation = worst(np.where(known, stress / curve.knee[0], np.nan))
@@ -81,6 +107,7 @@ LIMIT = Limit(
             "k delta(sigma)/sigma",
             "estimated relative error of the life",
         ),
+        ("fatigue_stress", ("contact", "body"), "MPa", "sigma_a,eq", "amplitude that enters the S-N curve"),
         ("life_hours", ("contact", "body"), "h", "L_h", "life in hours of travel"),
         ("roller_life_hours", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
         ("guide_life_hours", (), "h", "L_h,G", "hours to the first failure of the guide"),

@@ -208,6 +208,7 @@ def evaluate(solved: Solved) -> Results:
         "dang_van_stress_without_pressure": found[..., 3],
         "findley_utilisation": found[..., 1] / findley_limit[:, None, :],
         "dang_van_utilisation": found[..., 2] / dang_van_limit[:, None, :],
+        "dang_van_utilisation_without_pressure": found[..., 3] / dang_van_limit[:, None, :],
     }
 
 
@@ -227,6 +228,7 @@ LIMIT = Limit(
         ("dang_van_stress_without_pressure", _CB, "MPa", "", "the same, with negative sigma_h counted as 0"),
         ("findley_utilisation", _CB, "1", "", "Findley's stress over its limit"),
         ("dang_van_utilisation", _CB, "1", "", "Dang Van's stress over its limit"),
+        ("dang_van_utilisation_without_pressure", _CB, "1", "", "the same, with negative sigma_h counted as 0"),
     ),
     materials=(optional("fatigue_limit_torsion", "tau_D", "MPa", "fully reversed fatigue limit in torsion", 0.0, 2e5),),
     requires=("fatigue_limit_torsion",),

@@ -125,6 +125,8 @@ class Option:
             return ", ".join(value) or "none"
         if self.kind == "word":
             return value if self.applies(contact_model) else ""
+        if self.kind == "switch":
+            return str(value).lower()
         if self.kind in ("accuracy", "number"):
             return value.name if hasattr(value, "name") else str(value)
         return value if self.applies(contact_model) else None
@@ -200,6 +202,23 @@ _OPTIONS = (
             "haibach": "slope 2k - 1 (Haibach)",
             "unlimited": "no failure (Miner original)",
         },
+    ),
+    Option(
+        "life_criterion",
+        "von_mises_peak",
+        "stress that enters the S-N curve as the fully reversed amplitude",
+        {
+            "von_mises_peak": "the largest von Mises stress (as published)",
+            "von_mises_amplitude": "half the longest chord of the path in the deviatoric space",
+            "findley": "Findley's stress, as a share of its limit",
+            "dang_van": "Dang Van's stress, as a share of its limit",
+        },
+    ),
+    Option(
+        "credit_pressure",
+        True,
+        "whether hydrostatic pressure lowers Dang Van's stress",
+        kind="switch",
     ),
     Option(
         "failure_probability",

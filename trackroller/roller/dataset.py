@@ -127,11 +127,12 @@ VALIDITY_BITS = {
     "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, or, after lift-off, without "
     "the axial force: the wedge may lock, and the slightest axial force lifts a contact",
     "large_slip": "longitudinal creepage above 10 %: friction heat and wear decide",
-    "deep_life": "peak stress of the worse contact below the fatigue limit: the life depends on life_rule",
+    "deep_life": "fatigue stress of the worse contact below the fatigue limit: the life depends on life_rule",
     "split_pole": "the slip of the sliding model vanishes away from its spin pole, or twice in a patch: there the "
     "stress of the model grows without bound, as a logarithm; use kalker",
     "steep_friction": "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip speed "
     "than elastic surfaces follow; a patch has several states or none, and the roller may not roll steadily",
+    "overheated": "temperature rise above what the temperature limit of the material leaves (group heat)",
 }
 
 

@@ -64,7 +64,9 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         """
         if self.normal != "hertz" or self.slip_terms or not constant_friction:
             return {}
-        return expected_errors(self.settings, contact_model)
+        errors = expected_errors(self.settings, contact_model)
+        published = self.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured
+        return {name: levels for name, levels in errors.items() if published or name != "life"}
 
     def changed(self, **values: Any) -> Options:
         """Return the options with other values for some of them."""

@@ -11,7 +11,7 @@ from numba.core.registry import cpu_target
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.settings import converged_up_to
-from trackroller.damage import asked, judged, of_patches, verdict
+from trackroller.damage import computed, fatigue, judged, of_patches, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS
@@ -57,6 +57,8 @@ def solve(
     hertz: str | None = None,
     stress_bodies: str | None = None,
     life_rule: str | None = None,
+    life_criterion: str | None = None,
+    credit_pressure: bool | None = None,
     failure_probability: float | None = None,
     normal: str | None = None,
     stop_if: str | None = None,
@@ -76,15 +78,13 @@ def solve(
         study's design can be analysed and reported: see `trackroller.open_study`.
     outputs : str or iterable of str
         Groups of results; a group is computed only if it is asked for: "forces", "contact", "peak_stress", "life" (by
-        default these four), "friction_work", "tractions", "subsurface", "limits", and one group a
-        limit.
+        default these four), "friction_work", "tractions", "subsurface", "limits", one a limit.
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
         "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). "kalker" uses its table at
         accuracy "preview", and for forces within a tolerance that the table keeps.
     spin_model : str
-        Position of the spin pole, assumptions 0, 1, 2 of the publication: "concentric", "edge", "skewed". It matters to
-        "sliding" only. Default: "skewed".
+        Assumption 0, 1, 2 of the publication on the spin pole, for "sliding": "concentric", "edge", "skewed" (default).
     accuracy : str, float or Accuracy
         Discretisation: "standard", "preview", "reference", or a relative tolerance of forces and peak stress in (0, 1),
         which takes the cheapest settings that were measured to keep it. The attributes of a result state its expected
@@ -95,20 +95,21 @@ def solve(
         "both" bodies with their own Poisson's ratios, or "published" for one body with the mean.
     life_rule : str
         S-N curve below the fatigue limit: "elementary", "haibach" or "unlimited".
+    life_criterion : str
+        Stress that enters the S-N curve: "von_mises_peak", "von_mises_amplitude", "findley" or "dang_van".
+    credit_pressure : bool
+        Whether hydrostatic pressure lowers Dang Van's stress (default).
     failure_probability : float
         Failure probability in (0, 1) at which the group "limits" states each life.
     normal : str
         "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which drawn profiles need.
     stop_if : str, optional
-        Condition such as "peak_stress > R_m". Where it holds, no peak stress is searched for, and the case is marked
-        `stopped`. See `trackroller.roller.stop`.
+        Condition, where no peak stress is searched for, such as "peak_stress > R_m". See `trackroller.roller.stop`.
     shortcuts : bool
-        Whether symmetry and repetition among the cases are used (default). Rollers with opposite axial forces then have
-        mirrored numbers; without shortcuts they agree within the errors of the contact model.
+        Whether symmetry and repetition among the cases are used (default), so that mirrored rollers have mirrored bits.
     slip_terms : str or collection of str
-        What the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: "profile", the slip of
-        the guide's profile by eq. (20), which sliding always counts, and "curve", the turning of the roller with the
-        curve of the guide.
+        What the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: "profile", the slip by
+        eq. (20), which sliding always counts, and "curve", the turning of the roller with the guide's curve.
     database : MaterialDatabase, optional
         The materials; by default the built-in ones with the user's own over them.
 
@@ -149,6 +150,8 @@ def solve(
         "hertz": hertz,
         "stress_bodies": stress_bodies,
         "life_rule": life_rule,
+        "life_criterion": life_criterion,
+        "credit_pressure": credit_pressure,
         "failure_probability": failure_probability,
         "normal": normal,
         "stop_if": stop_if,
@@ -187,7 +190,7 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
     ds = with_reasons(_assemble(join(windows), options, single), table, options)
     _tell_errors(ds, table, options)
-    if verdict.GROUP in options.outputs:
+    if verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF:
         ds.attrs["limits_notes"] = "\n".join(stages_case.notes_on_limits(table, options))
     return ds
 
@@ -217,7 +220,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     if options.shortcuts:
         table, mirrored = handed(table)
     # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not of_patches(options.outputs):
+    if options.shortcuts and len(table) > 1 and not of_patches(options.outputs, options.life_criterion):
         rows, number = requirements.distinct_mechanics(table)
     distinct = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
     block = distinct.take(number)
@@ -257,7 +260,7 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
     results = Results.start(scene, balance(scene))
     wanted = set(options.outputs)
-    wanted |= {need for limit in asked(wanted) for need in limit.needs}
+    wanted |= {need for limit in computed(wanted, options.life_criterion) for need in limit.needs}
     stages.forces(results)
     stages.force_error(results, options)
     stages.contact(results, options)

@@ -14,13 +14,14 @@ from trackroller.materials import Material
 from trackroller.materials.properties import REQUIRED
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import count, listing, rounded, with_unit
+from trackroller.report.numbers import capital, count, listing, rounded, with_unit
 from trackroller.report.tables.inputs import as_material, stored_materials
 from trackroller.report.words.stresses import strength
 
 BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
 MAX_MATERIALS = 6
 _DASHES = {0.1: (0, (1, 1.2)), 0.9: (0, (4, 1.5))}
+_WORDS = {"peak_stress": "peak von Mises stress", "fatigue_stress": "stress of the life criterion"}
 Points = dict[str, tuple[np.ndarray, np.ndarray]]
 
 
@@ -53,9 +54,9 @@ def sn_diagram(view: StudyView) -> style.Drawn:
         style.log_ticks(axes.yaxis, *axes.get_ylim())
         axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
         axes.set_xlabel(with_unit("Overrollings to failure $N$", "1"))
-    panels[0].set_ylabel(with_unit(r"Peak von Mises stress $\sigma_\mathrm{DEH}$", "MPa"))
+    panels[0].set_ylabel(with_unit(capital(_WORDS[_amplitude(view)]), "MPa"))
     legend(figure, _entries(names, colours, known), columns=4)
-    style.head(figure, "S-N diagram with the cases of the study", "Peak stress and life of the worse contact.")
+    style.head(figure, "S-N diagram with the cases of the study", "Stress and life of the worse contact.")
     return figure, _info(view, shown, known, rule, ends[1])
 
 
@@ -87,12 +88,17 @@ def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str
         mine = (given == material) & rows
         if material not in known or not mine.any():
             continue
-        stress = view.column(f"peak_stress_{body}")[mine]
+        stress = view.column(f"{_amplitude(view)}_{body}")[mine]
         if np.isnan(stress).all():  # a study of lives alone
             with np.errstate(invalid="ignore"):
                 stress = SNCurve.of(known[material], rule).allowable_stress(life[mine])
         found[material] = stress, life[mine]
     return found
+
+
+def _amplitude(view: StudyView) -> str:
+    """Name the result that entered the S-N curve: the peak stress, or that of another life criterion."""
+    return "fatigue_stress" if view.has("fatigue_stress_roller") else "peak_stress"
 
 
 def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
@@ -149,7 +155,7 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, M
 def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str, top: float) -> style.FigureInfo:
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
-        "with the peak von Mises stress (MPa) and the life in overrollings of the rolling cases. "
+        f"with the {_WORDS[_amplitude(view)]} (MPa) and the life in overrollings of the rolling cases. "
         f"{CONVENTIONS[rule]}."
     )
     left = int((~view.rolling).sum())
@@ -161,7 +167,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str
         names = material_of(view, body)
         ends = ("tensile_strength", "fatigue_limit")
         most, limit = (np.array([getattr(known[n], end) if n in known else np.nan for n in names]) for end in ends)
-        said.append(strength(body, view.column(f"peak_stress_{body}"), limit, most, view.rolling))
+        said.append(strength(body, view.column(f"{_amplitude(view)}_{body}"), limit, most, view.rolling))
     texts = [s.text for s in said if s] + [_scatter_words(known, names) for _, names in shown[:1]]
     return style.FigureInfo("sn_diagram", caption, " ".join(t for t in texts if t))
 

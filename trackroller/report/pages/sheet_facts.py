@@ -211,7 +211,8 @@ def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Material, pr
         alpha = math.radians(inputs["contact_angle"])
         radius = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
         rate = roller_overrollings(inputs["velocity"], radius)
-    cycles = curve.life_cycles(ds["peak_stress"].sel(body=body).values)
+    stress = ds["fatigue_stress" if "fatigue_stress" in ds else "peak_stress"]
+    cycles = curve.life_cycles(stress.sel(body=body).values)
     return float(np.min(cycles / (math.nan if rate is None else rate)))
 
 

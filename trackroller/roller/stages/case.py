@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, judged, of_patches, verdict
+from trackroller.damage import LIMITS, asked, computed, judged, of_patches, verdict
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Solved, lacks
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
@@ -70,7 +70,7 @@ def patch_limits(results: Results, options: Options) -> None:
         return Tractions(**{name: results.full(getattr(t, name)) for name in names}, mirrored=scene.mirror.symmetric)
 
     solved = dataclasses.replace(solved_of(scene.table, results.values, options), tractions=fields)
-    for limit in of_patches(options.outputs):
+    for limit in of_patches(options.outputs, options.life_criterion):
         results.values |= limit.evaluate(solved)
 
 
@@ -80,7 +80,7 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     names = {body: own.name for body, own in bodies.items()}
     pairs = {str(name): told for own in bodies.values() for name, told in zip(own.name, own.guesses, strict=True)}
     out = []
-    for limit in asked(options.outputs):
+    for limit in computed(options.outputs, options.life_criterion):
         out += lacks(limit, solved, names)
         for material, told in pairs.items():
             guessed = [f"{name} ({words})" for name, words in told.items() if name in limit.requires]
@@ -133,6 +133,9 @@ def validity(table: CaseTable, block: Block) -> None:
         if "peak_stress" in v:
             knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)
             warn("static", np.any(v["peak_stress"] > strength[:, None, :], axis=1))
-            warn("deep_life", np.all(v["peak_stress"] < knee[:, None, :], axis=1))  # the worse contact sets the life
+            amplitude = v.get("fatigue_stress", v["peak_stress"])
+            warn("deep_life", np.all(amplitude < knee[:, None, :], axis=1))  # the worse contact sets the life
+        if "heat_utilisation" in v:
+            warn("overheated", np.any(v["heat_utilisation"] > 1.0, axis=1))
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]

@@ -64,7 +64,7 @@ def solve_spectrum(
     database = load_database() if database is None else database
     cases = [block.case for block in spectrum.blocks]
     options = {key: value for key, value in spectrum.options.items() if key != "life_rule"}
-    solved = solve_cases(cases, outputs=("forces", "peak_stress"), database=database, **options)
+    solved = solve_cases(cases, outputs=("forces", "peak_stress", "life"), database=database, **options)
     return _damage(spectrum, solved, database)
 
 
@@ -94,7 +94,10 @@ def damage_per_shift(
 
 def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) -> xr.Dataset:
     """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
-    stress = solved["peak_stress"].transpose("case", "contact", "body").values
+    peak, stress = (
+        solved[name if name in solved else "peak_stress"].transpose("case", "contact", "body").values
+        for name in ("peak_stress", "fatigue_stress")
+    )
     overrollings = overrollings_per_shift(spectrum)
     cycles = overrollings[:, None, :]
     case = spectrum.blocks[0].case
@@ -108,7 +111,7 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
         "distance": ("block", [b.distance for b in spectrum.blocks], _attrs("m", "distance per shift", "s")),
         "duration": ("block", [b.hours for b in spectrum.blocks], _attrs("h", "hours of travel per shift", "t")),
         "overrollings": (("block", "body"), overrollings, _attrs("1", "overrollings per shift", "n")),
-        "peak_stress": (_BCB, stress, _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")),
+        "peak_stress": (_BCB, peak, _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")),
         "life_cycles": (_BCB, life, _attrs("1", "overrollings to failure at the stress of the block", "N")),
         "damage": (_BCB, damage, _attrs("1", "damage of the block per shift", "n/N")),
         "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
@@ -125,6 +128,8 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
             meta = _attrs(unit, f"{words} {to}", f"L_{name[0].upper() if name == 'shifts' else name[0]},{index}")
             variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
     variables |= _loads(spectrum, database)
+    if "fatigue_stress" in solved:
+        variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
     if any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
         levels = spectrum.failure_probabilities
         sums = [damage_per_shift(stress, cycles, bodies, rule, p)[1].sum(axis=0) for p in levels]
