@@ -155,7 +155,7 @@ class Page:
     def drag(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         """Press the pointer at one place and release it at another; equal places are a click."""
         self._mouse("mouseMoved", start)
-        self._mouse("mousePressed", start)
+        self._mouse("mousePressed", start, buttons=1)
         if start != end:
             middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
             for place in (middle, end):
@@ -163,13 +163,15 @@ class Page:
         self._mouse("mouseReleased", end)
 
     def _mouse(self, kind: str, place: tuple[float, float], buttons: int = 0) -> None:
-        left = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
+        left = (
+            {"button": "left" if buttons else "none"} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
+        )
         self.call("Input.dispatchMouseEvent", type=kind, x=place[0], y=place[1], buttons=buttons, **left)
 
     def key(self, *names: str) -> None:
         """Press keys one after the other."""
         for name in names:
-            code = {"Tab": 9, "Enter": 13, " ": 32, "ArrowDown": 40, "ArrowRight": 39}.get(name, 0)
+            code = {"Tab": 9, "Enter": 13, " ": 32, "ArrowDown": 40, "ArrowRight": 39, "ArrowLeft": 37}.get(name, 0)
             text = {"Enter": "\r", " ": " "}.get(name, "")
             told = {"key": name, "windowsVirtualKeyCode": code} | ({"text": text} if text else {})
             self.call("Input.dispatchKeyEvent", type="keyDown", **told)

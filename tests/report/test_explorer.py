@@ -19,11 +19,13 @@ from typer.testing import CliRunner
 from trackroller.analysis.pareto import pareto
 from trackroller.cli.main import app
 from trackroller.errors import InputError
+from trackroller.report.explorer.designs import design_columns
 from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, affordable_rows, pack
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
 from trackroller.report.explorer.sample import sample_rows
 from trackroller.solved import open_study
+from trackroller.study.file.load import parse_study
 
 FACTORS = {
     "friction_coefficient": [0.05, 0.3],
@@ -155,6 +157,34 @@ def test_only_rows_of_the_most_exact_model_are_compared():
     models.attrs["study"] = ds.attrs["study"].replace("velocity:", "contact_model:")
     told = [json.loads(explorer(view_of(each))["header"])["compared"] for each in (models, ds)]
     assert told == ["kalker", ""]
+
+
+def test_a_uniform_factor_does_not_stand_on_a_logarithmic_axis():
+    """A uniform draw from 0.001 to 1 spans more than two decades; only a logarithmic distribution has such an axis."""
+    for kind, log in (("uniform", False), ("loguniform", True)):
+        factors = {"friction_coefficient": {kind: [0.001, 1.0]}, "axial_force": {"uniform": [0, 50]}}
+        data = {"name": "axes", "design": "lhs", "samples": 400, "factors": factors, "outputs": ["forces"]}
+        study = parse_study(data)
+        ds = study.design().assign(regime=("case", np.zeros(400, np.int8))).assign_attrs(study=study.merged())
+        column = collect(view_of(ds))[0]
+        assert column.name == "friction_coefficient" and column.values.max() > 100 * column.values.min()
+        assert column.log == log
+
+
+def test_designs_and_conditions_are_numbered_where_designs_repeat(study):
+    view = view_of(study)
+    columns, lists = design_columns(view)
+    found = {c.name: c.values for c in columns}
+    assert set(found) == {"design", "design_worst", "condition"} and lists["design"]["factors"] == ("material_pair",)
+    pair = view.table["material_pair"].to_numpy()
+    lives = view.table["roller_life_hours"].where(view.valid).groupby(pair).min()
+    assert np.array_equal(found["design_worst"], lives[pair].to_numpy(), equal_nan=True)
+    assert [len(np.unique(pair[found["design"] == i])) for i in (0, 1)] == [1, 1]
+    valid = np.bincount(found["condition"], view.valid)
+    assert (np.diff(valid) >= 0).all() and lists["condition"]["of"] == len(valid) == 12
+    hard = [row[-3] for row in lists["condition"]["rows"]]
+    assert hard == [f"{int(n)} of 2" for n in valid]
+    assert design_columns(view_of(sampled_study(40))) == ([], {})
 
 
 def test_names_of_users_cannot_end_the_data_and_the_policy_allows_nothing_else(tmp_path):

@@ -262,53 +262,155 @@ def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, gri
     page.close()
 
 
+def head_of(page, name):
+    """Return where the head of an axis can be held, and the place of the axis and its ends below it."""
+    left, top, width, height = page.box(f"[data-head={name}]")
+    _, above, _, whole = page.run(
+        "(b => [b.left, b.top, b.width, b.height])(document.querySelector('#explorer .stack').getBoundingClientRect())"
+    )
+    heads = page.run("Math.max(...[...document.querySelectorAll('[data-head]')].map(e => e.offsetHeight))")
+    ends = above + heads + 10, above + whole - 42
+    return (left + width / 2, top + height / 2), left + 12, ends
+
+
+def axes_of(page):
+    return page.run("[...document.querySelectorAll('[data-head]')].map(e => e.dataset.head)")
+
+
 def test_a_brush_drawn_with_the_pointer_selects_and_a_click_takes_it_back(page, grid):
-    left, top, width, _ = page.box("#explorer .stack canvas + canvas")
-    axes = page.run("document.querySelectorAll('[data-axis]:checked').length")
-    life = len(FACTORS)  # the axis of the first output stands behind the axes of the factors
-    x = left + 46 + life * (width - 92) / (axes - 1)
-    page.drag((x, top + 70), (x, top + 190))
+    _, x, (top, bottom) = head_of(page, "roller_life_hours")
+    page.drag((x, top + 12), (x, (top + bottom) / 2))
     selected, valid, rest = shown(page)
     rows = page.run("trackroller.selected()")
     lives = grid["roller_life_hours"].values.ravel()
     assert 0 < selected < lives.size and selected == len(rows) == valid + rest
     assert np.nanmin(lives[rows]) > np.nanmax(np.delete(lives, rows))  # the upper part of the axis
     assert "brush.roller_life_hours" in page.run("trackroller.fragment()")
-    page.drag((x, top + 300), (x, top + 300))
+    page.drag((x, bottom - 20), (x, bottom - 20))
     assert shown(page)[0] == lives.size
-    material = left + 46 + 2 * (width - 92) / (axes - 1)
-    page.drag((material, top + 58 + 0.9 * 268), (material, top + 58 + 0.9 * 268))  # the lowest of five levels
+    _, x, (top, bottom) = head_of(page, "material_pair")
+    page.drag((x, bottom - 0.1 * (bottom - top)), (x, bottom - 0.1 * (bottom - top)))  # the lowest of five levels
     assert shown(page)[0] == lives.size // 5
 
 
+def test_heads_of_axes_move_and_flip_them_by_pointer_and_by_keyboard(browser, pages, grid):
+    page = browser.open(pages["grid"])
+    before = axes_of(page)
+    hold, *_ = head_of(page, before[1])
+    page.drag(hold, (head_of(page, before[4])[0][0] + 5, hold[1]))
+    moved = [before[0], *before[2:5], before[1], *before[5:]]
+    assert axes_of(page) == moved
+    page.run(f"document.querySelector('[data-head={before[1]}]').focus()")
+    page.key("ArrowLeft", "ArrowLeft", "ArrowLeft")
+    assert axes_of(page) == before
+    assert page.run("document.activeElement.dataset.head") == before[1]
+    flipped = []
+    lives = grid["roller_life_hours"].values.ravel()
+    for turn in ("drag", "click", "Enter", "drag"):
+        hold, x, (top, bottom) = head_of(page, "roller_life_hours")
+        if turn == "Enter":
+            page.run("document.querySelector('[data-head=roller_life_hours]').focus()")
+            page.key("Enter")
+        else:
+            page.drag(hold, (hold[0], hold[1] + (60 if turn == "drag" else 0)))
+        page.drag((x, top + 12), (x, (top + bottom) / 2))
+        rows = page.run("trackroller.selected()")
+        kept, other = lives[rows], np.delete(lives, rows)
+        flipped.append(bool(np.nanmax(kept) < np.nanmin(other)))  # the upper part of the axis holds the short lives
+        assert flipped[-1] or np.nanmin(kept) > np.nanmax(other)
+        page.drag((x, bottom - 20), (x, bottom - 20))
+    assert flipped == [True, False, True, False]
+    page.run("document.querySelector('[data-head=roller_life_hours]').click()")
+    fragment = page.run("trackroller.fragment()")
+    assert page.complaints == []
+    page.close()
+    again = browser.open(pages["grid"], fragment)
+    label = "document.querySelector('[data-head=roller_life_hours]').getAttribute('aria-label')"
+    assert axes_of(again) == before and "falls upwards" in again.run(label)
+    again.close()
+
+
+LABELS = """(() => {
+    const seen = document.querySelectorAll('#explorer .axes button, #explorer .tick:not(.hidden)');
+    const boxes = [...seen].map(e => [e.textContent, e.getBoundingClientRect(), e.scrollWidth > e.clientWidth + 1]);
+    const before = (p, q) => p <= q + .5;
+    const apart = (a, b) => before(a.right, b.left) || before(b.right, a.left)
+        || before(a.bottom, b.top) || before(b.bottom, a.top);
+    const all = document.querySelector('#explorer .stack').getBoundingClientRect();
+    const inside = b => before(all.left, b.left) && before(b.right, all.right) && before(b.bottom, all.bottom);
+    const texts = list => list.map(([text]) => text);
+    const later = (b, i) => texts(boxes.slice(i + 1).filter(([, c]) => !apart(b, c)));
+    const hit = boxes.flatMap(([text, b], i) => later(b, i).map(other => [text, other]));
+    const [cut, out] = [boxes.filter(b => b[2]), boxes.filter(([, b]) => !inside(b))].map(texts);
+    return {cut, out, hit, texts: texts(boxes)};
+})()"""
+
+
+@pytest.mark.parametrize("width", [400, 1200])
+def test_labels_of_axes_are_whole_and_apart_and_every_axis_can_be_reached(browser, place, pages, width):
+    many = written(grid_study(TWELVE), place, "labels")
+    for path in (pages["grid"], pages["sample"], many):
+        page = browser.open(path, width=width)
+        found = page.run(LABELS)
+        assert found["hit"] == [] and found["cut"] == [] and found["out"] == []
+        if path == pages["grid"]:
+            assert "1.7225-quenched-tempered on 1.7225-normalised" in found["texts"]
+        for name in axes_of(page):
+            page.run(f"document.querySelector('[data-head={name}]').focus()")
+            left, right = page.run(
+                "(b => [b.left, b.right])(document.activeElement.closest('.axis').getBoundingClientRect())"
+            )
+            assert left >= -1 and right <= width + 1
+        assert page.run("document.documentElement.scrollWidth") <= width
+        if path != many and width == 1200:  # no scrolling is needed for a usual study
+            assert page.run("(e => e.scrollWidth <= e.clientWidth)(document.querySelector('.lines'))")
+        page.close()
+
+
 def test_fields_brush_with_the_keyboard_alone(page, grid):
-    page.run("[...document.querySelectorAll('summary')][0].focus()")
+    page.run("[...document.querySelectorAll('summary')].find(e => e.textContent.startsWith('Brushes')).focus()")
     page.key("Enter")
     page.run("document.querySelector('#explorer .brushes input[type=number]').focus()")
     page.call("Input.insertText", text="500")
     page.key("Tab")
     lives = grid["roller_life_hours"].values.ravel()
     assert shown(page)[0] == (lives >= 500).sum() > 0
-    page.run("document.querySelector('#explorer .brushes input[type=checkbox]').focus()")
+    page.run(
+        "[...document.querySelectorAll('fieldset')].find(e => e.textContent.startsWith('Friction'))"
+        ".querySelector('input').focus()"
+    )
     page.key(" ")
     first = np.broadcast_to(np.arange(4)[:, None], (4, lives.size // 4)).ravel()
     assert shown(page)[0] == ((lives >= 500) & (first != 0)).sum()
 
 
-def test_a_click_pins_a_case_and_two_stand_side_by_side(page, grid):
+COMPARED = (
+    "[...document.querySelectorAll('.pinned tbody tr:not(.part)')].map(e => [...e.children].map(c => c.textContent))"
+)
+
+
+def test_any_number_of_cases_stand_side_by_side_with_the_rows_that_differ(page, grid):
     page.run("trackroller.select({axial_force: [0, 30], regime: ['rolling']})")
     page.box("#explorer .cases")
     page.run("document.querySelector('#explorer .cases').focus()")
-    page.key("Enter", "ArrowDown", "Enter")
-    one, two = page.run("trackroller.selected()")[:2]
+    page.key("Enter")
+    alone = page.run(COMPARED)
+    page.key("ArrowDown", "Enter", "ArrowDown", "Enter", "ArrowDown", "Enter")
+    one, two, three, four = page.run("trackroller.selected()")[:4]
     heads = page.run("[...document.querySelectorAll('.pinned thead th')].map(e => e.textContent)")
-    assert heads == [f"A: case {one} Unpin", f"B: case {two} Unpin"]
-    rows = page.run(
-        "[...document.querySelectorAll('.pinned tbody tr:not(.part)')]"
-        ".map(e => [e.className, ...[...e.children].map(c => c.textContent)])"
-    )
-    assert all((kind == "differs") == (a != b) == head.startswith("≠ ") for kind, head, a, b in rows)
-    assert any(kind for kind, *_ in rows) and {"Flags", "Life of the roller"} <= {r[1].removeprefix("≠ ") for r in rows}
+    numbers = zip("ABCD", (one, two, three, four), strict=True)
+    assert heads == [f"{letter}: case {number} Unpin" for letter, number in numbers]
+    rows = page.run(COMPARED)
+    assert 0 < len(rows) < len(alone) and all(len(set(values)) > 1 for _, *values in rows)
+    assert "Life of the roller" in [words for words, *_ in rows]
+    said = page.run("document.querySelector('.pinned').textContent")
+    assert f"The 4 cases differ in {len(rows)} of {len(alone)} rows, as they are rounded here." in said
+    page.run("document.querySelector('.pinned input').focus()")
+    page.key(" ")
+    whole = page.run(COMPARED)
+    assert [words for words, *_ in whole] == [words for words, _ in alone]
+    assert [row for row in whole if len(set(row[1:])) > 1] == rows
+    assert "pins=" + "%2C".join(map(str, (one, two, three, four))) in page.run("trackroller.fragment()")
     commands = page.run("[...document.querySelectorAll('.pinned .command code')].map(e => e.textContent)")
     assert commands[1] == f"trackroller repeat friction-and-fit {one}"
     assert commands[0].startswith("trackroller solve --set axis_distance=21.75")
@@ -332,6 +434,97 @@ def test_pinned_cases_tell_how_far_they_are_from_lift_off(page, grid):
     (said,) = [t for t in told if t.startswith("Least normal force (0 at lift-off)")]
     assert float(re.search(r"\)([\d.]+) N", said)[1]) == pytest.approx(least, rel=5e-3)
     assert "--report sheet.html" in page.run("document.querySelector('.pinned').textContent")
+
+
+def test_one_click_hides_what_skids_lifts_or_lies_outside_the_model(page, grid):
+    view = view_of(grid)
+    left, top, width, height = page.box("[data-hide]")
+    click = [(left + width / 2, top + height / 2)] * 2
+    page.drag(*click)
+    assert page.run("trackroller.selected()") == np.flatnonzero(view.inside).tolist()
+    assert shown(page) == [view.inside.sum(), view.inside.sum(), 0] and view.inside.sum() < view.inside.size
+    assert page.run("document.querySelector('[data-hide]').getAttribute('aria-pressed')") == "true"
+    page.drag(*click)
+    assert shown(page)[0] == view.inside.size
+    page.run("document.querySelector('[data-hide]').focus()")
+    page.key(" ")
+    assert shown(page)[0] == view.inside.sum()
+
+
+def designs_of(view):
+    """Return for each case its roller radius and material pair, and for each design its worst valid life, by pandas."""
+    keys = ["roller_profile_radius", "material_pair"]
+    lives = view.table["roller_life_hours"].where(view.valid)
+    return keys, lives.groupby([view.table[k] for k in keys]).min()
+
+
+def test_designs_and_conditions_are_chosen_in_their_lists(page, grid):
+    view = view_of(grid)
+    keys, worst = designs_of(view)
+    cells = "[...document.querySelectorAll('[data-list=%s] tbody tr')].map(e => [...e.cells].map(c => c.textContent))"
+    designs, conditions = page.run(cells % "design"), page.run(cells % "condition")
+    assert len(designs) == len(worst) == 15 and len(conditions) == view.valid.size // 15
+    page.run("document.querySelectorAll('[data-list=design] input')[2].focus()")
+    page.key(" ")
+    rows = page.run("trackroller.selected()")
+    (design,) = {tuple(key) for key in view.table.loc[rows, keys].to_numpy()}
+    own = (view.table[keys] == design).all(axis=1)
+    assert rows == np.flatnonzero(own).tolist() and len(rows) == len(conditions)
+    radius, _, life, valid, _ = designs[2][2:]
+    assert float(radius.replace("−", "-")) == design[0] and valid == f"{view.valid[own].sum()} of {len(rows)}"
+    assert float(life.split(" (")[0].replace(",", "")) == pytest.approx(worst[design], rel=5e-3)
+    page.run("document.querySelector('[data-list=condition] summary').click()")
+    left, top, width, height = page.box("[data-list=condition] tbody tr:last-child input")
+    page.drag((left + width / 2, top + height / 2), (left + width / 2, top + height / 2))
+    (both,) = page.run("trackroller.selected()")
+    assert both in rows
+    page.drag((left + width / 2, top + height / 2), (left + width / 2, top + height / 2))
+    assert page.run("trackroller.selected()") == rows
+    assert page.run("trackroller.select({design: [1, 3]})") == 3 * len(conditions)
+    hardest = page.run("trackroller.select({condition: [1, 1]}), trackroller.selected()")
+    names = [n for n in view.factors if n not in keys]
+    held = view.table.assign(valid=view.valid).groupby(names)["valid"].sum()
+    assert view.valid[hardest].sum() == held.min() and len(hardest) == 15
+
+
+def test_the_worst_case_of_each_design_is_an_axis(page, grid):
+    view = view_of(grid)
+    keys, worst = designs_of(view)
+    _, x, (top, bottom) = head_of(page, "design_worst")
+    page.drag((x, top - 4), (x, (top + bottom) / 2))
+    rows = page.run("trackroller.selected()")
+    found = {tuple(key) for key in view.table.loc[rows, keys].to_numpy()}
+    assert 0 < len(found) < len(worst) and len(rows) == len(found) * view.valid.size // len(worst)
+    assert min(worst[key] for key in found) > max(worst[key] for key in worst.index if key not in found)
+
+
+def test_without_a_design_that_repeats_no_list_of_designs_appears(browser, pages):
+    page = browser.open(pages["sample"])
+    assert page.run("document.querySelector('[data-list]')") is None
+    assert not {"design", "design_worst", "condition"} & set(axes_of(page))
+    assert "Choices" not in page.run("[...document.querySelectorAll('h4')].map(e => e.textContent)")
+    page.close()
+
+
+def test_a_cloud_hides_no_colour(browser, place):
+    """Of 20,000 points on nearly the same place, the rare pair and every regime stay visible."""
+    ds = as_table(sampled_study(20_000))
+    ds["material_pair"][:] = np.where(np.arange(20_000) % 4000 == 7, PAIRS[2], PAIRS[0])
+    page = browser.open(written(ds, place, "cloud"))
+    fields = "[...document.querySelectorAll('#explorer select')]"
+    page.run(f"(f => {{ f.value = 'material_pair'; f.dispatchEvent(new Event('change')); }})({fields}[2])")
+    seen = page.run(
+        """(() => { const c = document.querySelector('#explorer .pair canvas');
+        const d = new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer);
+        const n = {}; for (const v of d) n[v] = (n[v] ?? 0) + 1; return n; })()"""
+    )
+    shades = page.run(
+        "[...document.querySelectorAll('.legend .sign.disc')].slice(0, 2).map(e => getComputedStyle(e).color)"
+    )
+    codes = [sum(int(v) << 8 * i for i, v in enumerate(re.findall(r"\d+", rgb))) + (255 << 24) for rgb in shades]
+    points = 5  # cases of the rare pair; a point has at least 9 pixels
+    assert len(set(codes)) == 2 and all(seen.get(str(code), 0) >= 5 * points for code in codes)
+    page.close()
 
 
 def test_table_and_commands_are_copied(browser, pages):
@@ -393,7 +586,10 @@ def test_the_selection_is_exported_with_every_digit(page, grid, tmp_path):
     page.run("trackroller.select({roller_life_hours: [1000, null]})")
     page.run("[...document.querySelectorAll('#explorer button')].find(b => b.textContent === 'Export CSV').click()")
     target = tmp_path / "friction-and-fit-selection.csv"
-    page.until("1") if target.exists() else page.run("new Promise(r => setTimeout(r, 800))")
+    for _ in range(100):
+        if target.exists():
+            break
+        page.run("new Promise(r => setTimeout(r, 100))")
     with target.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     lives = grid["roller_life_hours"].values.ravel()

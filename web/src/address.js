@@ -5,6 +5,7 @@ import { numberOf } from "./data.js";
 
 const HEAD = "#explore&";
 const VIEWS = ["x", "y", "colour", "histogram"];
+const LISTS = ["axes", "flipped"];
 
 export function written(model, parts) {
   const found = new URLSearchParams();
@@ -14,7 +15,7 @@ export function written(model, parts) {
     found.set(`brush.${name}`, JSON.stringify(told));
   }
   for (const key of VIEWS) found.set(key, model.views[key]);
-  found.set("axes", JSON.stringify(model.views.axes));
+  for (const key of LISTS) found.set(key, JSON.stringify(model.views[key]));
   if (model.pins.length) found.set("pins", model.pins.map((row) => model.table.numberOfRow(row)).join(","));
   if (model.chosen) found.set("rows", [...model.chosen].map((row) => model.table.numberOfRow(row)).join(","));
   found.set("goals", JSON.stringify(parts.goals.state));
@@ -47,15 +48,16 @@ export function read(hash, model, parts) {
     if (brush) model.change(name, brush);
   }
   for (const key of VIEWS) if (columns.has(found.get(key))) model.views[key] = found.get(key);
-  const axes = told("axes");
-  if (Array.isArray(axes)) model.views.axes = [...new Set(axes)].filter((name) => columns.has(name));
+  for (const key of LISTS) {
+    const names = told(key);
+    if (Array.isArray(names)) model.views[key] = [...new Set(names)].filter((name) => columns.has(name));
+  }
   const rows = (key) => {
-    const wanted = new Set((found.get(key) ?? "").split(",").filter(Boolean).map(Number));
-    const kept = [];
-    for (let i = 0; i < model.table.count && wanted.size; i++) if (wanted.has(model.table.numberOfRow(i))) kept.push(i);
-    return kept;
+    const wanted = new Map((found.get(key) ?? "").split(",").filter(Boolean).map((number) => [Number(number), -1]));
+    for (let i = 0; i < model.table.count; i++) if (wanted.has(model.table.numberOfRow(i))) wanted.set(model.table.numberOfRow(i), i);
+    return [...wanted.values()].filter((row) => row >= 0);
   };
-  model.pins = rows("pins").slice(0, 2);
+  model.pins = rows("pins");
   model.restrict(found.has("rows") ? rows("rows") : null);
   goalsFrom(told("goals"), parts.goals.state, columns);
   sliceFrom(told("slice"), parts.slices, columns);

@@ -5,9 +5,19 @@ import { heading } from "./words.js";
 
 const MOST_BOXES = 40;
 
+// Choices and conditions apart where designs repeat; designs and conditions themselves stand in lists.
+function groups(study) {
+  const { design } = study.lists;
+  const factors = study.of("factor");
+  const chosen = (column) => design.factors.includes(column.name);
+  const states = study.of("state").filter((c) => !c.name.startsWith("validity") && c.name !== "reason");
+  const first = design ? [["Choices", factors.filter(chosen)], ["Conditions of use", factors.filter((c) => !chosen(c))]] : [["Factors", factors]];
+  return [...first, ["Results", [...study.of("output"), ...study.of("design").filter((c) => !c.codes)]], ["State", states]];
+}
+
 export function brushes(model) {
   const fields = new Map();
-  const node = el("div", { class: "brushes" });
+  const node = el("div");
 
   function numbers(column) {
     const [low, high] = ["from", "to"].map((word) =>
@@ -36,11 +46,14 @@ export function brushes(model) {
     return { parts: all.map((b) => b.node), show: (brush) => all.forEach((b) => (b.box.checked = !brush || brush.includes(b.code))) };
   }
 
-  for (const column of model.table.of("factor", "output", "state")) {
-    if (column.name.startsWith("validity") || column.name === "reason") continue;
-    const field = byLevels(column) ? boxes(column) : numbers(column);
-    fields.set(column.name, field);
-    node.append(el("fieldset", {}, el("legend", {}, heading(column)), ...field.parts));
+  for (const [words, columns] of groups(model.table)) {
+    if (!columns.length) continue;
+    const sets = columns.map((column) => {
+      const field = byLevels(column) ? boxes(column) : numbers(column);
+      fields.set(column.name, field);
+      return el("fieldset", {}, el("legend", {}, heading(column)), field.parts);
+    });
+    node.append(el("h4", {}, words), el("div", { class: "brushes" }, sets));
   }
 
   return { node, draw: () => fields.forEach((field, name) => field.show(model.brushes.get(name))) };

@@ -1,6 +1,6 @@
 // A case in words: on touch its main figures, pinned all that its sheet says and the commands that repeat it.
 import { copy, el, replace } from "./dom.js";
-import { count, number, withUnit } from "./words.js";
+import { count, letter, number, withUnit } from "./words.js";
 
 const IN_SHORT = ["roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_life_cycles", "roller_peak_stress", "guide_peak_stress", "max_pressure"];
 
@@ -83,6 +83,7 @@ function facts(study, row) {
   const states = ["regime", "state", "reason"].map((name) => study.columns.get(name)).filter(Boolean);
   const parts = [
     ["Inputs", rows(study.of("factor"))],
+    ...(study.lists.design ? [["Design, over its conditions", rows(study.of("design"))]] : []),
     ["Results", [...rows(study.of("output")), ...utilisation(study, row), ...liftOff(study, row)]],
     ["Regime and validity", [...rows(states), ["Flags", flags(study, row)]]],
   ];
@@ -106,9 +107,10 @@ export function hoverText(study, row) {
 
 export function cards(model) {
   const { table: study } = model;
-  const hint = "Point at a case to read it, click to pin it. Two pinned cases stand side by side.";
+  const hint = "Point at a case to read it, click to pin it. Pinned cases stand side by side.";
   const hovered = el("p", { class: "hovered", role: "status", "aria-live": "polite" }, hint);
   const pinned = el("div", { class: "pinned" });
+  const whole = el("input", { type: "checkbox", onchange: () => (draw(), whole.focus()) });
 
   function hover() {
     hovered.textContent = model.hovered < 0 ? hint : hoverText(study, model.hovered).join(" · ");
@@ -122,30 +124,32 @@ export function cards(model) {
   function draw() {
     if (!model.pins.length) return replace(pinned);
     const found = model.pins.map((row) => facts(study, row));
+    const several = found.length > 1;
     const heads = model.pins.map((row, i) => {
       const away = el("button", { type: "button", "aria-label": `Unpin case ${study.caseOfRow(row)}`, onclick: () => model.pin(row) }, "Unpin");
-      return el("th", { scope: "col" }, `${"AB"[i]}: case ${study.caseOfRow(row)} `, away);
+      return el("th", { scope: "col" }, `${letter(i)}: case ${study.caseOfRow(row)} `, away);
     });
     const body = el("tbody");
-    let differences = 0;
+    let [differences, all] = [0, 0];
     found[0].forEach(([head, rows], s) => {
-      body.append(el("tr", { class: "part" }, el("th", { colspan: String(found.length + 1), scope: "colgroup" }, head)));
-      rows.forEach(([words], r) => {
+      const lines = rows.flatMap(([words]) => {
         const values = found.map((f) => f[s][1].find(([other]) => other === words)?.[1] ?? "–");
-        const apart = values.length > 1 && values[0] !== values[1];
+        const apart = several && values.some((value) => value !== values[0]);
         differences += apart;
-        const cells = values.map((value) => el("td", {}, apart ? el("strong", {}, value) : value));
-        body.append(el("tr", { class: apart ? "differs" : "" }, el("th", { scope: "row" }, apart ? `≠ ${words}` : words), cells));
+        all += 1;
+        return apart || whole.checked || !several ? [el("tr", {}, el("th", { scope: "row" }, words), values.map((value) => el("td", {}, apart && whole.checked ? el("strong", {}, value) : value)))] : [];
       });
+      if (lines.length) body.append(el("tr", { class: "part" }, el("th", { colspan: String(found.length + 1), scope: "colgroup" }, head)), ...lines);
     });
-    const said = found.length > 1 ? `The two cases differ in ${count(differences)} rows, marked ≠ and bold.` : "Pin a second case to compare.";
+    const said = several ? `The ${count(found.length)} cases differ in ${count(differences)} of ${count(all)} rows, as they are rounded here.` : "Pin another case to compare.";
     const commands = model.pins.flatMap((row, i) => [
-      command(`Solve ${"AB"[i]} again`, solveCommand(study, row)),
-      command(`Compare ${"AB"[i]} with the stored result`, repeatCommand(study, row)),
+      command(`Solve ${letter(i)} again`, solveCommand(study, row)),
+      command(`Compare ${letter(i)} with the stored result`, repeatCommand(study, row)),
     ]);
     replace(
       pinned,
       el("h3", {}, "Pinned cases"),
+      el("p", { class: "tools" }, several ? el("label", {}, whole, " Rows without a difference too") : null, el("button", { type: "button", onclick: () => model.unpin() }, "Unpin all")),
       el("p", { class: "facts" }, `${said} With "--report sheet.html" behind it, a solve command writes the sheet of the case with its exact distances to lift-off, full slip and self-locking.`),
       el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Pinned cases" }, el("table", {}, el("thead", {}, el("tr", {}, el("td", {}), heads)), body)),
       commands,

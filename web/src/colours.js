@@ -49,10 +49,11 @@ export function colouring(column, scale, rows) {
   }
   const list = sequence();
   for (let i = 0; i < rows; i++) {
-    const at = scale.unit(column.values[i]);
+    const at = scale.ofRow(i);
     index[i] = Number.isNaN(at) ? list.length : Math.round(Math.max(0, Math.min(1, at)) * (list.length - 1));
   }
-  return { list: [...list, "#888888"], index, ramp: [scale.low, scale.high] };
+  const ends = scale.levels ? [column.texts[0], column.texts.at(-1)] : [scale.low, scale.high];
+  return { list: [...list, "#888888"], index, ramp: ends };
 }
 
 export const packed = (hex) => {

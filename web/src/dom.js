@@ -50,13 +50,13 @@ export function canvas(height, label) {
   const node = el("canvas", { role: "img", "aria-label": label });
   const context = node.getContext("2d");
   const size = { width: 0, height, ratio: 1 };
-  function fit(width) {
+  function fit(width, tall = height) {
     size.ratio = Math.min(2, devicePixelRatio || 1);
-    size.width = width;
+    [size.width, size.height] = [width, tall];
     node.width = Math.round(width * size.ratio);
-    node.height = Math.round(height * size.ratio);
+    node.height = Math.round(tall * size.ratio);
     node.style.width = `${width}px`;
-    node.style.height = `${height}px`;
+    node.style.height = `${tall}px`;
     context.setTransform(size.ratio, 0, 0, size.ratio, 0, 0);
   }
   return { node, context, size, fit };

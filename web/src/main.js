@@ -7,6 +7,7 @@ import { load } from "./data.js";
 import { el, reducedMotion, replace, select } from "./dom.js";
 import { goals } from "./goals.js";
 import { histogram } from "./histogram.js";
+import { lists } from "./lists.js";
 import { Model, brushOf } from "./model.js";
 import { parallel } from "./parallel.js";
 import { paretoRows } from "./pareto.js";
@@ -18,14 +19,18 @@ import { count, heading } from "./words.js";
 
 const QUICK = 20000; // cases; above, the running medians follow when a brush rests
 const FIRST_OUTPUTS = 4; // outputs that have an axis at the start
+const KEPT = [0, 6]; // states that roll inside the model: valid, and without the constraints of the study
 
 function counts(model) {
   const shown = (name) => el("data", { "data-count": name }, "0");
   const [selected, valid, left] = ["selected", "valid", "left-out"].map(shown);
   const why = el("span", { class: "facts" });
   const clear = el("button", { type: "button", onclick: () => model.clear() }, "Clear the selection");
-  const node = el("div", { class: "counts", role: "status", "aria-live": "polite" });
-  node.append(el("span", {}, selected, ` of ${count(model.table.count)} cases selected`), el("span", {}, valid, " valid"), el("span", {}, left, " left out ", why), clear);
+  const hide = el("button", { type: "button", "data-hide": "", onclick: () => model.brush("state", hides() ? null : KEPT) }, "Hide what skids, lifts off or lies outside the model");
+  const hides = () => String(model.brushes.get("state")) === String(KEPT);
+  const told = el("span", { class: "told", role: "status", "aria-live": "polite" });
+  told.append(el("span", {}, selected, ` of ${count(model.table.count)} cases selected`), el("span", {}, valid, " valid"), el("span", {}, left, " left out ", why));
+  const node = el("div", { class: "counts" }, hide, clear, told); // the buttons keep their place whatever the counts are
   const set = (field, n) => {
     field.textContent = count(n);
     field.setAttribute("value", String(n));
@@ -36,8 +41,9 @@ function counts(model) {
       set(selected, model.count);
       set(valid, model.byState[0]);
       set(left, model.count - model.byState[0]);
-      const told = model.table.states.map((name, i) => [name, model.byState[i]]).slice(1).filter(([, n]) => n);
-      why.textContent = told.length ? `(${told.map(([name, n]) => `${count(n)} ${name}`).join(", ")})` : "";
+      const lost = model.table.states.map((name, i) => [name, model.byState[i]]).slice(1).filter(([, n]) => n);
+      why.textContent = lost.length ? `(${lost.map(([name, n]) => `${count(n)} ${name}`).join(", ")})` : "";
+      hide.setAttribute("aria-pressed", String(hides()));
       clear.disabled = !model.brushes.size && !model.chosen;
     },
   };
@@ -62,6 +68,15 @@ function legend(model, colours) {
   return { node, draw };
 }
 
+// Choices, conditions, the worst case of the design, outputs, state.
+function firstAxes(study, factors, shown) {
+  const { design } = study.lists;
+  const names = (columns) => columns.map((c) => c.name);
+  const chosen = (name) => design.factors.includes(name);
+  const first = design ? [...names(factors).filter(chosen), ...names(factors).filter((name) => !chosen(name)), "design_worst"] : names(factors);
+  return [...first, ...names(shown), "state"];
+}
+
 function start(study, place) {
   const model = new Model(study);
   const [factors, outputs] = [study.of("factor"), study.of("output")];
@@ -69,7 +84,7 @@ function start(study, place) {
   const shown = (first.length ? first : outputs).slice(0, FIRST_OUTPUTS);
   const y = shown[0] ?? factors[1] ?? factors[0] ?? study.columns.get("state");
   const x = factors.find((c) => c.number) ?? factors[0] ?? study.columns.get("regime");
-  Object.assign(model.views, { x: x.name, y: y.name, histogram: y.name, axes: [...factors, ...shown].map((c) => c.name).concat("regime", "state", study.columns.has("constraints") ? "constraints" : []) });
+  Object.assign(model.views, { x: x.name, y: y.name, histogram: y.name, axes: firstAxes(study, factors, shown) });
 
   let cached = null;
   const colours = () => {
@@ -89,20 +104,19 @@ function start(study, place) {
   const cuts = slices(model);
   const aims = goals(model);
   const fields = brushes(model);
+  const groups = lists(model);
   const key = legend(model, colours);
   const parts = { goals: aims, slices: cuts, table: list };
 
-  const every = study.of("factor", "input", "output", "state").filter((c) => c.name !== "reason" && !c.name.startsWith("validity"));
+  const every = study.of("factor", "input", "design", "output", "state").filter((c) => c.name !== "reason" && !c.name.startsWith("validity"));
   const options = every.map((c) => [c.name, heading(c)]);
   const choose = (words, view) => select(words, options, model.views[view], (name) => model.view(view, name));
   const choices = { x: choose("Across", "x"), y: choose("Up", "y"), colour: choose("Colour", "colour"), histogram: choose("Histogram of", "histogram") };
   const axisBoxes = every.map((column) => {
     const box = el("input", { type: "checkbox", "data-axis": column.name });
     box.addEventListener("change", () => {
-      const kept = new Set(model.views.axes);
-      if (box.checked) kept.add(column.name);
-      else kept.delete(column.name);
-      model.view("axes", every.map((c) => c.name).filter((name) => kept.has(name)));
+      const others = model.views.axes.filter((name) => name !== column.name);
+      model.view("axes", box.checked ? [...others, column.name] : others);
     });
     return el("label", {}, box, ` ${column.label}`);
   });
@@ -114,10 +128,11 @@ function start(study, place) {
   replace(
     place,
     bar.node,
-    el("p", { class: "facts" }, "Drag along an axis to select; click a level or an empty axis to take it back. Every field below works with the keyboard as well."),
+    el("p", { class: "facts" }, "Drag along an axis to select; click a level or an empty axis to take it back. Drag the head of an axis sideways to move it, down to flip it. Heads and fields work with the keyboard as well."),
     key.node,
     lines.node,
     note,
+    groups.nodes,
     el("details", {}, el("summary", {}, "Brushes as numbers and names"), fields.node),
     el("details", {}, el("summary", {}, "Axes shown"), el("div", { class: "tools boxes" }, axisBoxes)),
     card.hovered,
@@ -139,6 +154,7 @@ function start(study, place) {
       barsSaid.textContent = bars.draw();
       list.draw();
       fields.draw();
+      groups.draw();
       if (study.grid) return;
       clearTimeout(medians);
       if (study.count > QUICK) medians = setTimeout(cuts.draw, 120);

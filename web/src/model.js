@@ -1,8 +1,6 @@
 // What is selected: brushes of the columns, counts, pinned cases, and who has to be told of a change.
 import { byLevels } from "./scales.js";
 
-const MOST_PINS = 2;
-
 export class Model {
   constructor(table) {
     this.table = table;
@@ -14,7 +12,8 @@ export class Model {
     this.hovered = -1;
     this.marked = null; // rows of the Pareto set
     this.chosen = null; // rows that alone may be selected
-    this.views = { x: "", y: "", colour: "state", histogram: "", axes: [] };
+    this.views = { x: "", y: "", colour: "state", histogram: "", axes: [], flipped: [] };
+    this.shuffled = shuffle(table.count);
     this.listeners = [];
   }
 
@@ -93,7 +92,12 @@ export class Model {
   }
 
   pin(row) {
-    this.pins = this.pins.includes(row) ? this.pins.filter((r) => r !== row) : [...this.pins, row].slice(-MOST_PINS);
+    this.pins = this.pins.includes(row) ? this.pins.filter((r) => r !== row) : [...this.pins, row];
+    this.tell("pins");
+  }
+
+  unpin() {
+    this.pins = [];
     this.tell("pins");
   }
 
@@ -112,6 +116,18 @@ export class Model {
     this.views[key] = value;
     this.tell("view");
   }
+}
+
+// A fixed order in which every part of the study comes early.
+function shuffle(n) {
+  const order = Uint32Array.from({ length: n }, (_, i) => i);
+  let seed = 12345;
+  for (let i = n - 1; i > 0; i--) {
+    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+    const j = seed % (i + 1);
+    [order[i], order[j]] = [order[j], order[i]];
+  }
+  return order;
 }
 
 // A brush from what a script or the address of the page says: [low, high], a list of levels, or null.

@@ -4,7 +4,7 @@ import { number, tick } from "./words.js";
 
 const MOST_LEVELS = 12; // more levels of a number make an axis of numbers
 
-export const byLevels = (column) => Boolean(column.codes) && (!column.number || column.levels.length <= MOST_LEVELS);
+export const byLevels = (column) => Boolean(column.codes) && (!column.number || column.role === "design" || column.levels.length <= MOST_LEVELS);
 
 export function bounds(values) {
   let [low, high] = [Infinity, -Infinity];
@@ -16,7 +16,12 @@ export function bounds(values) {
 }
 
 // Numbers lie in proportion to their values unless two of them would touch; names lie in even steps.
+// A state that no case has needs no place.
 function levelPlaces(column) {
+  if (column.role === "state") {
+    const there = column.levels.map((_, i) => i).filter((i) => column.codes.includes(i));
+    return column.levels.map((_, i) => (there.includes(i) ? (there.indexOf(i) + 0.5) / there.length : NaN));
+  }
   const n = Math.max(1, column.levels.length);
   const even = column.levels.map((_, i) => (i + 0.5) / n);
   if (!column.number || n < 3 || !column.levels.every(Number.isFinite)) return even;
@@ -33,7 +38,7 @@ function levelScale(column) {
     levels: true,
     unit: (code) => place(code),
     ofRow: (row) => place(column.codes[row]),
-    ticks: column.texts.map((text, i) => [place(i), text]),
+    ticks: column.texts.map((text, i) => [place(i), text]).filter(([at]) => !Number.isNaN(at)),
     piece: (from, to) => column.levels.map((_, i) => i).filter((i) => place(i) >= from && place(i) <= to),
   };
 }

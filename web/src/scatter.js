@@ -3,7 +3,7 @@ import { SHAPES, isDark, packed, theme } from "./colours.js";
 import { canvas, el } from "./dom.js";
 import { plot } from "./plot.js";
 import { placesOf, scaleOf } from "./scales.js";
-import { heading } from "./words.js";
+import { heading, letter } from "./words.js";
 
 const NEAR = 12; // pixels within which a pointer finds a point
 const HEIGHT = 320;
@@ -59,6 +59,17 @@ export function scatter(model, colours) {
     places(cy, ys, 2);
   }
 
+  // An order of drawing in which colours and states alternate and the rare ones come last: none is hidden by another.
+  const orders = new WeakMap();
+  function alternating(index) {
+    if (!orders.has(index)) {
+      const [seen, turn] = [new Uint32Array(2048), new Uint32Array(count)];
+      for (const row of model.shuffled) turn[row] = seen[index[row] * 8 + model.state[row]]++;
+      orders.set(index, model.shuffled.slice().sort((a, b) => turn[b] - turn[a]));
+    }
+    return orders.get(index);
+  }
+
   function draw() {
     const [cx, cy] = axes();
     base.clear();
@@ -81,10 +92,7 @@ export function scatter(model, colours) {
       }
     };
     for (let i = 0; i < count; i++) if (model.misses[i]) put(i, grey, pale);
-    // valid cases last, so that no other case covers them
-    for (const valid of [false, true])
-      for (let i = 0; i < count; i++)
-        if (!model.misses[i] && (model.state[i] === 0) === valid) put(i, shapes[model.state[i]], colour[index[i]]);
+    for (const row of alternating(index)) if (!model.misses[row]) put(row, shapes[model.state[row]], colour[index[row]]);
     [points.width, points.height] = [wide, tall];
     points.getContext("2d").putImageData(picture, 0, 0);
     context.drawImage(points, 0, 0, size.width, HEIGHT);
@@ -110,7 +118,7 @@ export function scatter(model, colours) {
       context.fillStyle = ink;
       context.font = "bold 12px system-ui, sans-serif";
       context.textAlign = "left";
-      context.fillText("AB"[i], base.x(xs[row]) + 11, base.y(ys[row]) - 8);
+      context.fillText(letter(i), base.x(xs[row]) + 11, base.y(ys[row]) - 8);
     });
     if (model.hovered >= 0) circle(model.hovered, 7, ink, 2);
   }

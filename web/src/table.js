@@ -8,7 +8,7 @@ const SPARE = 6; // rows above and below the view
 
 export function table(model) {
   const { table: study } = model;
-  const columns = study.of("factor", "output", "state").filter((c) => !c.name.startsWith("validity_"));
+  const columns = study.of("factor", "output", "design", "state").filter((c) => !c.name.startsWith("validity_"));
   const sort = { name: "", down: false };
   let rows = new Uint32Array(0);
   let focused = 0;
@@ -32,7 +32,7 @@ export function table(model) {
   const node = el("div", { class: "panel" }, el("div", { class: "tools" }, copied, file, said), grid);
 
   function text(separator, chosen) {
-    const kept = study.of("factor", "input", "output", "state");
+    const kept = study.of("factor", "input", "output", "design", "state");
     const quoted = (words) => (/[",\n\t]/.test(words) ? `"${words.replaceAll('"', '""')}"` : words);
     const lines = [["case", ...kept.map((c) => c.name)].map(quoted).join(separator)];
     for (const row of chosen) lines.push([String(study.caseOfRow(row)), ...kept.map((c) => rawText(c, row))].map(quoted).join(separator));

@@ -19,6 +19,7 @@ from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.errors import InputError
 from trackroller.files import write_text
+from trackroller.report.explorer.designs import design_columns
 from trackroller.report.explorer.pack import affordable_rows, pack, plain_level
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.explorer.sample import extreme_rows, sample_rows
@@ -46,6 +47,8 @@ def explorer(view: StudyView) -> dict[str, Any]:
     ds, columns = view.data, collect(view)
     settings, more = solve_inputs(view, {c.name: c for c in columns})
     columns += more
+    found, lists = design_columns(view)
+    columns += found
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
     kept = pareto_rows(view, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
@@ -68,6 +71,7 @@ def explorer(view: StudyView) -> dict[str, Any]:
         "constraints": list(view.study.get("constraints") or ()),
         "compared": view.held_level(MODEL) if MODEL in view.factors else "",
         "points": design_points(view),
+        "lists": lists,
         "columns": packed,
     }
     said = (

@@ -23,6 +23,7 @@ from trackroller.study.outputs import Output, default_names, flat, outputs
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
+EVEN = ("uniform", "normal", "truncnormal", "triangular", "linspace")  # kinds of factors on a linear axis
 DETAILS = (*CONTACT_RESULTS, *BODY_RESULTS, "drilling_torque", "slip")
 
 
@@ -34,7 +35,8 @@ class Column:
     ----------
     name : name as in study files
     label, unit : for people
-    role : `factor`, `input` (follows from factors), `output`, `detail` (shown for a chosen case), or `state`
+    role : `factor`, `input` (follows from factors), `output`, `design` (of the design, over its conditions), `detail`
+        (shown for a chosen case), or `state`
     values : numbers (n,), or positions (n,) in `levels`, -1 for none
     levels : values of a column of few values, in order; numbers or texts
     texts : the levels in words
@@ -81,7 +83,9 @@ def _setting(view: StudyView, name: str, role: str) -> Column:
     label = capital(long_name(name))
     few = not view.numeric(name) or view.grid or len(view.levels(name)) <= 12
     if not few or (role == "input" and view.numeric(name)):
-        return Column(name, label, unit, role, values.astype(float), log=_spread(values))
+        drawn = view.solved.design.factors.get(name)
+        log = _spread(values) and not (drawn and drawn.kind in EVEN)
+        return Column(name, label, unit, role, values.astype(float), log=log)
     return coded(name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in view.levels(name)], unit)
 
 

@@ -74,11 +74,12 @@ def _lives(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
             if any(np.isfinite(row[f"worst_{body}"]) for row in best):
                 head = f"Life of the {body}{', worst condition' if several else ''} [{unit}]"
                 rows.append([head, *(Life(row[f"worst_{body}"], row[f"worst_{body}_beyond"]) for row in best)])
-        rows.append(["Fails first", *(_first(row) for row in best)])
+        rows.append(["Fails first", *(first_words(row) for row in best)])
     return rows
 
 
-def _first(row: pd.Series) -> str:
+def first_words(row: pd.Series) -> str:
+    """Say which body fails first, and in how many cases if it is not always the same."""
     counts = {word: int(row[f"first_{word}"]) for word in FIRST_TO_FAIL}
     told = [f"{word} in {count(n)}" for word, n in counts.items() if n]
     return next(word for word, n in counts.items() if n) if len(told) == 1 else ", ".join(told)

@@ -1,0 +1,99 @@
+"""The designs of a study and their conditions for the explorer: numbers to brush by, and a list of each."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from trackroller.analysis.designs import Designs, pair_beyond_data
+from trackroller.analysis.table import StudyView
+from trackroller.report.explorer.rows import Column
+from trackroller.report.numbers import Life, count
+from trackroller.report.tables.designs import first_words
+from trackroller.report.tables.table import cell, factor_cell, heading
+
+MOST_LISTED = 200  # designs or conditions in a list; the axis holds all of them
+
+
+def design_columns(view: StudyView) -> tuple[list[Column], dict[str, Any]]:
+    """Return what the explorer needs to compare designs over their conditions.
+
+    Parameters
+    ----------
+    view : the study as a table
+
+    Returns
+    -------
+    columns : `design` (number in the ranking, the best first), `design_worst` (worst life over the valid conditions of
+        the design), and `condition` (number of the combination of conditions, the hardest first) if the designs share
+        their conditions
+    lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list, and `of`, the number of
+        all its entries; empty if no design repeats
+    """
+    designs = Designs.of(view)
+    if designs is None or len(designs.size) < 2 or designs.size.max() < 2:
+        return [], {}
+    own = designs.place >= 0
+    number = np.argsort(designs.table.index.to_numpy())[designs.place]
+    worst = np.where(own, designs.table["worst"].to_numpy()[number], np.nan)
+    words, unit = designs.goal[1:]
+    columns = [
+        _numbered("design", "Design, the best first", np.where(own, number, -1)),
+        Column("design_worst", f"Worst {words} of the design", unit, "design", worst, log=designs.rising),
+    ]
+    lists = {"design": _designs(designs, f"Worst {words} [{unit}]")}
+    if designs.possible > 1:
+        place = _hardest_first(designs)
+        columns.append(_numbered("condition", "Condition, the hardest first", place))
+        lists["condition"] = _conditions(designs, place, number, f"Worst {words} [{unit}]")
+    return columns, lists
+
+
+def _numbered(name: str, label: str, codes: np.ndarray) -> Column:
+    levels = tuple(float(i + 1) for i in range(codes.max() + 1))
+    return Column(name, label, "", "design", codes, levels, tuple(count(int(level)) for level in levels))
+
+
+def _designs(designs: Designs, worst: str) -> dict[str, Any]:
+    """List the designs by rank, with their worst life, the conditions in which they are valid, and what fails first."""
+    rows = []
+    for _, row in designs.table.head(MOST_LISTED).iterrows():
+        life = cell(Life(row["worst"], row["worst_beyond"])) if designs.rising else cell(float(row["worst"]))
+        valid = f"{count(int(row['valid']))} of {count(int(row['cases']))}"
+        rows.append([*(cell(factor_cell(n, row[n])) for n in designs.choices), life, valid, first_words(row) or "–"])
+    heads = [*map(heading, designs.choices), worst, "Valid in", "Fails first"]
+    return {"factors": designs.choices, "heads": heads, "rows": rows, "of": len(designs.table)}
+
+
+def _hardest_first(designs: Designs) -> np.ndarray:
+    """Number the conditions of the cases, shape (n,): fewest valid designs first, then the worse worst case.
+
+    Cases of a less exact contact model have the number -1.
+    """
+    table, own = designs.view.table, designs.place >= 0
+    use = table.groupby(list(designs.conditions), sort=False, dropna=False, observed=True).ngroup().to_numpy()
+    use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
+    worst = np.full(use.max() + 1, np.inf)
+    values = designs.view.column(designs.goal[0]) * (1.0 if designs.rising else -1.0)
+    np.minimum.at(worst, use[designs.usable], values[designs.usable])
+    valid = np.bincount(use[designs.usable], minlength=len(worst))
+    return np.where(own, np.argsort(np.lexsort((worst, valid)))[use], -1)
+
+
+def _conditions(designs: Designs, place: np.ndarray, number: np.ndarray, worst: str) -> dict[str, Any]:
+    """List the conditions with the designs that are valid there, the worst life, and the design that does best."""
+    view, rows = designs.view, []
+    values, sign = view.column(designs.goal[0]), 1.0 if designs.rising else -1.0
+    beyond = pair_beyond_data(view) if designs.rising else np.zeros(len(place), dtype=bool)
+    for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
+        cases = np.flatnonzero(there & designs.usable)
+        ranked = cases[np.argsort(sign * values[cases], kind="stable")]
+        told = [f"{count(len(cases))} of {count(int(there.sum()))}", "–", "–"]
+        if cases.size:
+            least, most = ranked[0], ranked[-1]
+            told[1:] = [cell(Life(values[least], beyond[least])), count(int(number[most]) + 1)]
+        first = view.table.iloc[int(np.argmax(there))]
+        rows.append([*(cell(factor_cell(n, first[n])) for n in designs.conditions), *told])
+    heads = [*map(heading, designs.conditions), "Valid designs", worst, "Best design"]
+    return {"factors": designs.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1}
