@@ -418,6 +418,25 @@ def test_any_number_of_cases_stand_side_by_side_with_the_rows_that_differ(page, 
     assert f"--set roller_profile_radius={level}" in commands[0]
 
 
+def test_a_life_beyond_the_data_never_stands_alone(browser, place):
+    ds = with_known_lives(grid_study({"axial_force": [0.0, 10.0], "material_pair": list(PAIRS[:2])}, unlimited=True))
+    ds["roller_life_hours"][0, 0] = 1e12
+    ds["life_cycles"][0, 0] = 1e15
+    ds["roller_life_hours"][1, 0], ds["life_cycles"][1, 0] = 1.0, 1e4
+    ds["roller_life_hours"][0, 1] = ds["life_cycles"][0, 1] = np.inf
+    page = browser.open(written(ds, place, "beyond"))
+    for row in (0, 2, 1):
+        page.run(f"trackroller.pin({row})")
+    (lives,) = [cells[1:] for cells in page.run(COMPARED) if cells[0] == "Life of the roller"]
+    assert lives == ["1·10¹² h (beyond the S-N data)", "1 h", "no failure (beyond the S-N data)"]
+    column = (
+        "[...document.querySelectorAll('.head > *')].findIndex(e => e.textContent.startsWith('Life of the roller'))"
+    )
+    cells = page.run(f"[...document.querySelectorAll('.rows .row')].map(e => e.children[{column}].textContent)")
+    assert cells[0].endswith("(beyond the S-N data)") and cells[2] == "1"
+    page.close()
+
+
 def test_pinned_cases_tell_how_far_they_are_from_lift_off(page, grid):
     regime = np.moveaxis(grid["regime"].values, grid["regime"].dims.index("axial_force"), -1)
     numbers = np.moveaxis(

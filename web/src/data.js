@@ -42,6 +42,7 @@ function column(entry, block, rows) {
 export async function load(header, base64) {
   const block = await inflate(bytesOf(base64));
   const columns = new Map(header.columns.map((entry) => [entry.name, column(entry, block, header.rows)]));
+  for (const { name, codes, texts } of columns.values()) if (name.endsWith(":beyond")) columns.get(name.split(":")[0]).remark = (row) => texts[codes[row]];
   const told = (name) => columns.get(name)?.values;
   return {
     ...header,

@@ -2,7 +2,7 @@
 import { canvas, el, replace } from "./dom.js";
 import { theme } from "./colours.js";
 import { byLevels, placesOf, scaleOf } from "./scales.js";
-import { heading, letter } from "./words.js";
+import { heading, isLife, letter } from "./words.js";
 
 const LEAST = 268; // height of the axes
 const MOST = 720;
@@ -46,7 +46,7 @@ export function parallel(model, colours, say) {
     const step = column.codes && !column.number ? 1 : Math.ceil(scale.ticks.length / MOST_TICKS);
     const told = scale.ticks.filter((_, k) => k % step === 0);
     const places = placesOf(column);
-    if (places.some((at) => at > 1.001)) told.push([1.06, "unlimited"]);
+    if (places.some((at) => at > 1.001)) told.push([1.06, isLife(column) ? "no failure" : "∞"]);
     if (places.some(Number.isNaN)) told.push([NaN, "no value"]);
     const ticks = told.map(([at, words]) => ({ at, node: el("span", { class: "tick" }, words) }));
     const part = { button, ticks, node: el("div", { class: "axis" }, button, ticks.map((t) => t.node)) };

@@ -26,22 +26,23 @@ export function tick(value) {
   return number(value, 3);
 }
 
-const isLife = (column) => column.name.includes("life");
+export const isLife = (column) => column.name.includes("life");
 
-export function valueText(column, row) {
-  if (column.codes) return column.codes[row] < 0 ? "–" : column.texts[column.codes[row]];
-  const value = column.values[row];
-  return value === Infinity && isLife(column) ? "unlimited" : number(value);
+// A life beyond the S-N data never stands alone; one without end is no number of hours.
+export function valueText(column, row, unit = "") {
+  const value = column.values?.[row];
+  const endless = value === Infinity && isLife(column);
+  let text = endless ? "no failure" : column.codes ? (column.texts[column.codes[row]] ?? "–") : number(value);
+  if (unit && text !== "–" && !endless) text += ` ${unit}`;
+  const remark = column.remark?.(row);
+  return remark ? `${text} (${remark})` : text;
 }
 
 export const unitOf = (column) => (column.unit && column.unit !== "–" ? column.unit : "");
 
 export const heading = (column) => (unitOf(column) ? `${column.label} [${column.unit}]` : column.label);
 
-export function withUnit(column, row) {
-  const text = valueText(column, row);
-  return unitOf(column) && text !== "–" && text !== "unlimited" ? `${text} ${column.unit}` : text;
-}
+export const withUnit = (column, row) => valueText(column, row, unitOf(column));
 
 // The full value, for files: numbers with every digit, levels by their own name.
 export function rawText(column, row) {

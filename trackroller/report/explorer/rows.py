@@ -10,10 +10,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS
+from trackroller.analysis.designs import beyond_data, pair_beyond_data
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.errors import InputError
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.report.numbers import capital, level_text, long_name, plain, unit_text
+from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
 from trackroller.report.words.flags import words_of
 from trackroller.roller.record import setting_text
@@ -36,7 +37,7 @@ class Column:
     name : name as in study files
     label, unit : for people
     role : `factor`, `input` (follows from factors), `output`, `design` (of the design, over its conditions), `detail`
-        (shown for a chosen case), or `state`
+        (shown for a chosen case), `state`, or `remark` (of another column)
     values : numbers (n,), or positions (n,) in `levels`, -1 for none
     levels : values of a column of few values, in order; numbers or texts
     texts : the levels in words
@@ -69,6 +70,7 @@ def collect(view: StudyView) -> list[Column]:
     columns = [_setting(view, name, "factor") for name in view.factors]
     columns += [_setting(view, name, "input") for name in view.derived]
     columns += _results(ds, dims, view)
+    columns += _beyond(view, columns)
     columns += _states(ds, dims, view)
     if len(view.table) <= MOST_DETAILED:
         columns += _details(ds, dims, {column.name for column in columns}, view)
@@ -125,6 +127,21 @@ def _results(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Col
     ]
     names += [n for n in dict.fromkeys(asked) if n not in names and n not in view.table and n not in PARAMETERS]
     return [_output(found, "output", view) for found in _found(ds, dims, names)]
+
+
+def _beyond(view: StudyView, columns: Sequence[Column]) -> list[Column]:
+    """Mark the lives that lie beyond the S-N data: for each column with a life in it a column `NAME:beyond` of 0 and 1.
+
+    A column that marks no life is left out.
+    """
+    found = []
+    for column in (c for c in columns if c.role == "output" and "life" in c.name):
+        body = next((b for b in BODIES if b in column.name), "")
+        marks = (beyond_data(view, body) if body else pair_beyond_data(view)) & ~np.isnan(column.values)
+        if marks.any():
+            name = f"{column.name}:beyond"
+            found.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))
+    return found
 
 
 def _found(ds: xr.Dataset, dims: tuple[str, ...], names: Iterable[str]) -> list[Output]:
