@@ -130,4 +130,5 @@ DECISIONS = {
         PACKED,
     ),
     "rare-states": ("report/explorer/sample.py", "counts <= RARE", "counts < RARE", PACKED),
+    "least-of-state": ("report/explorer/sample.py", "max(RARE, left", "max(0, left", PACKED),
 }

@@ -23,7 +23,7 @@ from trackroller.report.explorer.designs import design_columns
 from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, affordable_rows, pack
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
-from trackroller.report.explorer.sample import sample_rows
+from trackroller.report.explorer.sample import RARE, sample_rows
 from trackroller.solved import open_study
 from trackroller.study.file.load import parse_study
 
@@ -117,6 +117,12 @@ def test_a_large_study_is_sampled_with_all_rare_states_and_kept_cases():
     assert (state[rows] == 1).sum() == pytest.approx(4_000, abs=60)
     assert np.array_equal(rows, sample_rows(state, keep, most=10_000))
     assert np.array_equal(sample_rows(state, keep, most=50_000), np.arange(50_000))
+
+
+def test_a_state_of_small_share_keeps_its_least_number_of_cases():
+    state = np.repeat([0, 1], [100_000, 2 * RARE])  # its share of 5,000 rows would be 98 cases
+    rows = sample_rows(state, np.zeros(len(state), bool), most=5_000)
+    assert np.bincount(state[rows])[1] == RARE
 
 
 def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
