@@ -643,22 +643,36 @@ def grid_size():
     return int(np.prod([len(levels) for levels in FACTORS.values()]))
 
 
-def test_limits_and_goals_answer_in_the_page(page):
-    page.run(
-        """(() => { const field = [...document.querySelectorAll('input[aria-label="Life of the roller, at least"]')][0];
-        field.value = '100'; field.dispatchEvent(new Event('change'));
-        [...document.querySelectorAll('button')].find(b => b.textContent === 'Find the Pareto set').click(); })()"""
-    )
-    said = page.run("[...document.querySelectorAll('#explorer [role=status]')].map(e => e.textContent).join('|')")
-    assert "beaten by no other within the limits" in said
+def pressed(page, words):
+    page.run(f"[...document.querySelectorAll('#explorer button')].find(b => b.textContent === {words!r}).click()")
+
+
+GOALS_OF = (
+    {"roller_life_hours": [100, None]},
+    {"friction_coefficient": [0.05, 0.2, 0.4], "axial_force": [0, 30]},
+    {"regime": ["rolling", "lift_off"], "roller_peak_stress": [None, 400.5]},
+    {"guide_curve_radius": [300, None], "motor_force": [0, 0]},
+)
+
+
+def test_goals_compare_the_selected_cases_and_ask_the_same_in_a_study_file(page, grid):
+    for wanted in GOALS_OF:
+        page.run(f"trackroller.select({json.dumps(wanted)})")
+        pressed(page, "Find the Pareto set")
+        said = page.run("[...document.querySelectorAll('#explorer [role=status]')].map(e => e.textContent).join('|')")
+        asked = page.run("[...document.querySelectorAll('#explorer .command code')].map(e => e.textContent).join('')")
+        question = yaml.safe_load(asked)
+        out = pareto(results_of(grid), question["pareto"], question["constraints"])
+        front = out["row"].values[out["optimal"].values == 1].tolist()
+        assert f"{len(front)} cases are beaten by no other selected case" in said and front
+        pressed(page, "Show the set only")
+        assert page.run("trackroller.selected()") == front
+        pressed(page, "Clear the selection")
+        assert shown(page)[0] == grid_size()
+    page.run(f"trackroller.select({{material_pair: [{PAIRS[0]!r}], axial_force: [30, 30]}})")
     asked = page.run("[...document.querySelectorAll('#explorer .command code')].map(e => e.textContent).join('')")
-    assert yaml.safe_load(asked)["constraints"] == ["roller_life_hours >= 100"]
-    goals = yaml.safe_load(asked)["pareto"]
-    front = page.run(f"trackroller.pareto({json.dumps(goals)}, {{roller_life_hours: [100, null]}})")
-    page.run("[...document.querySelectorAll('button')].find(b => b.textContent === 'Show the set only').click()")
-    assert page.run("trackroller.selected()") == front
-    page.run("[...document.querySelectorAll('button')].find(b => b.textContent === 'Clear the selection').click()")
-    assert shown(page)[0] == grid_size()
+    assert asked.endswith("# selected here, but not by a constraint: Material pair")
+    assert yaml.safe_load(asked)["constraints"] == ["axial_force >= 30", "axial_force <= 30"]
 
 
 def test_names_of_users_stay_text(browser, place):

@@ -73,15 +73,7 @@ function columnLevels(column, wanted) {
 
 function goalsFrom(told, state, columns) {
   if (!told || !Array.isArray(told.goals)) return;
-  const number = (v) => (typeof v === "number" ? v : null);
   state.goals = told.goals.filter((g) => Array.isArray(g) && columns.get(g[0])?.values && ["min", "max"].includes(g[1])).slice(0, 3);
-  state.limits = Object.fromEntries(
-    Object.entries(told.limits ?? {})
-      .filter(([name, pair]) => columns.get(name)?.values && Array.isArray(pair))
-      .map(([name, pair]) => [name, [number(pair[0]), number(pair[1])]]),
-  );
-  state.own = told.own === true && columns.has("constraints");
-  if (Array.isArray(told.regimes)) state.regimes = ["rolling", "full_slip", "lift_off"].filter((name) => told.regimes.includes(name));
 }
 
 function sliceFrom(told, slices, columns) {

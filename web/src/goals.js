@@ -1,7 +1,8 @@
-// Goals: limits and two or three outputs, and the Pareto set within the limits.
+// Goals: two or three outputs, and the Pareto set of the selected cases.
 import { numberOf } from "./data.js";
 import { copy, el, replace, select } from "./dom.js";
 import { frontOf, paretoRows } from "./pareto.js";
+import { byLevels } from "./scales.js";
 import { count, heading, number } from "./words.js";
 
 const WAYS = [["max", "as large as possible"], ["min", "as small as possible"]];
@@ -30,22 +31,34 @@ function designPoints(model) {
   return { node: el("div", { class: "points" }, el("p", {}, `${text} ${count(rows.length)} of ${count(list[0].length)} are beaten by no other; the fields below compare single cases.`), wide), front };
 }
 
+// A brush as comparisons of a study file; null if they cannot say it.
+function comparisons(column, brush) {
+  if (column.name === "regime") return column.levels.filter((_, code) => !brush.includes(code)).map((name) => `regime != ${name}`);
+  if (!column.number || !["factor", "input", "output"].includes(column.role)) return null;
+  const name = column.name;
+  const between = (low, high) => [low > -Infinity ? `${name} >= ${low}` : "", high < Infinity ? `${name} <= ${high}` : ""].filter(Boolean);
+  if (!byLevels(column)) return between(...brush);
+  const { levels } = column;
+  const above = (code, sign) => (levels[code] === Infinity ? `${name} > ${levels[code - 1]}` : `${name} ${sign} ${levels[code]}`); // no file holds infinity
+  if (brush.some((code, i) => i && code !== brush[i - 1] + 1)) return [brush.map((code) => above(code, "==")).join(" or ")];
+  return [...(brush[0] ? [above(brush[0], ">=")] : []), ...between(-Infinity, brush.at(-1) < levels.length - 1 ? levels[brush.at(-1)] : Infinity)];
+}
+
 export function goals(model) {
   const { table: study } = model;
   const free = [...study.of("output"), ...study.of("factor", "input").filter((c) => c.number)];
-  const state = { goals: [], limits: {}, regimes: ["rolling"], own: study.columns.has("constraints") };
+  const state = { goals: [] };
   const given = Object.entries(study.goals).filter(([name]) => study.columns.get(name)?.values);
   state.goals = given.length > 1 ? given.slice(0, 3) : free.slice(0, 2).map((c) => [c.name, c.name.includes("life") ? "max" : "min"]);
   const said = el("p", { role: "status", "aria-live": "polite" });
   const question = el("code", {});
   const copied = el("button", { type: "button", "aria-label": "Copy the same question for a study file", onclick: () => copy(question.textContent, copied) }, "Copy");
   const sides = el("div", { class: "tools" });
-  const limits = el("div", { class: "tools" });
   const select_ = el("button", { type: "button", onclick: chosen }, "Show the set only");
   const find = el("button", { type: "button", onclick: () => run() }, "Find the Pareto set");
   const away = el("button", { type: "button", onclick: () => (model.mark(null), tell("")) }, "Remove the marks");
   const points = designPoints(model);
-  const node = el("div", { class: "panel" }, points.node ?? "", sides, limits, el("div", { class: "tools" }, find, select_, away), said, el("div", { class: "command" }, el("span", {}, "In a study file"), question, copied));
+  const node = el("div", { class: "panel" }, points.node ?? "", sides, el("div", { class: "tools" }, find, select_, away), said, el("div", { class: "command" }, el("span", {}, "In a study file"), question, copied));
   let front = [];
 
   function controls() {
@@ -63,60 +76,32 @@ export function goals(model) {
       return el("span", { class: "goal" }, which.node, how.node);
     });
     replace(sides, three);
-    const shown = free.filter((c) => c.role === "output");
-    const fields = shown.map((column) => {
-      const [low, high] = [0, 1].map((side) => {
-        const field = el("input", { type: "number", step: "any", "aria-label": `${column.label}, ${side ? "at most" : "at least"}` });
-        field.value = state.limits[column.name]?.[side] ?? "";
-        field.addEventListener("change", () => {
-          const pair = state.limits[column.name] ?? [null, null];
-          pair[side] = field.value === "" ? null : Number(field.value);
-          state.limits[column.name] = pair;
-          if (pair[0] === null && pair[1] === null) delete state.limits[column.name];
-        });
-        return field;
-      });
-      return el("fieldset", {}, el("legend", {}, heading(column)), el("span", { class: "limits" }, "≥ ", low, " ≤ ", high));
-    });
-    const regime = study.columns.get("regime");
-    const boxes = regime.levels.slice(0, 3).map((name, i) => {
-      const box = el("input", { type: "checkbox", checked: state.regimes.includes(name) });
-      box.addEventListener("change", () => {
-        state.regimes = regime.levels.filter((n) => (n === name ? box.checked : state.regimes.includes(n)));
-      });
-      return el("label", {}, box, ` ${regime.texts[i]}`);
-    });
-    const own = el("input", { type: "checkbox", checked: state.own, onchange: () => (state.own = own.checked) });
-    const told = study.columns.has("constraints") ? el("fieldset", {}, el("legend", {}, "Constraints of the study"), el("label", {}, own, ` ${study.constraints.join("; ")}`)) : null;
-    replace(limits, fields, el("fieldset", {}, el("legend", {}, "Regimes allowed"), boxes), told ?? []);
   }
 
-  const usual = () => state.regimes.length === 1 && state.regimes[0] === "rolling";
-
-  function asked() {
-    return { ...state.limits, ...(usual() ? {} : { regime: state.regimes }), ...(state.own ? { constraints: ["met"] } : {}) };
-  }
+  // Cases that do not roll are no candidates unless a brush on the regime or the state takes them in.
+  const wide = () => model.brushes.has("regime") || model.brushes.has("state");
+  const own = () => study.columns.has("constraints") && !model.brushes.has("constraints");
 
   // The same question as keys of a study file.
   function inWords() {
-    const constraints = [...(state.own ? study.constraints : []), ...Object.entries(state.limits).flatMap(([name, [low, high]]) => [
-      ...(low === null ? [] : [`${name} >= ${low}`]),
-      ...(high === null ? [] : [`${name} <= ${high}`]),
-    ])];
-    if (!usual()) for (const name of ["rolling", "full_slip", "lift_off"]) if (!state.regimes.includes(name)) constraints.push(`regime != ${name}`);
-    if (!usual() && state.regimes.length === 3) constraints.push("regime != failed");
-    return `pareto: {${state.goals.map(([n, w]) => `${JSON.stringify(n)}: ${w}`).join(", ")}}\nconstraints: [${constraints.map((c) => JSON.stringify(c)).join(", ")}]`;
+    const found = [...model.brushes].map(([name, brush]) => [study.columns.get(name), comparisons(study.columns.get(name), brush)]);
+    const constraints = [...(own() ? study.constraints : []), ...found.flatMap(([, texts]) => texts ?? [])];
+    const silent = found.filter(([, texts]) => !texts).map(([column]) => column.label);
+    if (model.chosen) silent.push("chosen cases");
+    const more = silent.length ? `\n# selected here, but not by a constraint: ${silent.join(", ")}` : "";
+    return `pareto: {${state.goals.map(([n, w]) => `${JSON.stringify(n)}: ${w}`).join(", ")}}\nconstraints: [${constraints.map((c) => JSON.stringify(c)).join(", ")}]${more}`;
   }
 
   function run() {
     try {
-      front = paretoRows(study, Object.fromEntries(state.goals), asked());
+      const limits = { ...(wide() ? { regime: ["rolling", "full_slip", "lift_off"] } : {}), ...(own() ? { constraints: ["met"] } : {}) };
+      front = paretoRows(study, Object.fromEntries(state.goals), limits, (row) => !model.misses[row]);
     } catch (problem) {
       return tell(`No Pareto set: ${problem.message}.`);
     }
     model.mark(front);
     const cases = front.slice(0, 30).map((row) => study.caseOfRow(row)).join(", ");
-    tell(front.length ? `${count(front.length)} cases are beaten by no other within the limits: ${cases}${front.length > 30 ? ", …" : ""}.` : "No case meets the limits.");
+    tell(front.length ? `${count(front.length)} cases are beaten by no other selected case: ${cases}${front.length > 30 ? ", …" : ""}.` : "No selected case has a value in every goal.");
   }
 
   function tell(text) {
@@ -126,11 +111,11 @@ export function goals(model) {
 
   // The set as a selection: the least ranges that hold it would hold more, so the rows themselves are chosen.
   function chosen() {
-    if (!model.marked) run();
+    run();
     if (front.length) model.only(front);
   }
 
   controls();
   tell("");
-  return { node, state, run, points: points.front, restore: () => (controls(), tell("")) };
+  return { node, state, points: points.front, draw: () => tell(""), restore: () => (controls(), tell("")) };
 }

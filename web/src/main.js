@@ -155,6 +155,7 @@ function start(study, place) {
       list.draw();
       fields.draw();
       groups.draw();
+      aims.draw();
       if (study.grid) return;
       clearTimeout(medians);
       if (study.count > QUICK) medians = setTimeout(cuts.draw, 120);

@@ -49,7 +49,7 @@ function namesRegime(table, limits) {
   return Object.hasOwn(limits ?? {}, "regime") || (Object.hasOwn(limits ?? {}, "constraints") && speaks(table.constraints));
 }
 
-export function paretoRows(table, goals, limits) {
+export function paretoRows(table, goals, limits, inside = () => true) {
   const sides = Object.entries(goals);
   if (sides.length < 2) throw new RangeError("a Pareto set needs at least two goals");
   const costs = sides.map(([name, way]) => {
@@ -68,7 +68,7 @@ export function paretoRows(table, goals, limits) {
   }
   const rows = [];
   for (let i = 0; i < table.count; i++) {
-    if (regime[i] <= last && !costs.some((cost) => Number.isNaN(cost[i])) && checks.every((test) => test(i))) rows.push(i);
+    if (inside(i) && regime[i] <= last && !costs.some((cost) => Number.isNaN(cost[i])) && checks.every((test) => test(i))) rows.push(i);
   }
   return frontOf(costs, rows);
 }
