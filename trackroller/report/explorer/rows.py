@@ -24,7 +24,6 @@ from trackroller.study.outputs import Output, default_names, flat, outputs
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
-EVEN = ("uniform", "normal", "truncnormal", "triangular", "linspace")  # kinds of factors on a linear axis
 DETAILS = (*CONTACT_RESULTS, *BODY_RESULTS, "drilling_torque", "slip")
 
 
@@ -85,9 +84,7 @@ def _setting(view: StudyView, name: str, role: str) -> Column:
     label = capital(long_name(name))
     few = not view.numeric(name) or view.grid or len(view.levels(name)) <= 12
     if not few or (role == "input" and view.numeric(name)):
-        drawn = view.solved.design.factors.get(name)
-        log = _spread(values) and not (drawn and drawn.kind in EVEN)
-        return Column(name, label, unit, role, values.astype(float), log=log)
+        return Column(name, label, unit, role, values.astype(float), log=_spread(values))
     return coded(name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in view.levels(name)], unit)
 
 
@@ -113,9 +110,12 @@ def coded(
 
 
 def _spread(values: np.ndarray) -> bool:
-    """Say whether all numbers are positive and span more than a factor of 100."""
+    """Say whether all numbers are positive and spread over decades, as a uniform draw never does.
+
+    One in twenty of the numbers lies more than a factor of 100 below the largest one.
+    """
     good = values[np.isfinite(values)]
-    return bool(good.size and good.min() > 0 and good.max() > 100 * good.min())
+    return bool(good.size and good.min() > 0 and good.max() > 100 * np.quantile(good, 0.05))
 
 
 def _results(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
