@@ -77,6 +77,7 @@ class Accuracy:
     section_points: int
     elements: int
     grid_elements: int = 0  # of FASTSIM and of patches whose pressure is solved; 0: as many as `elements`
+    peak_elements: int = 0  # of tractions from which a model finds the peak stress; 0: as many as `elements`
 
     @property
     def on_grids(self) -> int:

@@ -62,6 +62,9 @@ class ModelDeclaration:
     interpolates : bool
         Whether the model interpolates between its elements, so that `Accuracy.elements` serve; otherwise
         `Accuracy.grid_elements`.
+    rough_peaks : bool
+        Whether the errors of the forces outweigh those of the search for the peak stress, so that a preset takes the
+        search and its elements from the next coarser preset.
     cheaper : str
         Model that stands in for this one at accuracy preview, and for forces within a tolerance that it keeps.
     cost : Cost
@@ -80,6 +83,7 @@ class ModelDeclaration:
     ladder: str = ""
     own_errors: bool = False
     interpolates: bool = False
+    rough_peaks: bool = False
     cheaper: str = ""
     cost: Cost = Cost()
 
@@ -145,7 +149,8 @@ _BUILT_IN = (
         ladder="kalker",
         own_errors=True,
         interpolates=True,
-        cost=Cost((4e-4, 4e-4, 1e-3), (1.2e-3, 4e-3, 0.024)),
+        rough_peaks=True,
+        cost=Cost((4e-4, 4e-4, 1e-3), (1.2e-3, 1.7e-3, 4e-3)),
     ),
 )
 # Cost of solved patches (`normal: halfspace`) by kalker; other models take less.

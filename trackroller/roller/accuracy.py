@@ -178,7 +178,7 @@ def accuracy_settings(
         return accuracy
     if isinstance(accuracy, str):
         if accuracy in PRESETS:
-            return PRESETS[accuracy]
+            return _preset_of(contact_model, accuracy)
         try:
             accuracy = read_number(accuracy)
         except ValueError:
@@ -186,6 +186,16 @@ def accuracy_settings(
     if isinstance(accuracy, bool) or not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InputError("accuracy", accuracy, f"one of {', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
     return _for_tolerance(float(accuracy), contact_model, frozenset(outputs))
+
+
+@functools.lru_cache(maxsize=64)
+def _preset_of(contact_model: str, name: str) -> Accuracy:
+    """Return the settings of a preset for a contact model, see `ModelDeclaration.rough_peaks`."""
+    own, names = PRESETS[name], list(PROMISES)
+    if not DECLARED[contact_model].rough_peaks:
+        return own
+    coarser = PRESETS[names[max(names.index(name) - 1, 0)]]
+    return replace(own, peak=coarser.peak, peak_elements=coarser.elements)
 
 
 @functools.lru_cache(maxsize=256)

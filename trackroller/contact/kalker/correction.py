@@ -58,6 +58,7 @@ class Correction:
 
     difference_step = 1e-5  # relative step of derivatives of the corrected law
     residual = 1e-10  # relative residual of the equilibrium that the corrected law can reach
+    traction_tolerance = TRACTION_TOLERANCE
 
     def __init__(self, elastic: Elastic, settings: KalkerSettings, trusts_table: bool = False) -> None:
         n = np.size(elastic.shear_modulus)
@@ -130,7 +131,7 @@ class Correction:
             if not pick.size:
                 continue
             own, slot = rows[pick], _slots(rows[pick], side[pick])
-            tolerance = converged_up_to("kalker", "hertz") if forces else TRACTION_TOLERANCE
+            tolerance = converged_up_to("kalker", "hertz") if forces else self.traction_tolerance
             wanted = {"extrapolate": forces and not started, "between": forces, "tolerance": tolerance}
             settings = dataclasses.replace(self.settings, **wanted)
             before = self.store.get(slot) if started else None
@@ -188,7 +189,7 @@ class Correction:
             start[known] = self.finer.get(slot[known]).traction
         if not known.all():
             start[~known] = on_half_elements(patch.take(~known), coarse.take(~known))
-        wanted = {"elements": elements, "tolerance": TRACTION_TOLERANCE, "extrapolate": False, "between": forces}
+        wanted = {"elements": elements, "tolerance": self.traction_tolerance, "extrapolate": False, "between": forces}
         elastic, settings = self.elastic.take(rows), dataclasses.replace(self.settings, **wanted)
         return solve_patch(patch, creep, friction, elastic, settings, start)
 

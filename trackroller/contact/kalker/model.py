@@ -47,12 +47,12 @@ class KalkerModel(ContactModel):
     def shares(self, ellipse, slip, friction, rows):
         return shares(ellipse, self._solution(ellipse, slip, friction, rows))
 
-    def finer_shares(self, ellipse, slip, friction, rows):
+    def finer_shares(self, ellipse, slip, friction, rows, parts=FINER_PARTS):
         if self.correction is None:
             return None
         coarse = self._solution(ellipse, slip, friction, rows)
         finer = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
-        return (*shares(ellipse, finer, FINER_PARTS), finer.converged)
+        return (*shares(ellipse, finer, parts), finer.converged)
 
     def power(self, ellipse, slip, friction, rows):
         if self.correction is not None:

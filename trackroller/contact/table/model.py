@@ -1,22 +1,28 @@
 """The exact theory by its table: contact model `kalker_table`, and `kalker` at accuracy `preview`.
 
 Forces, spin moment, adhesion area and dissipation come from the table. Tractions, which stresses need, come from the
-exact solver at the creepages found with the table. Rollers outside the table's range are solved exactly.
+exact solver at the creepages found with the table. Peaks take them on few elements, and on twice as many where the
+estimated error is large. Rollers outside the table's range are solved exactly.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.kalker.model import KalkerModel
+from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Accuracy, Rollers
 from trackroller.contact.slip import Slip
 from trackroller.contact.table import spline as table
 from trackroller.parameters.contact_models import DECLARED
+
+# Residual of the friction law over mu p_max in tractions on few elements; it changes peaks by 1e-4 of themselves.
+ROUGH_TOLERANCE = 5e-3
 
 
 class TableModel(ContactModel):
@@ -39,7 +45,10 @@ class TableModel(ContactModel):
     def __init__(self, given: Rollers, settings: Accuracy) -> None:
         super().__init__(given, settings)
         self.exact = KalkerModel(given, settings, trusts_table=True)
-        self.correction = self.exact.correction
+        self.correction, self.rough = self.exact.correction, self.exact
+        if settings.peak_elements not in (0, settings.elements):
+            self.rough = KalkerModel(given, replace(settings, elements=settings.peak_elements), trusts_table=True)
+            self.rough.correction.traction_tolerance = ROUGH_TOLERANCE
         self._beyond = np.zeros(np.shape(given.elastic.coupling), bool)  # rollers outside the table's range
 
     @classmethod
@@ -67,8 +76,12 @@ class TableModel(ContactModel):
         return self.exact.surface(patch, slip, friction, rows)
 
     def shares(self, patch: Any, slip: Slip, friction, rows):
-        """Return the tractions of the exact solver over their bound, see `ContactModel.shares`."""
-        return self.exact.shares(patch, slip, friction, rows)
+        """Return the tractions of the exact solver on few elements over their bound, see `ContactModel.shares`."""
+        return self.rough.shares(patch, slip, friction, rows)
+
+    def finer_shares(self, patch: Any, slip: Slip, friction, rows):
+        """Return `shares` from twice the elements, see `ContactModel.finer_shares`; None if they come from all."""
+        return None if self.rough is self.exact else self.rough.finer_shares(patch, slip, friction, rows, PARTS)
 
     def stick(self, patch: Any, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""

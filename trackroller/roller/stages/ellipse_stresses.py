@@ -13,7 +13,7 @@ from numpy.lib.recfunctions import structured_to_unstructured
 from trackroller.contact import sliding
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.bounds import lower_bounds
-from trackroller.halfspace.ellipse import NO_FIELD, patch_rows, stress_parts
+from trackroller.halfspace.ellipse import FIELD, NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.stress import body_stress
 from trackroller.roller.requirements import distinct_rows, normalised_patches
@@ -27,6 +27,7 @@ PIECE = 256  # patches whose tractions on grids are held at once
 # elements for which it holds; it falls with the area of an element. Stresses have narrow ridges where sliding begins,
 # which carry the peaks of such patches. Their search therefore takes finer rules and steps.
 REFINED_ERROR, REFINED_AT = 1.5e-2, 28
+REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
@@ -44,7 +45,9 @@ def _pieces(count: int, size: int = PIECE) -> list[slice]:
 def _mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
     """Replace the fields (m, 2, ny, nx) of `rows` by their mirror images in x, in place, and return the fields."""
     if fields is not None and rows.any():
-        fields[rows] = fields[rows][..., ::-1] * np.array([-1.0, 1.0])[:, None, None]
+        image = fields[rows][..., ::-1]
+        np.negative(image[:, 0], out=image[:, 0])
+        fields[rows] = image
     return fields
 
 
@@ -76,9 +79,9 @@ class EllipseStresses(PatchStresses):
         patch, slip, friction, rows = results.of(own)
         slip = replace(slip, shift=np.where(slides, 0.0, slip.shift))
         shares = ask(patch, slip, np.where(slides, 0.0, friction), rows)
-        for part in () if shares is None else shares[:2]:
-            _mirrored(part, own != flat)
-        return shares
+        if shares is None:
+            return None
+        return *(_mirrored(part.astype(FIELD), own != flat) for part in shares[:2]), *shares[2:]
 
     def fields(self, flat: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
         """Return the traction over its bound on grids over the existing patches `flat` (m,), and on coarser grids.
@@ -129,11 +132,13 @@ class EllipseStresses(PatchStresses):
         for piece in _pieces(flat.size):
             fields = [_mirrored(part, second[piece]) for part in self.fields(flat[piece])]
             peak.put(piece, find_peaks(patches[piece], ratios[piece], settings, *fields))
-        limit = refined_above(self.options.settings.elements)
+        own = results.scene.model.peak_error
+        worth = REFINED_SHARE * own * results.friction[flat]
+        limit = np.maximum(refined_above(self.options.settings.elements), worth)
         rough = np.flatnonzero((peak.error.max(axis=1) > limit) & (results.slides_along[flat] == 0))
-        if settings.step > FINER_SEARCH["step"]:
+        if not own and settings.step > FINER_SEARCH["step"]:
             settings = replace(settings, **FINER_SEARCH)
-        for piece in _pieces(rough.size, FINER_PIECE):
+        for piece in _pieces(rough.size, PIECE if own else FINER_PIECE):
             rows = rough[piece]
             shares = self._shares(flat[rows], results.scene.model.finer_shares)
             if shares is None:
@@ -141,7 +146,7 @@ class EllipseStresses(PatchStresses):
             fields, converged = [_mirrored(part, second[rows]) for part in shares[:2]], shares[2]
             finer = find_peaks(patches[rows], ratios[rows], settings, *fields)
             # the change of the stress at one place can vanish by chance
-            finer.error[:] = np.maximum(finer.error, limit)
+            finer.error[:] = np.maximum(finer.error, limit[rows, None])
             peak.put(rows[converged], finer.take(converged))
             results.refined[flat[rows[converged]]] = True
         return peak
