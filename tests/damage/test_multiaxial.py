@@ -6,12 +6,24 @@ from scipy.spatial.transform import Rotation
 
 import trackroller as tr
 from trackroller.damage import multiaxial as m
+from trackroller.damage import paths
 from trackroller.errors import InputError
 from trackroller.halfspace.stress import principal_stresses, von_mises
 
 TIME = np.linspace(0, 2 * np.pi, 48, endpoint=False)
 K, F = m.findley_constants(np.array(300.0), np.array(190.0))
 A, B = m.dang_van_constants(np.array(300.0), np.array(190.0))
+
+
+def amplitude(path):
+    """Half the longest chord as a von Mises stress."""
+    return np.sqrt(3.0) * paths.governing(path[None], np.nan, np.nan)[0]
+
+
+def deviators(stress):
+    """Return coordinates of deviators (n, 5) and mean stresses (n,)."""
+    u = np.empty((len(stress), 5))
+    return u, np.array([paths.deviator(s, own) for s, own in zip(stress, u, strict=True)])
 
 
 def history(bending=0.0, torsion=0.0, mean=0.0):
@@ -33,20 +45,20 @@ def turned(path, seed):
 def test_constants_make_both_limits_just_bearable():
     """Fully reversed bending and torsion at their limits give a utilisation of 1 by both criteria."""
     for path in (history(bending=300.0), history(torsion=190.0)):
-        assert m.findley(path, float(K)) == pytest.approx(float(F), rel=1e-4)
-        assert m.dang_van(path, float(A)) == pytest.approx(float(B), rel=1e-6)
+        assert paths.findley(path, float(K)) == pytest.approx(float(F), rel=1e-4)
+        assert paths.dang_van(path, float(A))[0] == pytest.approx(float(B), rel=1e-6)
 
 
 def test_closed_forms_of_the_amplitude_and_of_combined_stress():
     path = history(200.0, 90.0, mean=500.0)
-    assert m.von_mises_amplitude(path) == pytest.approx(np.sqrt(200**2 + 3 * 90**2), rel=1e-12)
+    assert amplitude(path) == pytest.approx(np.sqrt(200**2 + 3 * 90**2), rel=1e-12)
     both = history(200.0, 90.0)
     root = np.sqrt(200**2 + 4 * 90**2)
-    assert m.findley(both, float(K)) == pytest.approx(0.5 * (K * 200 + np.sqrt(1 + K**2) * root), rel=1e-4)
-    assert m.dang_van(both, float(A)) == pytest.approx(root / 2 + A * 200 / 3, rel=1e-6)
+    assert paths.findley(both, float(K)) == pytest.approx(0.5 * (K * 200 + np.sqrt(1 + K**2) * root), rel=1e-4)
+    assert paths.dang_van(both, float(A))[0] == pytest.approx(root / 2 + A * 200 / 3, rel=1e-6)
     shifted = history(200.0, 90.0, mean=-1000.0)
-    assert m.dang_van(shifted, float(A), credit_pressure=False) == pytest.approx(root / 2, rel=1e-6)
-    assert m.dang_van(shifted, float(A)) == pytest.approx(root / 2 + A * (-1000 + 200) / 3, rel=1e-6)
+    assert paths.dang_van(shifted, float(A))[1] == pytest.approx(root / 2, rel=1e-6)
+    assert paths.dang_van(shifted, float(A))[0] == pytest.approx(root / 2 + A * (-1000 + 200) / 3, rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -54,7 +66,7 @@ def test_the_frame_does_not_matter_and_brute_force_agrees(seed):
     rng = np.random.default_rng(seed)
     waves = rng.normal(size=(3, 6)) * 100
     path = sum(np.sin((i + 1) * TIME + rng.uniform(0, 6))[:, None] * w for i, w in enumerate(waves)) - 80 * np.eye(6)[2]
-    value = m.findley(path, float(K))
+    value = paths.findley(path, float(K))
     normals = rng.normal(size=(2000, 3))
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     best = 0.0
@@ -66,25 +78,28 @@ def test_the_frame_does_not_matter_and_brute_force_agrees(seed):
         best = max(best, 0.5 * chord + K * normal.max())
     assert best <= value * (1 + 1e-12) and value == pytest.approx(best, rel=0.01)
     for other in (turned(path, seed), turned(path, seed + 50)):
-        assert m.findley(other, float(K)) == pytest.approx(value, rel=5e-3)
-        assert m.dang_van(other, float(A)) == pytest.approx(m.dang_van(path, float(A)), rel=1e-3)
-        assert m.von_mises_amplitude(other) == pytest.approx(m.von_mises_amplitude(path), rel=1e-12)
+        assert paths.findley(other, float(K)) == pytest.approx(value, rel=5e-3)
+        assert paths.dang_van(other, float(A)) == pytest.approx(paths.dang_van(path, float(A)), rel=1e-3)
+        assert amplitude(other) == pytest.approx(amplitude(path), rel=1e-12)
 
 
 def test_coordinates_of_the_deviator():
     stress = np.random.default_rng(3).normal(size=(20, 6))
-    u, mean = m.deviators(stress), stress[:, :3].mean(axis=1)
+    u, mean = deviators(stress)
     assert np.sum(u**2, axis=1) == pytest.approx(von_mises(stress) ** 2 / 3, rel=1e-12)
-    assert m.largest_principal(u, mean) == pytest.approx(principal_stresses(stress)[:, 0], rel=1e-9)
+    ends = np.array([paths.principal_deviators(own) for own in u]) + mean[:, None]
+    assert ends == pytest.approx(principal_stresses(stress)[:, [0, 2]], rel=1e-9)
 
 
 def test_skipped_lines_do_not_change_the_result():
+    """The search returns the largest of the values that all paths have."""
     rng = np.random.default_rng(5)
-    paths = rng.normal(size=(30, 20, 6)) * rng.uniform(0.2, 1, (30, 1, 1))
-    values = [m.findley(path, 0.3) for path in paths]
-    called = []
-    found = m.governing(paths, np.array(values) * 1.1, lambda path: called.append(1) or m.findley(path, 0.3))
-    assert found == max(values) and len(called) < 30
+    for k, a in ((0.3, 0.4), (0.0, 0.0), (1.5, 2.0)):
+        some = rng.normal(size=(60, 20, 6)) * rng.uniform(0.2, 1, (60, 1, 1)) - 0.5 * np.eye(6)[0]
+        mises, pressed = [amplitude(path) for path in some], np.array([paths.dang_van(path, a) for path in some])
+        found = paths.governing(some, k, a)
+        assert np.sqrt(3.0) * found[0] == max(mises) and found[1] == max(paths.findley(path, k) for path in some)
+        assert found[2:].tolist() == pressed.max(axis=0).tolist()
 
 
 def test_a_frictionless_roller_has_the_amplitude_of_its_path():

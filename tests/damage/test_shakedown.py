@@ -6,7 +6,8 @@ from scipy.optimize import minimize
 
 import trackroller as tr
 from trackroller.damage.histories import Tractions, planes
-from trackroller.damage.shakedown import relieved, shakedown_shear, smallest_ball
+from trackroller.damage.paths import GAP, smallest_ball
+from trackroller.damage.shakedown import relieved, shakedown_shear
 from trackroller.halfspace.stress import stress_on_grid, von_mises
 
 
@@ -42,15 +43,15 @@ def test_the_residual_stress_shifts_u_and_nothing_else():
     rng = np.random.default_rng(1)
     stress, shift = rng.normal(size=(50, 6)), np.array([0.3, -0.8, 0.0, 0.4, 0.0, 0.0])
     (u, h), (moved, same) = relieved(stress.T), relieved((stress + shift).T)
-    assert np.einsum("dp,dp->p", u, u) + h == pytest.approx(von_mises(stress) ** 2 / 3, rel=1e-12)
-    assert np.array_equal(h, same) and np.ptp(moved - u, axis=1) == pytest.approx(np.zeros(3), abs=1e-14)
+    assert np.einsum("pd,pd->p", u, u) + h == pytest.approx(von_mises(stress) ** 2 / 3, rel=1e-12)
+    assert np.array_equal(h, same) and np.ptp(moved - u, axis=0) == pytest.approx(np.zeros(3), abs=1e-14)
 
 
 def test_smallest_ball_is_the_minimax():
     rng = np.random.default_rng(2)
     points, height = rng.normal(size=(6, 40, 3)), rng.uniform(0, 1, (6, 40))
     for own, lift in zip(points, height, strict=True):
-        value, _ = smallest_ball(own.T, lift)
+        value, _ = smallest_ball(own, lift, GAP)
         start = np.append(own.mean(0), 30.0)
         inside = {"type": "ineq", "fun": lambda v, own=own, lift=lift: v[3] - np.sum((own - v[:3]) ** 2, axis=1) - lift}
         tried = minimize(lambda v: v[3], start, constraints=[inside], method="SLSQP", options={"ftol": 1e-10})
@@ -64,7 +65,7 @@ def test_planes_are_the_stresses_of_the_half_space():
     depth = 0.45 * 0.8
     for body, (nu, sign) in enumerate(((0.3, 1), (0.25, -1))):
         direct = stress_on_grid(x, y, t.pressure[0, 0], 0.0, sign * t.shear_rolling[0, 0], [depth], nu)[0]
-        assert np.moveaxis(stress[body, 6, :, 3:15], 0, -1) == pytest.approx(direct, abs=1e-9)
+        assert np.moveaxis(stress[body, 6, :, 3:15], 0, -1) == pytest.approx(direct, abs=2e-6)  # over p_0 = 1
 
 
 def test_shakedown_allows_more_than_the_elastic_limit():

@@ -16,8 +16,6 @@ import numpy as np
 from trackroller.damage.histories import Tractions, planes
 from trackroller.damage.limit import TRACTIONS, Limit, Results, Solved, Verdict, variables, worst
 
-GAP = 1e-4  # relative gap of J2 at which the search of the smallest ball ends
-
 
 def relieved(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the parts of J2 that a residual stress can and cannot relieve.
@@ -30,88 +28,10 @@ def relieved(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     tuple of numpy.ndarray
-        Coordinates u, (3, ...), and h, (...), with J2 = |u|^2 + h; a residual stress shifts u by any vector.
+        Coordinates u, (..., 3), and h, (...), with J2 = |u|^2 + h; a residual stress shifts u by any vector.
     """
     x, y, z, xy, yz, zx = stress
-    return np.stack([(x - y) / 2.0, (2.0 * z - x - y) / np.sqrt(12.0), xy]), yz**2 + zx**2
-
-
-def smallest_ball(points: np.ndarray, height: np.ndarray) -> tuple[float, np.ndarray]:
-    """Return the smallest possible largest |u - c|^2 + h over the centres c, and the centre.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        u, (d, p).
-    height : numpy.ndarray
-        h >= 0, (p,).
-
-    Returns
-    -------
-    tuple of float and numpy.ndarray
-        The smallest maximum, at most `GAP` above the exact one, and c, (d,).
-
-    Notes
-    -----
-    The ball of a few points grows by the farthest of all points until it holds them all. The value of the dual problem
-    of these few points is a lower bound.
-    """
-    base = np.einsum("dp,dp->p", points, points) + height
-    used = [int(np.argmax(base))]
-    weights = np.ones(1)
-    highest = -np.inf
-    while True:
-        centre, weights, dual = _centre(points[:, used], base[used], weights)
-        used = [place for place, weight in zip(used, weights, strict=True) if weight > 0]
-        distance = base - 2.0 * (centre @ points) + centre @ centre
-        far = int(np.argmax(distance))
-        if distance[far] <= (1.0 + GAP) * dual or far in used or dual <= highest:
-            return float(distance[far]), centre
-        highest = dual
-        weights = np.append(weights[weights > 0], 0.0)
-        used.append(far)
-
-
-def _centre(points: np.ndarray, base: np.ndarray, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return centre (d,), weights (p,) and dual value of the smallest ball of a few points (d, p).
-
-    The weights maximise the concave dual over the simplex; an active-set method drops points whose weight would be
-    negative. `weights` is where it starts.
-    """
-    weights, active = weights.copy(), np.arange(base.size)
-    while True:
-        some, n = points[:, active], active.size
-        system = np.ones((n + 1, n + 1))
-        system[:n, :n], system[n, n] = 2.0 * some.T @ some, 0.0
-        right = np.append(base[active], 1.0)
-        solution = _solved(system, right)
-        rest = right - system @ solution
-        # More points than a ball can have on its surface: the rest is a direction in which the dual value rises.
-        crowded = np.abs(rest).max() > 1e-9 * np.abs(right).max()
-        move = rest[:n] if crowded else solution[:n] - weights[active]
-        falls = (move < 0) if crowded else (solution[:n] < -1e-12)
-        if not falls.any():
-            weights[active] = np.maximum(solution[:n], 0.0)
-            break
-        weights[active] += np.min(weights[active][falls] / -move[falls]) * move
-        keep = weights[active] > 1e-14
-        if keep.all():
-            break
-        weights[active[~keep]] = 0.0
-        active = active[keep]
-    centre = points @ weights
-    return centre, weights, float(weights @ base - centre @ centre)
-
-
-def _solved(system: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Return the solution of a symmetric system, that of least squares if the system is singular."""
-    try:
-        solution = np.linalg.solve(system, right)
-    except np.linalg.LinAlgError:
-        solution = np.full_like(right, np.nan)
-    if np.abs(right - system @ solution).max() <= 1e-10 * np.abs(right).max() and np.abs(solution[:-1]).max() < 1e6:
-        return solution
-    return np.asarray(np.linalg.lstsq(system, right, rcond=None)[0])
+    return np.stack([(x - y) / 2.0, (2.0 * z - x - y) / np.sqrt(12.0), xy], axis=-1), yz**2 + zx**2
 
 
 def shakedown_shear(stress: np.ndarray) -> float:
@@ -127,14 +47,16 @@ def shakedown_shear(stress: np.ndarray) -> float:
     float
         k [MPa]; the unloaded state counts as a point of every plane.
     """
+    from trackroller.damage.paths import GAP, smallest_ball  # numba compiles on import, and planning needs none of it
+
     largest = float(np.max(stress[0, 4] ** 2 + stress[0, 5] ** 2))
     parts = [relieved(np.append(plane.reshape(6, -1), np.zeros((6, 1)), axis=1)) for plane in stress[1:]]
     # No ball is larger than the one around the middle of its points, so most planes need no ball.
-    middles = [0.5 * (u.max(axis=1, keepdims=True) + u.min(axis=1, keepdims=True)) for u, _ in parts]
-    bounds = [float(np.max(np.sum((u - c) ** 2, axis=0) + h)) for (u, h), c in zip(parts, middles, strict=True)]
+    middles = [0.5 * (u.max(axis=0) + u.min(axis=0)) for u, _ in parts]
+    bounds = [float(np.max(np.sum((u - c) ** 2, axis=1) + h)) for (u, h), c in zip(parts, middles, strict=True)]
     for i in np.argsort(bounds)[::-1]:
         if bounds[i] > largest:
-            largest = max(largest, smallest_ball(*parts[i])[0])
+            largest = max(largest, smallest_ball(*parts[i], GAP)[0])
     return float(np.sqrt(largest))
 
 

@@ -1,0 +1,299 @@
+"""Compiled search for the stress paths that govern the multiaxial criteria, and for smallest balls.
+
+A path is the stress history of one point, (t, 6) in the order of `halfspace.stress.COMPONENTS`. Each search holds an
+upper bound for every path and sharpens the largest one until it belongs to a path whose value is known. Paths that
+cannot govern are left with a cheap bound, so the search never changes the result.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from trackroller.numerics.compiled import compiled
+
+GAP, FINE = 1e-4, 1e-7  # relative gaps of a squared radius: for the radius, and for the centre, whose error is its root
+MOST_MOVES, MOST_POINTS = 2_000, 60  # ends of the search of a ball; what is found then is still an upper bound
+COARSE, KEPT, ROUNDS = 95, 3, 7  # planes searched first, those refined, and how often the step is halved
+
+
+@compiled
+def _squared(u):  # pragma: no cover (compiled)
+    total = 0.0
+    for value in u:
+        total += value * value
+    return total
+
+
+@compiled
+def _slope(point, base, centre):  # pragma: no cover (compiled)
+    """Return |u - c|^2 + h - |c|^2 of a point u (d,) with its base |u|^2 + h."""
+    for j in range(len(centre)):
+        base -= 2.0 * centre[j] * point[j]
+    return base
+
+
+@compiled
+def _balanced(points, base, weight, centre, gap):  # pragma: no cover (compiled)
+    """Write the weights and the centre of the smallest ball around a few points.
+
+    Weight moves from the nearest point that has some to the farthest one, as far as the concave dual value rises.
+    """
+    for _ in range(MOST_MOVES):
+        far, near, low, high, dual = 0, 0, np.inf, -np.inf, 0.0
+        for i in range(len(points)):
+            slope = _slope(points[i], base[i], centre)
+            dual += weight[i] * base[i]
+            far, high = (i, slope) if slope > high else (far, high)
+            near, low = (i, slope) if weight[i] > 0.0 and slope < low else (near, low)
+        own = _squared(centre)
+        if far == near or high + own <= (1.0 + gap) * (dual - own):
+            break
+        way = points[far] - points[near]
+        move = min(weight[near], (high - low) / (2.0 * _squared(way)))
+        weight[far] += move
+        weight[near] -= move
+        centre += move * way
+
+
+@compiled
+def smallest_ball(points, height, gap):  # pragma: no cover (compiled)
+    """Return the smallest possible largest |u - c|^2 + h over the centres c, and the centre.
+
+    Parameters
+    ----------
+    points : numpy.ndarray
+        u, (p, d).
+    height : numpy.ndarray
+        h >= 0, (p,).
+    gap : float
+        Relative gap at which the search ends [1].
+
+    Returns
+    -------
+    tuple of float and numpy.ndarray
+        The smallest maximum, at most `gap` above the exact one, and c, (d,).
+
+    Notes
+    -----
+    The centre is a weighted mean of a few points (pairwise Frank-Wolfe). The farthest of all points joins them until
+    the ball holds all.
+    """
+    base = height.copy()
+    for i in range(len(points)):
+        base[i] += _squared(points[i])
+    first = np.argmax(base)
+    few, few_base, weight = points[first : first + 1].copy(), base[first : first + 1].copy(), np.ones(1)
+    centre = few[0].copy()
+    while True:
+        far, high = 0, -np.inf
+        for i in range(len(points)):
+            slope = _slope(points[i], base[i], centre)
+            far, high = (i, slope) if slope > high else (far, high)
+        own = _squared(centre)
+        if high + own <= (1.0 + gap) * (np.sum(weight * few_base) - own) or len(few) > MOST_POINTS:
+            return high + own, centre
+        kept = weight > 0.0
+        few = np.concatenate((few[kept], points[far : far + 1]))
+        few_base, weight = np.append(few_base[kept], base[far]), np.append(weight[kept], 0.0)
+        _balanced(few, few_base, weight, centre, 0.1 * gap)
+
+
+@compiled
+def deviator(s, u):  # pragma: no cover (compiled)
+    """Write coordinates u (5,) of the deviator with |u|^2 = J2 of a stress s (6,), and return the mean stress."""
+    u[0], u[1] = (s[0] - s[1]) / 2.0, (2.0 * s[2] - s[0] - s[1]) / math.sqrt(12.0)
+    u[2], u[3], u[4] = s[3], s[4], s[5]
+    return (s[0] + s[1] + s[2]) / 3.0
+
+
+@compiled
+def principal_deviators(u):  # pragma: no cover (compiled)
+    """Return the largest and the smallest principal stress of a deviator, from its coordinates u (5,)."""
+    square = _squared(u)
+    if square == 0.0:
+        return 0.0, 0.0
+    third, size = u[1] / math.sqrt(3.0), math.sqrt(square / 3.0)
+    x, y, z = u[0] - third, -u[0] - third, 2.0 * third
+    determinant = x * (y * z - u[3] ** 2) - u[2] * (u[2] * z - u[3] * u[4]) + u[4] * (u[2] * u[3] - y * u[4])
+    turn = math.acos(min(1.0, max(-1.0, 0.5 * determinant / size**3))) / 3.0
+    return 2.0 * size * math.cos(turn), 2.0 * size * math.cos(turn + 2.0 * math.pi / 3.0)
+
+
+@compiled
+def chords(u):  # pragma: no cover (compiled)
+    """Return the longest distance of two points u (t, 5), and the largest shear of a difference of two."""
+    longest, shear, between = 0.0, 0.0, np.empty(5)
+    for i in range(len(u)):
+        for k in range(i):
+            square = 0.0
+            for j in range(5):
+                between[j] = u[i, j] - u[k, j]
+                square += between[j] ** 2
+            longest = max(longest, square)
+            if square > shear * shear:  # the largest shear is at most the distance
+                high, low = principal_deviators(between)
+                shear = max(shear, 0.5 * (high - low))
+    return math.sqrt(longest), shear
+
+
+@compiled
+def on_plane(path, normal, k, step):  # pragma: no cover (compiled)
+    """Return tau_a + k sigma_n,max on a plane with its normal (3,), from every `step`-th stress of a path."""
+    x, y, z = normal[0], normal[1], normal[2]
+    if abs(x) < 0.6:
+        size = math.sqrt(y * y + z * z)
+        a0, a1, a2 = 0.0, z / size, -y / size
+    else:
+        size = math.sqrt(x * x + z * z)
+        a0, a1, a2 = -z / size, 0.0, x / size
+    b0, b1, b2 = y * a2 - z * a1, z * a0 - x * a2, x * a1 - y * a0
+    n = (len(path) + step - 1) // step
+    first, second, highest = np.empty(n), np.empty(n), -np.inf
+    for i in range(n):
+        s = path[i * step]
+        tx, ty, tz = s[0] * x + s[3] * y + s[5] * z, s[3] * x + s[1] * y + s[4] * z, s[5] * x + s[4] * y + s[2] * z
+        first[i], second[i] = tx * a0 + ty * a1 + tz * a2, tx * b0 + ty * b1 + tz * b2
+        highest = max(highest, tx * x + ty * y + tz * z)
+    chord = 0.0
+    for i in range(n):
+        for j in range(i):
+            chord = max(chord, (first[i] - first[j]) ** 2 + (second[i] - second[j]) ** 2)
+    return 0.5 * math.sqrt(chord) + k * highest
+
+
+@compiled
+def findley(path, k):  # pragma: no cover (compiled)
+    """Return the largest tau_a + k sigma_n,max over all planes [MPa], tau_a as half the longest chord of the shear.
+
+    Parameters
+    ----------
+    path : numpy.ndarray
+        Stresses, (t, 6) [MPa].
+    k : float
+        k_F >= 0 [1].
+    """
+    normals, values = np.empty((COARSE, 3)), np.empty(COARSE)
+    even = COARSE - 3
+    for i in range(COARSE):
+        z, turn = (i + 0.5) / even, math.pi * (3.0 - math.sqrt(5.0)) * i
+        if i < even:
+            normals[i, 0], normals[i, 1] = (
+                math.sqrt(1.0 - z * z) * math.cos(turn),
+                math.sqrt(1.0 - z * z) * math.sin(turn),
+            )
+            normals[i, 2] = z
+        else:
+            normals[i] = 0.0
+            normals[i, i - even] = 1.0
+        values[i] = on_plane(path, normals[i], k, 2)
+    best = 0.0
+    for start in np.argsort(values)[COARSE - KEPT :]:
+        normal, step = normals[start].copy(), math.sqrt(2.0 * math.pi / even)
+        value = on_plane(path, normal, k, 1)
+        for _ in range(ROUNDS):
+            helper = np.zeros(3)
+            helper[np.argmin(np.abs(normal))] = 1.0
+            first = np.cross(normal, helper)
+            first /= np.linalg.norm(first)
+            second, at = np.cross(normal, first), normal.copy()
+            for i in range(6):
+                tried = at + step * (math.cos(i * math.pi / 3) * first + math.sin(i * math.pi / 3) * second)
+                tried /= np.linalg.norm(tried)
+                found = on_plane(path, tried, k, 1)
+                if found > value:
+                    value, normal = found, tried
+            step *= 0.5
+        best = max(best, value)
+    return best
+
+
+@compiled
+def dang_van(path, a):  # pragma: no cover (compiled)
+    """Return the largest tau(t) + a sigma_h(t) of a path (t, 6) with and without credit of pressure [MPa].
+
+    tau is the largest shear of the deviator around the centre of the smallest ball that holds the path. Without credit
+    a negative sigma_h counts as 0.
+    """
+    u, mean = np.empty((len(path), 5)), np.empty(len(path))
+    for i in range(len(path)):
+        mean[i] = deviator(path[i], u[i])
+    centre = smallest_ball(u, np.zeros(len(path)), FINE)[1]
+    with_credit, without = -np.inf, -np.inf
+    for i in range(len(path)):
+        high, low = principal_deviators(u[i] - centre)
+        shear = 0.5 * (high - low)
+        with_credit = max(with_credit, shear + a * mean[i])
+        without = max(without, shear + a * max(mean[i], 0.0))
+    return with_credit, without
+
+
+@compiled
+def _bounds(paths, k, a):  # pragma: no cover (compiled)
+    """Return upper bounds (m, 4) of half the chord, Findley's and Dang Van's stress with and without credit."""
+    out, u = np.empty((len(paths), 4)), np.empty((paths.shape[1], 5))
+    for i in range(len(paths)):
+        low, high = np.full(5, np.inf), np.full(5, -np.inf)
+        normal, pressed, mean = -np.inf, -np.inf, 0.0
+        for t in range(len(u)):
+            mean = deviator(paths[i, t], u[t])
+            square = 0.0
+            for j in range(5):
+                low[j], high[j], square = min(low[j], u[t, j]), max(high[j], u[t, j]), square + u[t, j] ** 2
+            normal, pressed = max(normal, mean + 2.0 * math.sqrt(square / 3.0)), max(pressed, mean)
+        radius = 0.0  # of a ball around the middle, which holds the path: no smaller than the smallest one
+        for t in range(len(u)):
+            square = 0.0
+            for j in range(5):
+                square += (u[t, j] - 0.5 * (low[j] + high[j])) ** 2
+            radius = max(radius, square)
+        radius = math.sqrt(radius)
+        out[i, 0], out[i, 1] = radius, radius + k * normal
+        out[i, 2], out[i, 3] = radius + a * pressed, radius + a * max(pressed, 0.0)
+    return out
+
+
+@compiled
+def governing(paths, k, a):  # pragma: no cover (compiled)
+    """Return the largest half chord, Findley's and Dang Van's stress with and without credit over paths.
+
+    Parameters
+    ----------
+    paths : numpy.ndarray
+        Paths, (m, t, 6) [MPa].
+    k, a : float
+        k_F and a_D [1]; NaN leaves out both criteria.
+
+    Returns
+    -------
+    numpy.ndarray
+        (4,) [MPa]; the half chord in the coordinates of `deviator`.
+    """
+    bounds, out = _bounds(paths, k, a), np.full(4, np.nan)
+    sharp, known = np.zeros(len(paths), dtype=np.bool_), np.full((len(paths), 2), np.nan)
+    u = np.empty((paths.shape[1], 5))
+    for kind in range(1 if np.isnan(k + a) else 4):
+        best, own = -np.inf, bounds[:, kind].copy()
+        while True:
+            i = np.argmax(own)
+            if own[i] <= best:
+                break
+            if kind >= 2:
+                if np.isnan(known[i, 0]):
+                    known[i, 0], known[i, 1] = dang_van(paths[i], a)
+                best, own[i] = max(best, known[i, kind - 2]), -np.inf
+            elif kind == 1 and sharp[i]:
+                best, own[i] = max(best, findley(paths[i], k)), -np.inf
+            else:
+                highest = -np.inf
+                for t in range(len(u)):
+                    mean = deviator(paths[i, t], u[t])
+                    highest = max(highest, mean + principal_deviators(u[t])[0])
+                chord, shear = chords(u)
+                if kind == 0:
+                    best, own[i] = max(best, 0.5 * chord), -np.inf
+                else:
+                    own[i], sharp[i] = min(own[i], 0.5 * shear + k * highest), True
+        out[kind] = best
+    return out
