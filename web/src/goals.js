@@ -1,35 +1,10 @@
 // Goals: two or three outputs, and the Pareto set of the selected cases.
-import { numberOf } from "./data.js";
 import { copy, el, replace, select } from "./dom.js";
-import { frontOf, paretoRows } from "./pareto.js";
+import { paretoRows } from "./pareto.js";
 import { byLevels } from "./scales.js";
-import { count, heading, number } from "./words.js";
+import { count, heading } from "./words.js";
 
 const WAYS = [["max", "as large as possible"], ["min", "as small as possible"]];
-
-// Design points of a study whose goals are statistics over scatter: the points that no other beats, as a table.
-function designPoints(model) {
-  const { points, columns } = model.table;
-  if (!points) return { node: null, front: () => [] };
-  const told = Object.entries(points.goals).map(([name, way]) => `${points.labels[name] ?? name} ${way === "max" ? "up" : "down"}`).join(", ");
-  const text = `The goals of this study are statistics over its scatter: ${told}. They compare design points, not single cases.`;
-  if (!points.values) return { node: el("p", {}, `${text} Their Pareto set needs sensitivity.nc beside the study; it stands in report.html under Decide.`), front: () => [] };
-  const names = Object.keys(points.goals);
-  const list = names.map((name) => points.values[name].map(numberOf));
-  const costs = list.map((values, k) => (points.goals[names[k]] === "min" ? values : values.map((v) => -v)));
-  const front = () => frontOf(costs, list[0].keys());
-  const cases = (i) => {
-    const tests = points.factors.map((name) => [columns.get(name), numberOf(points.values[name][i])]);
-    const inside = (row) => tests.every(([c, v]) => (c.values ? c.values[row] === v : c.levels[c.codes[row]] === v));
-    return Array.from({ length: model.table.count }, (_, row) => row).filter(inside);
-  };
-  const shown = [...points.factors, ...names.filter((name) => !points.factors.includes(name))];
-  const cell = (value) => (typeof value === "number" ? number(value) : String(value));
-  const rows = front().map((i) => el("tr", {}, shown.map((name) => el("td", {}, cell(numberOf(points.values[name][i])))), el("td", {}, el("button", { type: "button", "aria-label": `Show the cases of design point ${i}`, onclick: () => model.only(cases(i)) }, "Show its cases"))));
-  const head = el("thead", {}, el("tr", {}, shown.map((name) => el("th", { scope: "col" }, points.labels[name] ?? name)), el("td", {})));
-  const wide = el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Pareto-optimal design points" }, el("table", {}, head, el("tbody", {}, rows)));
-  return { node: el("div", { class: "points" }, el("p", {}, `${text} ${count(rows.length)} of ${count(list[0].length)} are beaten by no other; the fields below compare single cases.`), wide), front };
-}
 
 // A brush as comparisons of a study file; null if they cannot say it.
 function comparisons(column, brush) {
@@ -57,8 +32,7 @@ export function goals(model) {
   const select_ = el("button", { type: "button", onclick: chosen }, "Show the set only");
   const find = el("button", { type: "button", onclick: () => run() }, "Find the Pareto set");
   const away = el("button", { type: "button", onclick: () => (model.mark(null), tell("")) }, "Remove the marks");
-  const points = designPoints(model);
-  const node = el("div", { class: "panel" }, points.node ?? "", sides, el("div", { class: "tools" }, find, select_, away), said, el("div", { class: "command" }, el("span", {}, "In a study file"), question, copied));
+  const node = el("div", { class: "panel" }, sides, el("div", { class: "tools" }, find, select_, away), said, el("div", { class: "command" }, el("span", {}, "In a study file"), question, copied));
   let front = [];
 
   function controls() {
@@ -117,5 +91,5 @@ export function goals(model) {
 
   controls();
   tell("");
-  return { node, state, points: points.front, draw: () => tell(""), restore: () => (controls(), tell("")) };
+  return { node, state, draw: () => tell(""), restore: () => (controls(), tell("")) };
 }

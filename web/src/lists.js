@@ -8,13 +8,14 @@ const MEANT = {
   condition: "A condition is one combination of what nobody chooses. The hardest one leaves the fewest valid designs.",
 };
 
-function list(model, name, { heads, rows, of }) {
+function list(model, name, { heads, rows, of, note }) {
   const [one, many] = WORDS[name];
   const boxes = rows.map((_, i) => el("input", { type: "checkbox", "aria-label": `${one} ${i + 1}`, onchange: changed }));
   const lines = rows.map((cells, i) => el("tr", {}, el("td", {}, boxes[i]), el("th", { scope: "row" }, count(i + 1)), cells.map((text) => el("td", {}, text))));
   const head = el("tr", {}, el("td", {}), el("th", { scope: "col" }, one), heads.map((text) => el("th", { scope: "col" }, text)));
   const table = el("table", {}, el("thead", {}, head), el("tbody", {}, lines));
-  const facts = rows.length < of ? `${MEANT[name]} The first ${count(rows.length)} of ${count(of)} are listed; the axis holds all of them.` : MEANT[name];
+  const part = rows.length < of ? `The first ${count(rows.length)} of ${count(of)} are listed; the axis holds all of them.` : "";
+  const facts = [MEANT[name], note, part].filter(Boolean).join(" ");
   const region = el("div", { class: "wide list", tabindex: "0", role: "region", "aria-label": many }, table);
   function changed() {
     const kept = boxes.flatMap((box, i) => (box.checked ? [i] : []));

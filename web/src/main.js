@@ -260,7 +260,6 @@ function start(study, place) {
       throw new RangeError(`there is no row ${number}`);
     },
     commands: (row) => [solveCommand(study, row), repeatCommand(study, row)],
-    points: () => aims.points(),
     slice: () => cuts.curves(),
     fragment: () => written(model, parts),
   };

@@ -74,7 +74,7 @@ export function paretoRows(table, goals, limits, inside = () => true) {
 }
 
 // The rows that no other beats in every cost, in rising order.
-export function frontOf(costs, candidates) {
+function frontOf(costs, candidates) {
   // in lexicographic order only an earlier row can beat a row
   const order = (a, b) => {
     for (const cost of costs) if (cost[a] !== cost[b]) return cost[a] - cost[b];

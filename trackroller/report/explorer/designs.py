@@ -7,11 +7,14 @@ from typing import Any
 import numpy as np
 
 from trackroller.analysis.designs import Designs, pair_beyond_data
+from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
 from trackroller.report.numbers import Life, count
 from trackroller.report.tables.designs import first_words
 from trackroller.report.tables.table import cell, factor_cell, heading
+from trackroller.report.words.pareto import goal_heading
+from trackroller.study.file.goals import statistic
 
 MOST_LISTED = 200  # designs or conditions in a list; the axis holds all of them
 
@@ -28,8 +31,8 @@ def design_columns(view: StudyView) -> tuple[list[Column], dict[str, Any]]:
     columns : `design` (number in the ranking, the best first), `design_worst` (worst life over the valid conditions of
         the design), and `condition` (number of the combination of conditions, the hardest first) if the designs share
         their conditions
-    lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list, and `of`, the number of
-        all its entries; empty if no design repeats
+    lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list, `of`, the number of all
+        its entries, and a `note` for the reader; empty if no design repeats
     """
     designs = Designs.of(view)
     if designs is None or len(designs.size) < 2 or designs.size.max() < 2:
@@ -56,14 +59,42 @@ def _numbered(name: str, label: str, codes: np.ndarray) -> Column:
 
 
 def _designs(designs: Designs, worst: str) -> dict[str, Any]:
-    """List the designs by rank, with their worst life, the conditions in which they are valid, and what fails first."""
+    """List the designs by rank, with their lives, the conditions in which they are valid, and what fails first."""
+    heads, cells, note = _goals(designs)
+    nine = [f"Nine of ten reach [{designs.goal[2]}]"] if "b10" in designs.table else []
     rows = []
     for _, row in designs.table.head(MOST_LISTED).iterrows():
-        life = cell(Life(row["worst"], row["worst_beyond"])) if designs.rising else cell(float(row["worst"]))
+        key = tuple(row[n] for n in designs.choices)
+        lives = [Life(row[name], row[f"{name}_beyond"]) for name in (["b10", "worst"] if nine else ["worst"])]
         valid = f"{count(int(row['valid']))} of {count(int(row['cases']))}"
-        rows.append([*(cell(factor_cell(n, row[n])) for n in designs.choices), life, valid, first_words(row) or "–"])
-    heads = [*map(heading, designs.choices), worst, "Valid in", "Fails first"]
-    return {"factors": designs.choices, "heads": heads, "rows": rows, "of": len(designs.table)}
+        told = [*map(cell, lives if designs.rising else map(float, lives)), valid, first_words(row) or "–"]
+        told += cells.get(key, ["–"] * len(heads))
+        rows.append([*(cell(factor_cell(n, row[n])) for n in designs.choices), *told])
+    heads = [*map(heading, designs.choices), *nine, worst, "Valid in", "Fails first", *heads]
+    return {"factors": designs.choices, "heads": heads, "rows": rows, "of": len(designs.table), "note": note}
+
+
+def _goals(designs: Designs) -> tuple[list[str], dict[tuple[Any, ...], list[str]], str]:
+    """Return the goals of the study that are statistics over the conditions of a design, with its Pareto set.
+
+    Returns
+    -------
+    Heads, cells by design, and what a reader has to know; empty if the goals of the study are those of single cases.
+    """
+    goals = designs.view.study.get("pareto") or {}
+    if not any(statistic(name)[0] for name in goals):
+        return [], {}, ""
+    note = "The goals of this study are statistics over its scatter: they compare designs. Goals below compares cases."
+    front = study_pareto(designs.view)
+    if front is None:
+        return [], {}, f"{note} Their Pareto set needs sensitivity.nc beside the study; it stands in the report."
+    names = [name for name in goals if name not in designs.choices]
+    best = np.where(front["optimal"].values == 1, "yes", "no")
+    values = zip(*(front[name].values.tolist() for name in names), strict=True)
+    told = [[*map(cell, line), str(mark)] for line, mark in zip(values, best, strict=True)]
+    keys = zip(*(front[name].values.tolist() for name in designs.choices), strict=True)
+    heads = [*(goal_heading(front, name) for name in names), "In the Pareto set"]
+    return heads, dict(zip(keys, told, strict=True)), note
 
 
 def _hardest_first(designs: Designs) -> np.ndarray:
@@ -96,4 +127,4 @@ def _conditions(designs: Designs, place: np.ndarray, number: np.ndarray, worst: 
         first = view.table.iloc[int(np.argmax(there))]
         rows.append([*(cell(factor_cell(n, first[n])) for n in designs.conditions), *told])
     heads = [*map(heading, designs.conditions), "Valid designs", worst, "Best design"]
-    return {"factors": designs.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1}
+    return {"factors": designs.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1, "note": ""}

@@ -15,18 +15,14 @@ import markupsafe
 import numpy as np
 
 from trackroller.analysis.pareto import default_objectives, pareto
-from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
-from trackroller.errors import InputError
 from trackroller.files import write_text
 from trackroller.report.explorer.designs import design_columns
-from trackroller.report.explorer.pack import affordable_rows, pack, plain_level
+from trackroller.report.explorer.pack import affordable_rows, pack
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.explorer.sample import extreme_rows, sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count
-from trackroller.report.words.pareto import goal_heading
-from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import flat
 
 MODEL = "contact_model"  # a Pareto set compares designs solved with one model
@@ -70,7 +66,6 @@ def explorer(view: StudyView) -> dict[str, Any]:
         "goals": view.study.get("pareto") or default_objectives(ds),
         "constraints": list(view.study.get("constraints") or ()),
         "compared": view.held_level(MODEL) if MODEL in view.factors else "",
-        "points": design_points(view),
         "lists": lists,
         "columns": packed,
     }
@@ -106,30 +101,6 @@ def pareto_rows(view: StudyView, cases: int) -> np.ndarray:
     front = pareto(view.solved, goals, view.solved.config.constraints)
     marked[front["row"].values[front["optimal"].values == 1]] = True
     return marked
-
-
-def design_points(view: StudyView) -> dict[str, Any] | None:
-    """Return the design points of an inner/outer design by the study's own goals, which are statistics over scatter.
-
-    Returns
-    -------
-    `goals` as in the study file; with an analysis also `factors`, and `labels` and `values` by name. None if the goals
-    of the study are those of single cases.
-    """
-    goals = view.study.get("pareto") or {}
-    if not any(statistic(name)[0] for name in goals):
-        return None
-    try:
-        front = study_pareto(view)
-    except InputError:  # the analysis was made for other goals
-        front = None
-    if front is None:
-        return {"goals": goals, "labels": {}}
-    factors = [name for name in front.attrs["factors"].split(", ") if name]
-    names = dict.fromkeys([*factors, *goals])
-    labels = {name: goal_heading(front, name) for name in names}
-    values = {name: [plain_level(value) for value in front[name].values.tolist()] for name in names}
-    return {"goals": goals, "factors": factors, "labels": labels, "values": values}
 
 
 def asset(name: str) -> str:
