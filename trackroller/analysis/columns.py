@@ -10,22 +10,12 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.dataset import shown
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import flat
 
 CATEGORIES = ("material_pair", "roller_material", "guide_material")
-CONTACT_RESULTS = (
-    "normal_force",
-    "lateral_force",
-    "driving_force",
-    "spin_moment",
-    "max_pressure",
-    "semi_axis_lateral",
-    "semi_axis_rolling",
-    "friction_power",
-    "friction_energy_per_distance",
-    "stick_area_fraction",
-)
+CONTACT_RESULTS, WHOLE_RESULTS = shown("contact"), shown()
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles", "error_estimate", "fatigue_stress")
 PLAIN_RESULTS = (
     "regime",
@@ -35,7 +25,7 @@ PLAIN_RESULTS = (
     "guide_life_hours",
     "pair_life_hours",
     "first_to_fail",
-    "slip",
+    *WHOLE_RESULTS,
     "stopped",
     "energy_residual",
     "contact_model_used",

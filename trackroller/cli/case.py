@@ -16,7 +16,9 @@ from trackroller.yaml_file import parse_yaml, read_mapping
 if TYPE_CHECKING:
     import xarray as xr
 
-SHEET_OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
+COMPLETE = ("forces", "contact", "peak_stress", "life")
+CHEAP = ("rating", "bearing", "limits")  # limits that cost nothing beside a complete case
+SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
 
 def settings_of(words: list[str]) -> dict[str, Any]:
@@ -90,26 +92,43 @@ def write_result(dataset: xr.Dataset, target: Path) -> None:
     write_whole(target, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
 
 
+def _groups(limits: str | None, sheet: bool, plain: bool) -> tuple[str, ...]:
+    """Return the groups of outputs of a printed case; () leaves the choice to the case file, for a `plain` result."""
+    if sheet:
+        return (*SHEET_OUTPUTS, *groups_of("all"))
+    if limits is not None:
+        return (*COMPLETE[:2], *groups_of(limits))
+    return () if plain else (*COMPLETE, *CHEAP)
+
+
 def solve_and_tell(
-    case: Path | None, words: list[str], json: bool, out: Path | None, sheet: Path | None, **more: Any
+    case: Path | None,
+    words: list[str],
+    json: bool,
+    out: Path | None,
+    sheet: Path | None,
+    limits: str | None = None,
+    **more: Any,
 ) -> int:
-    """Solve a case, write or print what was asked for, and return the exit code: 1 if the case failed."""
+    """Solve a case, write or print what was asked for, and return the exit code: 1 if the case failed.
+
+    `limits` are names of limits, of which the margins alone are printed; `more` are further options of `solve`.
+    """
     target, page = (None if path is None else writable(path) for path in (out, sheet))
-    if page is not None:
-        more["outputs"] = SHEET_OUTPUTS
-    dataset = solve_case(case, words, **more)
+    groups = _groups(limits, page is not None, json or target is not None or "outputs" in case_of(case, words)[1])
+    dataset = solve_case(case, words, **more | ({"outputs": groups} if groups else {}))
     if target is not None:
         write_result(dataset, target)
     from trackroller.report.pages.sheet import write_sheet  # heavy: rich and jinja2
-    from trackroller.report.pages.sheet_text import as_json, print_facts
-    from trackroller.report.tables.limits import print_limits
+    from trackroller.report.pages.sheet_facts import collect
+    from trackroller.report.pages.sheet_text import as_json, print_facts, print_margins
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
     if json:
         print(as_json(dataset))
-    elif target is None and "limiting_mechanism" in dataset and not is_failed(dataset):
-        print_limits(dataset)
+    elif target is None and limits is not None and not is_failed(dataset):
+        print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
     elif target is None:
         print_facts(dataset)
     if not is_failed(dataset):

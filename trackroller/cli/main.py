@@ -74,11 +74,7 @@ def solve(
     from trackroller.cli.case import solve_and_tell
 
     more: dict[str, Any] = {"shortcuts": False} if no_shortcuts else {}
-    if limits is not None:
-        from trackroller.cli.case import groups_of
-
-        more["outputs"] = groups_of(limits)
-    raise typer.Exit(solve_and_tell(case, settings or [], as_json, out, sheet, **more))
+    raise typer.Exit(solve_and_tell(case, settings or [], as_json, out, sheet, limits, **more))
 
 
 @app.command()
@@ -231,7 +227,7 @@ def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> No
 
     rows = rows_of(load_database(), *names)
     heads = list(rows[0] if rows else ())
-    print_table(heads, [[row.get(head, "") for head in heads] for row in rows], 220)
+    print_table(heads, [[row.get(head, "") for head in heads] for row in rows])
 
 
 @materials.command("add")

@@ -208,4 +208,4 @@ def _print_stages(table, options) -> None:
         (stage.name, f"{stage.count}" if stage.runs else "-", f"{stage.total} {stage.unit}", stage.why)
         for stage in stages_of(table, options)
     ]
-    print_table(("stage", "runs", "of", "why"), rows, 140, right=(1, 2))
+    print_table(("stage", "runs", "of", "why"), rows, right=(1, 2))

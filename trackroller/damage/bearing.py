@@ -191,4 +191,7 @@ LIMIT = Limit(
     requires=("bearing",),
     bodies=("roller",),
     distribution="Weibull 10/9 (ball) or 9/8 (roller)",
+    compares=("bearing_utilisation", "permissible load"),
+    standard="ISO 281 and ISO 76",
+    assumes=("Bearing inside: the row with the larger radial force carries the axial force alone.",),
 )

@@ -79,4 +79,5 @@ LIMIT = Limit(
     mappings=(FIELD,),
     requires=("catalogue",),
     bodies=("roller",),
+    compares=("catalogue_load_factor", "load factor of the catalogue"),
 )

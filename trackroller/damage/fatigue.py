@@ -116,4 +116,10 @@ LIMIT = Limit(
     requires=("guide_overrollings_per_hour",),
     ends_at_once=False,
     distribution=SN_SCATTER,
+    compares=("fatigue_stress peak_stress", "fatigue limit sigma_D; above it the life is finite"),
+    standard="DIN 50100:2016 for the form of the S-N curve",
+    assumes=(
+        "Fatigue: no size effect; one overrolling is one cycle. The published life_criterion takes the peak von Mises "
+        "stress as amplitude, with no mean stress.",
+    ),
 )

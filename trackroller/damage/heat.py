@@ -194,4 +194,6 @@ LIMIT = Limit(
         "heat_transfer_coefficient",
         "cooled_area",
     ),
+    compares=("heat_utilisation", "temperature rise that the material allows"),
+    assumes=("Heat: friction, stresses and values of materials do not depend on the temperature.",),
 )

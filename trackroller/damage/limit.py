@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from trackroller.damage.histories import Tractions
 from trackroller.damage.mapping import MappingField
-from trackroller.parameters import MAPPING_FIELDS, Parameter
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS, Parameter
 from trackroller.parameters.variables import Variable
 
 BODIES = ("roller", "guide")
@@ -132,6 +132,13 @@ class Limit:
         Whether a utilisation of 1 ends the life at once although the limit has hours.
     distribution : str
         What the failure probability of the life rests on: "S-N scatter", "Weibull 10/9", "none".
+    compares : tuple of str
+        The result of which the largest value is compared, or the first of several that is there, and the words of the
+        value that it must not exceed.
+    standard : str
+        The standard that the limit follows, or an empty text.
+    assumes : tuple of str
+        Assumptions as sentences, for the sheet.
     """
 
     name: str
@@ -149,11 +156,14 @@ class Limit:
     bodies: tuple[str, ...] = BODIES
     ends_at_once: bool = True
     distribution: str = "none"
+    compares: tuple[str, str] = ("", "")
+    standard: str = ""
+    assumes: tuple[str, ...] = ()
 
 
 def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:
-    """Return result variables of a group from rows of name, dimensions, unit, symbol, long name and `odd`, if it is."""
-    return tuple(Variable(name, group, *rest) for name, *rest in rows)
+    """Return variables from rows of name, dimensions, unit, symbol, long name, and perhaps further fields (mapping)."""
+    return tuple(Variable(name, group, *rest[:4], **dict(*rest[4:])) for name, *rest in rows)
 
 
 def optional(
@@ -186,6 +196,14 @@ def declarations(limits: Iterable[Limit], groups: Mapping[str, str]) -> str:
     return json.dumps(told, indent=1) + "\n"
 
 
+def _how_to_give(name: str) -> str:
+    """Say how a field of a case is entered: its meaning with its unit, or with an example of a mapping."""
+    if name in MAPPING_FIELDS:
+        return f"Add it to the case, or with --set: {MAPPING_FIELDS[name]}."
+    parameter = PARAMETERS[name]
+    return f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} [{parameter.unit}]."
+
+
 def lacks(limit: Limit, solved: Solved, names: Mapping[str, np.ndarray]) -> list[str]:
     """Return one sentence for each value that a limit requires and that a case or a material does not have.
 
@@ -204,7 +222,7 @@ def lacks(limit: Limit, solved: Solved, names: Mapping[str, np.ndarray]) -> list
         if name in solved.cases:
             column = solved.cases[name]
             if np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):
-                out.append(f"{limit.name}: the case gives no {name}. Add it to the case, or with --set {name}=...")
+                out.append(f"{limit.name}: the case gives no {name}. {_how_to_give(name)}")
             continue
         unknown = np.isnan(solved.materials[name])
         if name in scatter:  # The scatter of the strength gives that of the life.

@@ -107,4 +107,6 @@ LIMIT = Limit(
         ("surface_fatigue_index_local", ("contact",), "1", "max|tau|/p - k/p_max", "the same, of the largest |tau|/p"),
     ),
     requires=("yield_strength",),
+    compares=("shakedown_utilisation", "load that just shakes down"),
+    assumes=("Shakedown: residual stresses depend on the depth alone, which gives a lower bound.",),
 )

@@ -17,4 +17,5 @@ LIMIT = Limit(
     evaluate=lambda solved: {},
     verdict=verdict,
     needs=("peak_stress",),
+    compares=("peak_stress", "tensile strength R_m"),
 )

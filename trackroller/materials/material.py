@@ -143,8 +143,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         return {key: value for key, value in values.items() if value not in (None, "")}
 
     def with_sources(self) -> dict[str, Any]:
-        """Return `as_dict` with the sources of the values (`sources`) and the names of those that are `guesses`."""
+        """Return `as_dict` with `sources` and `notes` of the values, and the names of those that are `guesses`."""
         return self.as_dict() | {
             "sources": {k: r.source for k, r in self.records.items()},
+            "notes": {k: r.note for k, r in self.records.items() if r.note},
             "guesses": self.placeholders,
         }

@@ -19,6 +19,8 @@ class Variable:
         Unit as the CF conventions write it, symbol of the publication, and name for figures and reports.
     odd : bool
         Whether the value changes its sign in the mirror image of a roller, as lateral positions and forces do.
+    shown : bool
+        Whether the sheet, the table of cases and the explorer show the value; the dimensions are none or `contact`.
     """
 
     name: str
@@ -28,3 +30,4 @@ class Variable:
     symbol: str
     long_name: str
     odd: bool = False
+    shown: bool = False

@@ -13,7 +13,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
-_GREEK = {"alpha": "α", "mu": "μ", "nu": "ν", "sigma": "σ"}
+_GREEK = {"alpha": "α", "mu": "μ", "nu": "ν", "sigma": "σ", "tau": "τ", "xi": "ξ"}
 
 
 def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]) -> str:
@@ -51,7 +51,8 @@ def symbols(text: str) -> Markup:
     told = str(escape(text))
     for name, letter in _GREEK.items():
         told = re.sub(rf"\b{name}(?=\b|_)", letter, told)
-    return Markup(re.sub(r"\b(\w)_([A-Za-z]+(?:,[A-Z]+)?)", r"<i>\1</i><sub>\2</sub>", told))
+    told = told.replace("_Delta", "_Δ")
+    return Markup(re.sub(r"\b(\w)_([A-Za-zΔ0-9]+(?:,[A-Z]+)?)", r"<i>\1</i><sub>\2</sub>", told))
 
 
 def data_uri(path: Path) -> str:

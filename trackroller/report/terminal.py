@@ -1,28 +1,75 @@
-"""Tables on a terminal, in a file or in a pipe."""
+"""Tables and sentences on a terminal, in a file or in a pipe."""
 
 from __future__ import annotations
 
+import os
+import textwrap
 from collections.abc import Sequence
 
 from rich.console import Console
 from rich.table import Table
 
+NARROW = 12  # letters; cells that are longer may be broken between words
+FRAME = 3  # letters that the frame takes for each column
+WIDE = 10_000  # letters of a line in a file or a pipe, which no window limits
+
+
+def room() -> int:
+    """Return the letters of a line: those of the terminal, or of COLUMNS; a file or a pipe has no limit."""
+    console = Console()
+    return console.width if console.is_terminal or "COLUMNS" in os.environ else WIDE
+
 
 def print_table(
-    heads: Sequence[str], rows: Sequence[Sequence[str]], width: int, right: Sequence[int] = (), title: str | None = None
+    heads: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = (), title: str | None = None
 ) -> None:
-    """Print a table, as wide as the terminal, or `width` letters in a file or pipe.
+    """Print a table that cuts no cell: cells are broken between words, and a table that is too wide is parted.
+
+    Each part of a table repeats its first column.
 
     Parameters
     ----------
     heads, rows : texts of the columns
-    width : letters of a line
     right : numbers of the columns that are aligned to the right
     title : text above the table
     """
-    table = Table(title=title, title_justify="left")
-    for i, head in enumerate(heads):
-        table.add_column(head, justify="right" if i in right else "left")
-    for row in rows:
-        table.add_row(*row)
-    Console(width=None if Console().is_terminal else width, highlight=False, markup=False).print(table)
+    width = room()
+    columns = [[head, *(row[i] for row in rows)] for i, head in enumerate(heads)]
+    least = [_least(cells) for cells in columns]
+    parts = [[0]]
+    for i in range(1, len(heads)):
+        if sum(least[j] + FRAME for j in (*parts[-1], i)) + 1 > width and len(parts[-1]) > 1:
+            parts.append([0])
+        parts[-1].append(i)
+    console = Console(width=width, highlight=False, markup=False)
+    for number, own in enumerate(parts):
+        table = Table(title=None if number else title, title_justify="left")
+        spare = width - 1 - sum(least[i] + FRAME for i in own)
+        for i in own:
+            more = max(0, min(spare, max(map(len, columns[i])) - least[i]))
+            spare -= more
+            side = "right" if i in right else "left"
+            table.add_column(heads[i], justify=side, width=least[i] + more, overflow="fold")
+        for row in rows:
+            table.add_row(*(row[i] for i in own))
+        console.print(table)
+
+
+def _least(cells: Sequence[str]) -> int:
+    """Return the letters that a column needs so that only long cells are broken, and only between words."""
+    longest = max(map(len, cells))
+    word = max((len(word) for cell in cells for word in cell.split()), default=0)
+    return longest if longest <= NARROW else max(word, NARROW)
+
+
+def print_text(text: str, head: str = "") -> None:
+    """Print a sentence after a head of its own column, broken between words where the line ends."""
+    lines = textwrap.wrap(
+        text,
+        room(),
+        initial_indent=f"{head:<9}" if head else "",
+        subsequent_indent=" " * 9 if head else "  ",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    print("\n".join(lines))

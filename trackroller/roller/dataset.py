@@ -30,45 +30,48 @@ def file_attributes(title: str, action: str) -> dict[str, str]:
     }
 
 
-_ODD = True  # the value changes its sign in the mirror image of a roller
+_ODD = {"odd": True}  # the value changes its sign in the mirror image of a roller
+_SHOWN = {"shown": True}  # the value stands on the sheet, in the table of cases and in the explorer
 _C, _CB = ("contact",), ("contact", "body")
 _PATCH = ("contact", "y", "x")
 _XZ, _YZ = ("contact", "body", "section_z", "section_x"), ("contact", "body", "section_z", "section_y")
 
 _GROUPS = {
     "forces": (
-        ("normal_force", _C, "N", "F_N", "normal force"),
-        ("lateral_force", _C, "N", "F_T", "lateral friction force on the roller", _ODD),
-        ("driving_force", _C, "N", "F_A", "longitudinal friction force on the roller"),
-        ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _ODD),
+        ("normal_force", _C, "N", "F_N", "normal force", _SHOWN),
+        ("lateral_force", _C, "N", "F_T", "lateral friction force on the roller", _SHOWN | _ODD),
+        ("driving_force", _C, "N", "F_A", "longitudinal friction force on the roller", _SHOWN),
+        ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _SHOWN | _ODD),
         ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N"),
-        ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius"),
-        ("slip", (), "1", "xi", "longitudinal creepage r_Delta0/r_A, > 0 braking"),
+        ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN),
+        ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius", _SHOWN),
+        ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track", _SHOWN),
+        ("drive_torque", (), "N mm", "M_xR", "drive torque about the roller's axis, > 0 driving, eq. (10)", _SHOWN),
         (
             "drilling_torque",
             (),
             "N mm",
             "(M_R1 - M_R2) sin(alpha)",
-            "roller torque about the track normal (drilling torque)",
+            "drilling torque, the share of the spin moments in the drive torque",
+            _SHOWN,
         ),
-        ("tilting_moment", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)", _ODD),
-        ("yaw_moment", (), "N mm", "M_zR", "moment about the radial direction, eq. (12)", _ODD),
-        ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track"),
+        ("tilting_moment", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)", _SHOWN | _ODD),
+        ("yaw_moment", (), "N mm", "M_zR", "yaw moment about the radial direction, eq. (12)", _SHOWN | _ODD),
     ),
     "contact": (
-        ("semi_axis_lateral", _C, "mm", "a", "lateral semi-axis, or half width of a patch"),
-        ("semi_axis_rolling", _C, "mm", "b", "semi-axis in the rolling direction, or half length"),
+        ("max_pressure", _C, "MPa", "p_max", "largest contact pressure", _SHOWN),
+        ("max_shear", _C, "MPa", "tau_max", "largest surface shear traction", _SHOWN),
+        ("semi_axis_lateral", _C, "mm", "a", "lateral semi-axis, or half width of a patch", _SHOWN),
+        ("semi_axis_rolling", _C, "mm", "b", "semi-axis in the rolling direction, or half length", _SHOWN),
         ("patch_area", _C, "mm2", "A", "area of the contact patch"),
         ("pressure_centre", _C, "mm", "x_p", "lateral position of the resultant of the pressure", _ODD),
-        ("max_pressure", _C, "MPa", "p_max", "largest contact pressure"),
-        ("max_shear", _C, "MPa", "tau_max", "largest surface shear traction"),
         ("spin_pole_lateral", _C, "mm", "x_spin", "lateral position of the spin pole", _ODD),
         ("spin_pole_rolling", _C, "mm", "y_spin", "position of the spin pole in the rolling direction"),
-        ("stick_area_fraction", _C, "1", "A_stick/A", "adhesion (stick) area over the area of the patch"),
+        ("stick_area_fraction", _C, "1", "A_stick/A", "adhesion (stick) area over the area of the patch", _SHOWN),
     ),
     "friction_work": (
-        ("friction_power", _C, "W", "P_f", "friction power at the travel speed"),
-        ("friction_energy_per_distance", _C, "J m-1", "W_f", "friction energy per distance"),
+        ("friction_power", _C, "W", "P_f", "friction power at the travel speed", _SHOWN),
+        ("friction_energy_per_distance", _C, "J m-1", "W_f", "friction energy per distance", _SHOWN),
         (
             "friction_energy_balance",
             _C,
@@ -118,6 +121,12 @@ _GROUPS = {
 
 VARIABLES = {v.name: v for group, rows in _GROUPS.items() for v in variables(group, *rows)}
 VARIABLES |= {v.name: v for rows in (*(limit.results for limit in LIMITS.values()), verdict.RESULTS) for v in rows}
+
+
+def shown(*dims: str) -> tuple[str, ...]:
+    """Return the results that the sheet, the table of cases and the explorer show, of these dimensions after `case`."""
+    return tuple(name for name, v in VARIABLES.items() if v.shown and v.dims == dims)
+
 
 VALIDITY_BITS = {
     "half_space": "a or b above 0.3 of the smallest radius of curvature: the bodies are not half-spaces",

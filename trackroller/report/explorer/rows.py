@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS
+from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
 from trackroller.analysis.designs import beyond_data, pair_beyond_data
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.errors import InputError
@@ -24,7 +24,7 @@ from trackroller.study.outputs import Output, default_names, flat, outputs
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
-DETAILS = (*CONTACT_RESULTS, *BODY_RESULTS, "drilling_torque", "slip")
+DETAILS = (*CONTACT_RESULTS, *BODY_RESULTS, *WHOLE_RESULTS)
 
 
 @dataclass(frozen=True)

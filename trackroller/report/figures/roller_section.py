@@ -14,12 +14,54 @@ from trackroller.roller.record import inputs_of
 if TYPE_CHECKING:
     import xarray as xr
 
-SIZE = np.array([300.0, 330.0])  # width and height of the drawing [px]
+SIZE = np.array([340.0, 330.0])  # width and height of the drawing [px]
 LONGEST = 62.0  # the largest force [px]
-SHORT = 30.0  # arrows of friction below this length [px] have no label
-AWAY = 9.0  # from the tip of an arrow to its label [px]
-DOWN = np.array([0.0, 4.0])  # from the middle of a label to the line on which it stands [px]
+TALLEST = 4.2  # guide radii; an axis farther from the guide is drawn nearer, so that the groove stays visible
+LETTER, LINE = 6.4, 13.0  # width of a letter and height of a line of text [px]
+CLEAR = 2.5  # free space around a label [px]
+DOWN = 4.0  # from the middle of a label to the line on which it stands [px]
 ARC = 40  # points of an arc
+TURNS = np.deg2rad([0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180])  # label directions from an arrow's
+STEPS = (6.0, 14.0, 24.0, 36.0, 50.0)  # from the tip of an arrow to its label [px]
+Line = tuple[np.ndarray, np.ndarray]
+
+
+class Labels:
+    """Texts of a drawing, each placed where it covers no line and no other text.
+
+    Parameters
+    ----------
+    lines : list of pairs of numpy.ndarray
+        Lines that no text may cover, (2,) each [px].
+    """
+
+    def __init__(self, lines: list[Line]) -> None:
+        dense = [np.linspace(start, end, 2 + int(np.hypot(*(end - start)))) for start, end in lines]
+        self.points = np.concatenate(dense)
+        self.boxes: list[tuple[np.ndarray, np.ndarray]] = []
+
+    def place(self, text: str, index: str, tip: np.ndarray, direction: np.ndarray) -> dict[str, Any]:
+        """Return a text with its index and its place near `tip`, at best in a direction, both (2,) [px]."""
+        half = 0.5 * np.array([LETTER * (len(text) + 0.8 * len(index)), LINE]) + CLEAR
+        angle = math.atan2(direction[1], direction[0])
+        best, fewest = tip, math.inf
+        for step in STEPS:
+            for turn in TURNS:
+                toward = np.array([math.cos(angle + turn), math.sin(angle + turn)])
+                middle = tip + step * toward + half * toward
+                covered = self._covered(middle, half)
+                if covered < fewest:
+                    best, fewest = middle, covered
+            if not fewest:
+                break
+        self.boxes.append((best, half))
+        return {"at": best + np.array([0.0, DOWN]), "text": text, "index": index}
+
+    def _covered(self, middle: np.ndarray, half: np.ndarray) -> int:
+        """Count the points of lines and the texts that a box covers; a box outside the drawing covers a thousand."""
+        outside = bool(np.any(middle - half < 0.0) or np.any(middle + half > SIZE))
+        texts = sum(bool(np.all(np.abs(middle - other) < half + own)) for other, own in self.boxes)
+        return int(np.all(np.abs(self.points - middle) < half, axis=1).sum()) + 100 * texts + 1000 * outside
 
 
 def drawing(ds: xr.Dataset) -> str:
@@ -33,32 +75,73 @@ def drawing(ds: xr.Dataset) -> str:
     Notes
     -----
     Lengths are to scale, and so are the forces relative to each other. The width of the roller is no parameter; it is
-    drawn as twice the guide's radius.
+    drawn as twice the guide's radius. An axis farther than 4.2 guide radii is drawn nearer.
     """
+    return html.render("drawing.svg.j2", content_of(ds))
+
+
+def content_of(ds: xr.Dataset) -> dict[str, Any]:
+    """Return outlines, forces, dimensions and labels of the drawing, in pixels; see `drawing`."""
     values = inputs_of(ds)
     alpha, r_guide = math.radians(values["contact_angle"]), values["guide_profile_radius"]
-    height = values["axis_distance"]
-    scale = min(0.86 * SIZE[1] / (height + r_guide), 0.3 * SIZE[0] / r_guide)
-    origin = np.array([0.5 * SIZE[0], 0.06 * SIZE[1] + height * scale])
+    height = min(values["axis_distance"], TALLEST * r_guide)
+    scale = min(0.84 * SIZE[1] / (height + r_guide), 0.28 * SIZE[0] / r_guide)
+    origin = np.array([0.46 * SIZE[0], 0.08 * SIZE[1] + height * scale])
 
     def place(points: Any) -> np.ndarray:
         return origin + scale * np.asarray(points, dtype=float) * (1, -1)
 
     turn = np.linspace(0.0, 2.0 * np.pi, 2 * ARC)
     outline = _roller(alpha, r_guide, values["roller_profile_radius"], height)
-    forces = _forces(ds, values, alpha)
+    outlines = [place(r_guide * np.stack([np.cos(turn), np.sin(turn)], 1)), place(outline)]
+    axes = [place([(-1.8 * r_guide, height), (1.8 * r_guide, height)]), place([(-0.4, 0), (1.5 * r_guide, 0)])]
+    forces = _forces(ds, values, alpha, height)
     largest = max((float(np.hypot(*force)) for *_, force in forces), default=1.0)
-    contacts = r_guide * np.array([[math.sin(alpha), math.cos(alpha)], [-math.sin(alpha), math.cos(alpha)]])
-    content = {
+    arrows = [(place(at), place(at) + LONGEST / largest * force * (1, -1)) for at, *_, force in forces]
+    sizes = [
+        (place(line), text, index, toward)
+        for line, text, index, toward in _dimensions(values, r_guide, height, outline)
+    ]
+    contacts = place(r_guide * np.array([[math.sin(alpha), math.cos(alpha)], [-math.sin(alpha), math.cos(alpha)]]))
+    lines = [*arrows, *((line[0], line[1]) for line, *_ in sizes)]
+    edges = [edge for points in outlines for edge in zip(points, np.roll(points, -1, axis=0), strict=True)]
+    labels = Labels([*lines, *edges, *((axis[0], axis[1]) for axis in axes)])
+    middle = place([(0.0, 0.0)])[0]
+    named = [
+        labels.place(str(i), "", at + 0.25 * (middle - at), np.array([0.0, 1.0])) for i, at in enumerate(contacts, 1)
+    ]
+    named += [labels.place(text, index, line[0], np.array(toward)) for line, text, index, toward in sizes if text]
+    loads = [
+        labels.place(f"F {rounded(size)} N", index, end, end - start)
+        for (_, index, size, _), (start, end) in zip(forces, arrows, strict=True)
+    ]
+    return {
         "size": [f"{length:g}" for length in SIZE],
-        "outlines": [("guide", place(r_guide * np.stack([np.cos(turn), np.sin(turn)], 1))), ("roller", place(outline))],
-        "axis": place([(-2.2 * r_guide, height), (2.2 * r_guide, height)]),
-        "forces": [
-            _arrow(place(at), LONGEST / largest * force * (1, -1), index, load) for at, index, load, force in forces
-        ],
-        "contacts": [(place(at), place(0.72 * at) + DOWN) for at in contacts],
+        "outlines": list(zip(("guide", "roller"), outlines, strict=True)),
+        "axes": axes,
+        "forces": arrows,
+        "spans": [line for line, *_ in sizes],
+        "contacts": contacts,
+        "labels": [*((label, "label") for label in named), *((label, "force-label") for label in loads)],
+        "lines": lines,
+        "boxes": labels.boxes,
     }
-    return html.render("drawing.svg.j2", content)
+
+
+def _dimensions(
+    values: dict[str, Any], r_guide: float, height: float, outline: np.ndarray
+) -> list[tuple[np.ndarray, str, str, tuple[float, float]]]:
+    """Return line [mm], text, index and direction of the label of the axis distance and of both profile radii."""
+    side, groove = 1.5 * r_guide, outline[int(1.72 * ARC)]  # a point on the right flank
+    radius = values["roller_profile_radius"]
+    profile = ("straight profile", "") if math.isinf(radius) else (f"r {rounded(abs(radius))} mm", "C,TR")
+    rim = r_guide * np.array([-0.8, -0.6])
+    return [
+        (np.array([(side, height / 2), (side, height)]), f"A {rounded(values['axis_distance'])} mm", "T", (1.0, 0.0)),
+        (np.array([(side, height / 2), (side, 0.0)]), "", "", (1.0, 0.0)),
+        (np.stack([1.25 * rim, rim]), f"r {rounded(r_guide)} mm", "C,G", (-1.0, 1.0)),
+        (np.stack([groove + r_guide * np.array([0.9, -0.55]), groove]), *profile, (1.0, 1.0)),
+    ]
 
 
 def _roller(alpha: float, r_guide: float, r_roller: float, height: float) -> np.ndarray:
@@ -81,9 +164,11 @@ def _roller(alpha: float, r_guide: float, r_roller: float, height: float) -> np.
     return np.concatenate([(flank * (-1, 1))[::-1], flank, ends])
 
 
-def _forces(ds: xr.Dataset, values: dict[str, Any], alpha: float) -> list[tuple[np.ndarray, str, float, np.ndarray]]:
+def _forces(
+    ds: xr.Dataset, values: dict[str, Any], alpha: float, height: float
+) -> list[tuple[np.ndarray, str, float, np.ndarray]]:
     """Return the forces on the roller in the section: place [mm], index, size and vector [N]."""
-    found, axle = [], np.array([0.0, values["axis_distance"]])
+    found, axle = [], np.array([0.0, height])
     radial, axial = values["radial_force"], values["axial_force"]
     for number, sign in ((1, 1.0), (2, -1.0)):
         own = ds.sel(contact=number)
@@ -96,16 +181,3 @@ def _forces(ds: xr.Dataset, values: dict[str, Any], alpha: float) -> list[tuple[
             found.append((values["guide_profile_radius"] * normal, "T", lateral, lateral * along))
     found.append((axle, "rad", radial, np.array([0.0, radial])))
     return found + ([(axle, "ax", axial, np.array([axial, 0.0]))] if axial else [])
-
-
-def _arrow(start: np.ndarray, step: np.ndarray, index: str, size: float) -> dict[str, Any]:
-    """Return a force with its label beside the tip.
-
-    A short arrow of friction has no label, which would cover those of the other forces: the table has its value.
-    """
-    length = float(np.hypot(*step)) or 1.0
-    anchor = "middle" if abs(step[0]) < 0.35 * length else "start" if step[0] > 0 else "end"
-    end = start + step
-    beside = end + AWAY / length * step + DOWN
-    told = {"index": index, "size": rounded(size), "labelled": index != "T" or length >= SHORT}
-    return {"start": start, "end": end, "beside": beside, "anchor": anchor, **told}

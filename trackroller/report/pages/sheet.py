@@ -8,11 +8,12 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from trackroller.files import write_text
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
-from trackroller.report.numbers import life, number, rounded
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet_facts import collect, side_by_side
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -60,8 +61,17 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         "drawing": drawing(ds) if "normal_force" in ds else "",
         "figures": [drawn[name] for name in SHOWN if name in drawn],
         "full": FULL,
+        "probability": f"{100 * float(ds.attrs['failure_probability']):g} %",
     }
-    return html.render("sheet.html.j2", content, life=life, number=number, rounded=rounded, bar=bar)
+    content["aside"] = _less_stressed(ds)
+    content["lines"] = side_by_side(content["facts"].contacts)
+    return html.render("sheet.html.j2", content, bar=bar)
+
+
+def _less_stressed(ds: xr.Dataset) -> str:
+    """Name the stress figure that the print leaves out: that of the contact with the lower peak stress."""
+    peaks = np.nan_to_num(ds["peak_stress"].max("body").values) if "peak_stress" in ds else np.zeros(2)
+    return f"contact_{np.argmin(peaks) + 1}_stress"
 
 
 def bar(share: float) -> float:

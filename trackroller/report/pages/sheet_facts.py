@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -11,53 +11,43 @@ import numpy as np
 
 from trackroller.analysis.columns import at_surface
 from trackroller.analysis.table import BODIES
-from trackroller.damage.limit import roller_overrollings
-from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
-from trackroller.parameters import CONTACT_MODELS, OPTIONS, REGIMES
-from trackroller.report.numbers import life, listing, number, plain, rounded, unit_text
+from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, OF_LIMITS, OPTIONS, REGIMES
+from trackroller.parameters.example import not_given_text
+from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, unit_text
 from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source
+from trackroller.report.tables.limits import Margin, first_limits, margins, not_checked, placeholders
+from trackroller.report.tables.lives import life_rows
+from trackroller.report.words.assumptions import (
+    assumptions,
+    friction_sentence,
+    material_warnings,
+    standards,
+    strength_sentences,
+)
 from trackroller.report.words.flags import Flag, flags_of
-from trackroller.roller.geometry import rolling_radius
-from trackroller.roller.limits import Limits, limits
-from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of, solve_command
+from trackroller.roller.dataset import VARIABLES, shown
+from trackroller.roller.limits import limits
+from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of, not_given_of, solve_command
 from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.materials import Material
+    from trackroller.roller.limits import Limits
 
-CONTACT_ROWS = (  # variable, words
-    ("normal_force", "normal force F_N"),
-    ("lateral_force", "lateral friction force F_T"),
-    ("driving_force", "friction force along the track F_A"),
-    ("spin_moment", "spin moment M_R"),
-    ("semi_axis_lateral", "semi-axis a, lateral"),
-    ("semi_axis_rolling", "semi-axis b, rolling direction"),
-    ("max_pressure", "largest pressure"),
-    ("max_shear", "largest surface shear"),
-    ("stick_area_fraction", "adhesion (stick) area, share of the patch"),
-    ("friction_power", "friction power"),
-)
-WHOLE_ROWS = (
-    ("slip", "longitudinal creepage"),
-    ("transmitted_force", "force transmitted along the track"),
-    ("drilling_torque", "roller torque about the track normal (drilling torque)"),
-    ("rolling_radius_shift", "rolling radius shift"),
-)
+
+ROUNDING = 1e-9  # N, mm, MPa, 1: results below are rounding errors of a zero, as the drive torque of a free roller
 
 
 @dataclass(frozen=True)
 class BodyFacts:
-    """Stress and life of one body in one contact."""
+    """Stress of one body in one contact."""
 
     body: str
     peak: float
-    place: str
+    depth: float
     of_strength: float
-    of_fatigue_limit: float
-    cycles: float
-    hours: float
 
 
 @dataclass(frozen=True)
@@ -70,6 +60,18 @@ class ContactFacts:
     bodies: list[BodyFacts]
 
 
+def side_by_side(contacts: list[ContactFacts]) -> list[list[str]]:
+    """Return a line for each quantity of the contacts: its words, its value in each contact, and its unit."""
+    lines = [
+        [own[0].words, *(row.value for row in own), own[0].unit]
+        for own in zip(*(contact.rows for contact in contacts), strict=True)
+    ]
+    for own in zip(*(contact.bodies for contact in contacts), strict=True):
+        lines.append([f"peak stress of the {own[0].body} (von Mises)", *(number(b.peak) for b in own), "MPa"])
+        lines.append([f"depth of the peak in the {own[0].body}", *(number(b.depth) for b in own), "mm"])
+    return lines
+
+
 @dataclass(frozen=True)
 class Facts:
     """All statements of a sheet on one roller."""
@@ -77,12 +79,19 @@ class Facts:
     verdict: str
     reason: str
     inputs: list[Row]
+    not_given: str
     materials: list[tuple[str, list[Row], str]]
     contacts: list[ContactFacts]
     whole: list[Row]
     lives: list[Row]
-    limits: list[Row]
+    margins: list[Margin]
+    first: list[str]
+    not_checked: list[str]
     flags: list[Flag]
+    assumptions: list[str]
+    standards: str
+    data: list[str]
+    guesses: list[str]
     options: str
     command: str
     versions: str
@@ -101,24 +110,35 @@ def collect(ds: xr.Dataset) -> Facts:
     InputError
         If `ds` is not the result of one case.
     """
-    inputs, stored = inputs_of(ds), materials_of(ds)
+    inputs, stored, given = inputs_of(ds), materials_of(ds), not_given_of(ds)
     materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
     regime = REGIMES[int(ds["regime"])]
     found = limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
     lifeless = {body: _no_life(regime, body, contacts) for body in BODIES}
-    contacts = [_without_life(contact, lifeless) for contact in contacts]
-    lives = _lives(ds, inputs, materials, lifeless)
+    lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, found, inputs, materials, lifeless)
+    said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
     return Facts(
-        verdict=_verdict(regime, ds, lives, lifeless, found, inputs),
+        verdict=_verdict(regime, ds, lives, lifeless, found, inputs, own),
         reason=str(ds["reason"].item()) if "reason" in ds else "",
-        inputs=[input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
+        inputs=[
+            replace(input_row(name, value), default=name in given or (is_default(name, value) and name in OF_LIMITS))
+            for name, value in inputs.items()
+            if is_told(name, value)
+        ],
+        not_given=not_given_text(given),
         materials=body_materials(stored),
         contacts=contacts,
-        whole=quantity_rows(ds, WHOLE_ROWS),
+        whole=quantity_rows(ds, shown()),
         lives=lives,
-        limits=limit_rows(found, inputs),
+        margins=own,
+        first=first_limits(own),
+        not_checked=not_checked(ds),
         flags=flags_of(ds),
+        assumptions=assumptions(ds),
+        standards=standards(ds),
+        data=list(said),
+        guesses=placeholders(ds),
         options=", ".join(f"{plain(name)} {ds.attrs[name]}{_used(ds, name)}" for name in OPTIONS if ds.attrs.get(name)),
         command=command_of(ds),
         versions=versions_text(),
@@ -153,7 +173,7 @@ def command_of(ds: xr.Dataset) -> str:
 
 def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Material]) -> ContactFacts:
     own = ds.sel(contact=which)
-    rows = quantity_rows(own, CONTACT_ROWS)
+    rows = quantity_rows(own, shown("contact"))
     bodies = []
     if "peak_stress" in own:
         bodies = [_body(own.sel(body=body), body, materials[body]) for body in BODIES]
@@ -162,11 +182,8 @@ def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Material]) -> C
 
 
 def _body(own: xr.Dataset, body: str, material: Material) -> BodyFacts:
-    x, y, z = (float(own[f"peak_{axis}"]) for axis in "xyz")
-    depth = "at the surface" if at_surface(own) == 1 else f"{rounded(z, 2)} mm below the surface"
-    place = f"{depth}, x = {rounded(x, 2)} mm, y = {rounded(y, 2)} mm"
-    peak, cycles, hours = (float(own.get(n, math.nan)) for n in ("peak_stress", "life_cycles", "life_hours"))
-    return BodyFacts(body, peak, place, peak / material.tensile_strength, peak / material.fatigue_limit, cycles, hours)
+    peak, depth = float(own["peak_stress"]), 0.0 if at_surface(own) == 1 else float(own["peak_z"])
+    return BodyFacts(body, peak, depth, peak / material.tensile_strength)
 
 
 def _no_life(regime: str, body: str, contacts: list[ContactFacts]) -> str:
@@ -177,45 +194,6 @@ def _no_life(regime: str, body: str, contacts: list[ContactFacts]) -> str:
     return "the roller skids: friction heat and wear decide" if regime == "full_slip" else ""
 
 
-def _without_life(contact: ContactFacts, lifeless: Mapping[str, str]) -> ContactFacts:
-    """Drop the lives of the bodies that have no fatigue life."""
-    kept = [replace(b, cycles=math.nan, hours=math.nan) if lifeless[b.body] else b for b in contact.bodies]
-    return replace(contact, bodies=kept)
-
-
-def _lives(
-    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
-) -> list[Row]:
-    """Return the life of each body, at 10, 50 and 90 % failure probability where its material has scatter."""
-    rows = []
-    unknown = {"guide": "not known: give guide_overrollings_per_hour", "roller": "not defined in this regime"}
-    for body in (b for b in BODIES if f"{b}_life_hours" in ds):
-        hours, material = float(ds[f"{body}_life_hours"]), materials[body]
-        if lifeless[body]:
-            rows.append(Row(f"{body}, no fatigue life", lifeless[body]))
-        elif material.scatter_in_cycles or material.scatter_in_stress:
-            for p in PROBABILITIES:
-                text = life(_hours_at(ds, body, inputs, material, p))
-                rows.append(Row(f"{body}, until {100 * p:.0f} % have failed", text, "h"))
-        elif math.isnan(hours):
-            rows.append(Row(f"{body}, median life", unknown[body]))
-        else:
-            rows.append(Row(f"{body}, median life (no scatter of its material is known)", life(hours), "h"))
-    return rows
-
-
-def _hours_at(ds: xr.Dataset, body: str, inputs: Mapping, material: Material, probability: float) -> float:
-    curve = SNCurve.of(material, str(ds.attrs["life_rule"])).changed(failure_probability=probability)
-    rate = inputs.get("guide_overrollings_per_hour")
-    if body == "roller":
-        alpha = math.radians(inputs["contact_angle"])
-        radius = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
-        rate = roller_overrollings(inputs["velocity"], radius)
-    stress = ds["fatigue_stress" if "fatigue_stress" in ds else "peak_stress"]
-    cycles = curve.life_cycles(stress.sel(body=body).values)
-    return float(np.min(cycles / (math.nan if rate is None else rate)))
-
-
 def _verdict(
     regime: str,
     ds: xr.Dataset,
@@ -223,6 +201,7 @@ def _verdict(
     lifeless: Mapping[str, str],
     found: Limits,
     inputs: Mapping[str, Any],
+    own: list[Margin],
 ) -> str:
     """Return the summary of the sheet: what rules (lift-off, overload, skidding, life) and the distance to lift-off."""
     if regime == "failed":
@@ -238,10 +217,13 @@ def _verdict(
         parts.append("Skids: the motor force exceeds what friction transmits.")
     elif not over:
         parts.append("Rolls.")
-    if not any(lifeless.values()) and "roller_life_hours" in ds and math.isfinite(float(ds["roller_life_hours"])):
-        own = [row for row in lives if row.words.startswith("roller")]
-        hours = ", ".join(f"{row.value} h ({_probability(row.words)})" for row in own[:2])
-        parts.append(f"The roller lasts {hours}; contact {_weakest(ds)} decides.")
+        passed = [margin.words for margin in own if margin.reached == 0.0]
+        parts += [f"Exceeded: {listing(passed)}."] if passed else []
+    told = [row for row in lives if row.words.startswith(("roller, until", "roller, median"))]
+    if told and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"])):
+        parts.append(f"The roller lasts {', '.join(map(_hours, told[:2]))}; contact {_weakest(ds)} decides.")
+        if FIRST_TO_FAIL[int(ds["first_to_fail"])] == "guide":
+            parts.append(f"The guide fails first, after {_hours(lives[-1])}.")
     axial = inputs["axial_force"]
     reserve = min(found.axial_force[1] - axial, axial - found.axial_force[0])
     if math.isfinite(reserve):
@@ -250,8 +232,10 @@ def _verdict(
     return " ".join(parts)
 
 
-def _probability(words: str) -> str:
-    return words.partition("until ")[2].partition(" have")[0] or "median"
+def _hours(row: Row) -> str:
+    """Return the hours of a life with its failure probability, and whether it lies beyond the S-N data."""
+    remarks = [row.words.partition("until ")[2].partition(" have")[0] or "median"]
+    return f"{row.value.partition(';')[0]} ({', '.join(remarks + [BEYOND] * (BEYOND in row.value))})"
 
 
 def _weakest(ds: xr.Dataset) -> int:
@@ -259,28 +243,17 @@ def _weakest(ds: xr.Dataset) -> int:
     return int(ds["contact"].values[int(np.nanargmin(hours.values))])
 
 
-def quantity_rows(ds: xr.Dataset, names: tuple[tuple[str, str], ...]) -> list[Row]:
-    """Return the finite ones of some results, each with its unit."""
+def quantity_rows(ds: xr.Dataset, names: Iterable[str]) -> list[Row]:
+    """Return the finite ones of some results, each with its symbol and unit."""
     return [
-        Row(words, number(float(ds[name])), unit_text(ds[name].attrs.get("units", "1")).replace("–", ""))
-        for name, words in names
-        if name in ds and np.isfinite(float(ds[name]))
+        Row(_words(name), number(value if abs(value) > ROUNDING else 0.0), unit_text(units).replace("–", ""))
+        for name, value, units in ((n, float(ds[n]), VARIABLES[n].units) for n in names if n in ds)
+        if np.isfinite(value)
     ]
 
 
-def limit_rows(found: Limits, inputs: Mapping[str, Any]) -> list[Row]:
-    """Return the limits of a roller in words."""
-    low, high = map(rounded, found.axial_force)
-    rows = [Row("lift-off: both contacts carry load for axial forces", f"{low} to {high}", "N")]
-    if any(map(math.isnan, found.axial_force)):
-        rows = [Row(rows[0].words, "not defined: no state with two loaded contacts was found")]
-    if any(map(math.isfinite, found.motor_force)):
-        drive, brake = map(rounded, found.motor_force)
-        rows.append(Row("full slip: the roller does not skid for motor forces", f"{drive} to {brake}", "N"))
-    lock, lifts, now = found.self_locking_friction, found.lift_off_friction, number(inputs["friction_coefficient"])
-    special = "none up to 2" if math.isinf(lock) else "not defined: a contact has lifted"
-    locks = f"from {rounded(lock)} (now {now})" if math.isfinite(lock) else special
-    rows.append(Row("self-locking: friction alone carries the lateral load for friction coefficients", locks))
-    if math.isfinite(lifts):
-        rows.append(Row("lift-off: a contact lifts for friction coefficients", f"from {rounded(lifts)} (now {now})"))
-    return rows
+def _words(name: str) -> str:
+    """Return the name of a result without remarks, and its symbol if that is no formula."""
+    words, _, _ = VARIABLES[name].long_name.partition(",")
+    symbol = VARIABLES[name].symbol
+    return f"{words} {symbol}" if symbol.replace("_", "").isalnum() else words

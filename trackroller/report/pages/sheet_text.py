@@ -9,9 +9,10 @@ import numpy as np
 
 from trackroller.analysis.table import BODIES
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
-from trackroller.report.pages.sheet_facts import Facts, collect
+from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
 from trackroller.report.pages.spectrum import block_table, life_rows, warnings
-from trackroller.report.terminal import print_table
+from trackroller.report.tables.limits import BOTH
+from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.flags import flags_of
 from trackroller.report.words.spectrum import sentences
 from trackroller.roller.record import friction_records, inputs_of, is_default, materials_of
@@ -20,75 +21,61 @@ from trackroller.study.store.provenance import versions
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.report.tables.inputs import Row
-
 
 def print_facts(ds: xr.Dataset) -> None:
-    """Print the facts of a solved roller: verdict, inputs with defaults, contacts, life, limits and warnings."""
+    """Print the facts of a solved roller: verdict, inputs, contacts, life and warnings, and its margins at the end."""
     facts = collect(ds)
-    print(facts.verdict)
+    print_text(facts.verdict)
     regime = REGIME_LABELS[int(ds["regime"])]
-    print(f"regime: {regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
+    print_text(f"regime: {regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
     if facts.reason:
-        print(f"reason: {facts.reason}")
-    _print_inputs(facts)
+        print_text(f"reason: {facts.reason}")
+    rows = [[row.words, row.value, row.unit, "default" if row.default else "given"] for row in facts.inputs]
+    print_table(["input", "value", "unit", "from"], rows, (1,))
+    if facts.not_given:
+        print_text(facts.not_given)
+    print_text(facts.options, "options")
     if any(contact.carries for contact in facts.contacts):
-        _print_contacts(facts)
-    for head, rows in (("roller", facts.whole), ("life", facts.lives), ("limits", facts.limits)):
-        for row in rows:
-            print(f"{head:<8} {row.words}: {row.value} {row.unit}".rstrip())
+        heads = ["quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit"]
+        print_table(heads, side_by_side(facts.contacts), (1, 2))
+    own = [[row.words, row.value, row.unit] for row in facts.whole]
+    if own:
+        print_table(["whole roller", "value", "unit"], own, (1,))
+    for row in facts.lives:
+        print_text(f"{row.words}: {row.value} {row.unit}".rstrip(), "life")
+    for sentence in facts.data:
+        print_text(sentence, "data")
     for flag in facts.flags:
-        print(f"warning  {flag.sentence} {flag.remedy}")
-    undefined = [str(name) for name, variable in ds.data_vars.items() if variable.ndim <= 2 and _is_undefined(variable)]
-    if undefined and not any(contact.carries for contact in facts.contacts):
-        print(f"undefined here: all {len(undefined)} forces, stresses, lives and other results")
-    elif undefined:
-        print(f"undefined here: {', '.join(undefined)}")
+        print_text(f"{flag.sentence} {flag.remedy}", "warning")
     fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
     if fields:
-        print(f"fields (write them with -o): {', '.join(fields)}")
+        print_text(f"{', '.join(fields)} (write them with -o)", "fields")
+    print_margins(facts, float(ds.attrs["failure_probability"]))
 
 
-def _is_undefined(variable: xr.DataArray) -> bool:
-    """Return whether the regime leaves every value of a quantity undefined."""
-    return variable.dtype.kind == "f" and bool(variable.isnull().all())
-
-
-def _print_inputs(facts: Facts) -> None:
-    for default, head in ((False, "given"), (True, "default")):
-        told = [_told(row) for row in facts.inputs if row.default is default]
-        if told:
-            print(f"{head:<8} {', '.join(told)}")
-    print(f"options  {facts.options}")
-
-
-def _told(row: Row) -> str:
-    return f"{row.words} {row.value} {row.unit}".rstrip()
-
-
-def _print_contacts(facts: Facts) -> None:
-    rows: list[list[str]] = []
-    for own in zip(*(contact.rows for contact in facts.contacts), strict=True):
-        rows.append([own[0].words, *(row.value for row in own), own[0].unit])
-    for bodies in zip(*(contact.bodies for contact in facts.contacts), strict=True):
-        rows.append([f"peak stress of the {bodies[0].body}", *(f"{b.peak:.5g}" for b in bodies), "MPa"])
-        rows.append(["  share of its fatigue limit", *(f"{100 * b.of_fatigue_limit:.3g}" for b in bodies), "%"])
-        rows.append(["  share of its tensile strength", *(f"{100 * b.of_strength:.3g}" for b in bodies), "%"])
-    print_table(["quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit"], rows, 120)
+def print_margins(facts: Facts, probability: float) -> None:
+    """Print the table of margins, what comes first for roller, guide and pair, and what was not checked."""
+    rows = [[m.title, "both" if m.body == BOTH else m.body, m.now, m.required, m.share, m.life] for m in facts.margins]
+    if rows:
+        title = f"Margins, the first limit first, at {100 * probability:g} % failure probability"
+        print_table(["limit", "of", "now", "at most", "used", "reached after"], rows, (2, 4, 5), title)
+    for sentence in (*facts.first, *facts.guesses, *facts.not_checked):
+        print_text(sentence)
 
 
 def print_spectrum(ds: xr.Dataset) -> None:
     """Print the damage of each block, the lives, sentences on their causes and warnings."""
     told = block_table(ds)
     title = f"{ds.attrs['title']}: damage per shift"
-    print_table(told.heads, told.rows, 180, range(1, len(told.heads)), title)
-    print(told.note)
+    print_table(told.heads, told.rows, range(1, len(told.heads)), title)
+    print_text(told.note)
     for body in BODIES:
-        print(f"{body:<7} {'; '.join(f'{row.words}: {row.value} {row.unit}'.rstrip() for row in life_rows(ds, body))}")
+        lives = "; ".join(f"{row.words}: {row.value} {row.unit}".rstrip() for row in life_rows(ds, body))
+        print_text(lives, body)
     for sentence in sentences(ds):
-        print(sentence.text)
+        print_text(sentence.text)
     for text in warnings(ds):
-        print(f"warning {text}")
+        print_text(text, "warning")
 
 
 def as_json(ds: xr.Dataset) -> str:

@@ -20,7 +20,12 @@ MATERIAL_ROWS = (  # attribute, words, unit
     ("poisson_ratio", "Poisson's ratio nu", ""),
     ("tensile_strength", "tensile strength R_m", "MPa"),
     ("fatigue_limit", "fatigue limit sigma_D", "MPa"),
+    ("cycles_at_tensile_strength", "cycles at the tensile strength N_Rm", ""),
     ("cycles_at_fatigue_limit", "cycles at the fatigue limit N_k", ""),
+    ("scatter_in_cycles", "scatter of the life T_N = N_90/N_10", ""),
+    ("scatter_in_stress", "scatter of the strength T_S = S_90/S_10", ""),
+    ("yield_strength", "yield strength R_e", "MPa"),
+    ("hardness", "Brinell hardness", "HB"),
 )
 
 
@@ -57,7 +62,10 @@ def input_row(name: str, value: Any) -> Row:
 
 def material_rows(material: Material) -> list[Row]:
     """Return the values of a material."""
-    told = [Row(words, number(getattr(material, name)), unit) for name, words, unit in MATERIAL_ROWS]
+    told = [
+        Row(words, "not given") if (value := getattr(material, name)) is None else Row(words, number(value), unit)
+        for name, words, unit in MATERIAL_ROWS
+    ]
     return [Row("name", material.name), *told, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
 
 
@@ -132,7 +140,7 @@ def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
 
 def as_material(values: Mapping[str, Any]) -> Material:
     """Return the material that a result stores with its sources."""
-    return Material(**{key: value for key, value in values.items() if key not in ("sources", "guesses")})
+    return Material(**{key: value for key, value in values.items() if key not in ("sources", "notes", "guesses")})
 
 
 def material_source(values: Mapping[str, Any]) -> str:

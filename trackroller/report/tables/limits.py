@@ -1,50 +1,233 @@
-"""The table of limits of one solved roller: utilisation and hours of each limit, and the first of each body."""
+"""The margins of one solved roller: each limit with the value now, the value permitted, and what comes first."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
-from trackroller.analysis.table import BODIES
+from trackroller.analysis.designs import DATA_END
 from trackroller.damage import LIMITS
-from trackroller.report.numbers import life, rounded
-from trackroller.report.terminal import print_table
+from trackroller.damage.limit import SN_SCATTER
+from trackroller.report.numbers import lasting, listing, number, rounded, unit_text
+from trackroller.report.tables.lives import overrollings
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from trackroller.materials import Material
+    from trackroller.roller.limits import Limits
 
-def limit_rows(ds: xr.Dataset) -> list[list[str]]:
-    """Return a row for each limit: its title, then utilisation [%] and hours of roller and guide."""
-    rows = []
-    for name in ds["limit"].values.tolist():
-        cells = [LIMITS[name].title]
-        for body in BODIES:
-            own = ds.sel(limit=name, body=body)
-            used, hours = float(own["utilisation"]), float(own["life_hours_by_limit"])
-            cells.append("-" if math.isnan(used) else rounded(100 * used))
-            cells.append("-" if math.isnan(hours) else life(hours))
-        rows.append(cells)
-    return rows
+YIELD = 1.6  # of the yield strength: the pressure at which a contact yields below its surface
+BOTH = "roller and guide"
+GUESSES = ": placeholders of material"  # in a note on a limit that rests on values without a source
 
 
-def first_limits(ds: xr.Dataset) -> list[str]:
-    """Return one sentence for each body: the limit that comes first, and when."""
-    words = [*(limit.title for limit in LIMITS.values()), "unknown"]
+@dataclass(frozen=True)
+class Margin:
+    """A limit of the roller, of the guide, of both, or of the pair.
+
+    Parameters
+    ----------
+    title, body : str
+        Words of the limit, and "roller", "guide", `BOTH` or "pair".
+    now, required : str
+        The value, and the value that it must not exceed.
+    used : float
+        Load over the load at the limit [1]; NaN if it is not known.
+    hours : float
+        Life to the limit [h]; NaN if the limit has no life, or if the life is not known.
+    at_once : bool
+        Whether the limit is reached at once where `used` is at least 1.
+    timed : bool
+        Whether the limit has a life, known or not.
+    beyond, guessed : bool
+        Whether the life lies beyond the S-N data, and whether the limit rests on placeholders of a material.
+    """
+
+    title: str
+    body: str
+    now: str
+    required: str
+    used: float = math.nan
+    hours: float = math.nan
+    at_once: bool = True
+    timed: bool = False
+    beyond: bool = False
+    guessed: bool = False
+
+    @property
+    def words(self) -> str:
+        """Return the limit with the body that it concerns, for running text."""
+        of = {BOTH: f" of {BOTH}", "pair": ""}.get(self.body, f" of the {self.body}")
+        return f"{self.title}{of}{' (rests on placeholders)' * self.guessed}"
+
+    @property
+    def reached(self) -> float:
+        """Return the hours until the limit is reached: 0 if it is exceeded now, infinity if it never is."""
+        if self.at_once and self.used >= 1.0:
+            return 0.0
+        return math.inf if math.isnan(self.hours) else self.hours
+
+    @property
+    def share(self) -> str:
+        """Return the share that is used, in percent."""
+        return "" if math.isnan(self.used) else f"{rounded(100.0 * self.used)} %"
+
+    @property
+    def factor(self) -> str:
+        """Return the permitted load over the load, which has to be at least 1."""
+        return rounded(1.0 / self.used) if self.used > 0 else ""
+
+    @property
+    def life(self) -> str:
+        """Return the hours to the limit, with the remark that they lie beyond the S-N data."""
+        if math.isnan(self.hours):
+            return "not known" if self.timed else ""
+        return lasting(self.hours, "h", self.beyond)
+
+    @property
+    def when(self) -> str:
+        """Say when the limit is reached."""
+        if self.reached == 0.0:
+            return "exceeded now"
+        if self.timed and math.isnan(self.hours):
+            return "after unknown hours"
+        if not self.at_once and self.used >= 1.0 and math.isnan(self.hours):
+            return f"{self.share} used, and no life is stated"
+        told = f"not reached, {self.share} used" if self.share else "not reached"
+        return f"after {self.life}" if math.isfinite(self.reached) else told
+
+
+def margins(
+    ds: xr.Dataset,
+    found: Limits,
+    inputs: Mapping[str, Any],
+    materials: Mapping[str, Material],
+    lifeless: Mapping[str, str],
+) -> list[Margin]:
+    """Return the margins of a solved case, the limit that comes first at the head.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of one case. The limits of the room `damage` need the output `limits`.
+    found : Limits
+        Ranges of forces and friction in which the roller rolls.
+    inputs : mapping
+        Inputs of the case by name.
+    materials : mapping of str to Material
+        Material of each body.
+    lifeless : mapping of str to str
+        Why a body has no fatigue life; an empty text if it has one.
+    """
+    out: list[Margin] = []
+    for margin in (*_of_limits(ds, inputs, lifeless), *_of_pressure(ds, materials), *_of_loads(found, inputs)):
+        if out and margin == replace(out[-1], body=margin.body):
+            out[-1] = replace(margin, body=BOTH)
+        else:
+            out.append(margin)
+    return sorted(out, key=lambda m: (m.reached, 0.0 if math.isnan(m.used) else -m.used))
+
+
+def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str, str]) -> list[Margin]:
+    """Return the margins of the limits asked for, for the bodies that they concern."""
     out = []
-    for body in BODIES:
-        own = ds.sel(body=body)
-        title, hours = words[int(own["limiting_mechanism"])], float(own["life_to_first_limit_hours"])
-        when = "when is unknown" if math.isnan(hours) else f"after {life(hours)} h"
-        when = "it is never reached" if math.isinf(hours) else "it is reached at once" if hours == 0 else when
-        out.append(f"{body:<7} first limit: {title}; {when}")
+    for name in ds["limit"].values.tolist() if "utilisation" in ds else ():
+        limit, life = LIMITS[name], ds["life_hours_by_limit"].sel(limit=name)
+        words = limit.compares[1]
+        variable = next(one for one in limit.compares[0].split() if one in ds)
+        unit = unit_text(ds[variable].attrs["units"]).replace("–", "")
+        for body in limit.bodies:
+            own = ds.sel(limit=name, body=body)
+            used, hours = float(own["utilisation"]), float(life.sel(body=body))
+            if math.isnan(used) and math.isnan(hours):
+                continue
+            if lifeless[body]:
+                hours = math.nan
+            value = float(own[variable].max())
+            texts = f"{rounded(value)} {unit}".strip(), f"{rounded(value / used)} {unit}".strip() + f": {words}"
+            cycles = hours * overrollings(inputs, body)
+            beyond = limit.distribution == SN_SCATTER and (used < 1.0 or cycles > DATA_END)
+            timed = bool(life.notnull().any()) and not lifeless[body]
+            guessed = any(note.startswith(name + GUESSES) for note in _notes(ds))
+            out.append(Margin(limit.title, body, *texts, used, hours, limit.ends_at_once, timed, beyond, guessed))
     return out
 
 
-def print_limits(ds: xr.Dataset) -> None:
-    """Print the table of limits, the first limit of each body, and the values that are missing."""
-    heads = ["limit", *(f"{body}, {unit}" for body in BODIES for unit in ("% used", "h"))]
-    title = f"Limits at {100 * float(ds.attrs['failure_probability']):g} % failure probability"
-    print_table(heads, limit_rows(ds), 140, range(1, 5), title)
-    for sentence in (*first_limits(ds), *filter(None, ds.attrs["limits_notes"].split("\n"))):
-        print(sentence)
+def _of_pressure(ds: xr.Dataset, materials: Mapping[str, Material]) -> list[Margin]:
+    """Return the margins of the largest pressure to the pressure that the validity flag `yield` allows."""
+    pressure = float(ds["max_pressure"].max()) if "max_pressure" in ds else math.nan
+    if math.isnan(pressure):
+        return []
+    bounds = {body: YIELD * material.tensile_strength for body, material in materials.items()}
+    words = f"{YIELD:g} R_m; R_m stands for the yield strength"
+    return [
+        Margin("pressure limit (yield below the surface)", body, f"{rounded(pressure)} MPa", text, pressure / bound)
+        for body, bound in bounds.items()
+        for text in [f"{rounded(bound)} MPa: {words}"]
+    ]
+
+
+def _of_loads(found: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
+    """Return the margins of the pair to lift-off, full slip and self-locking."""
+    out = []
+    for title, name, (low, high) in (
+        ("lift-off of a contact (axial force)", "axial_force", found.axial_force),
+        ("full slip (motor force)", "motor_force", found.motor_force),
+    ):
+        if not math.isnan(low + high):
+            value = float(inputs[name])
+            bound = high if value >= 0 else low
+            used = value / bound if bound else math.inf
+            span = f"{rounded(low)} to {rounded(high)} N"
+            out.append(Margin(title, "pair", f"{number(value)} N", span, used if math.isfinite(bound) else math.nan))
+    now, told = float(inputs["friction_coefficient"]), number(inputs["friction_coefficient"])
+    for title, bound in (
+        ("self-locking (friction coefficient)", found.self_locking_friction),
+        ("lift-off of a contact (friction coefficient)", found.lift_off_friction),
+    ):
+        if math.isfinite(bound):
+            out.append(Margin(title, "pair", told, f"{rounded(bound)}", now / bound if bound else math.inf))
+        elif math.isinf(bound):
+            out.append(Margin(title, "pair", told, "none up to 2"))
+    return out
+
+
+def first_limits(found: list[Margin]) -> list[str]:
+    """Return one sentence for roller, guide and pair each: the limit that comes first, and when."""
+    out = []
+    for body, further in (("roller", "pair"), ("guide", "")):
+        own = [margin for margin in found if margin.body in (body, further, BOTH)]
+        told = " (rests on placeholders)" if own and own[0].guessed else ""
+        out += [f"First limit of the {body}: {own[0].title}{told}, {own[0].when}."] if own else []
+    if found:
+        unknown = any(m.timed and math.isnan(m.hours) and m.body == "guide" for m in found) and found[0].reached > 0
+        remark = "; the guide's hours are not known" if unknown else ""
+        out.append(f"First limit of the pair: {found[0].words}, {found[0].when}{remark}.")
+    return out
+
+
+def not_checked(ds: xr.Dataset) -> list[str]:
+    """Return what was not checked: limits that lack a value, limits not asked for, and wear."""
+    asked = str(ds.attrs.get("limits", "")).split()
+    missing = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in asked]
+    lacking: dict[str, list[str]] = {}
+    for note in _notes(ds):
+        if GUESSES not in note:
+            name, _, text = note.partition(": ")
+            lacking.setdefault(text, []).append(name)
+    out = [f"Not checked, or in part: {listing(names)}; {text}" for text, names in lacking.items()]
+    if missing:
+        out.append(f"Not asked for: {listing(missing)}. `trackroller solve --limits all` checks them.")
+    return out if "wear" in LIMITS else [*out, "Wear is not computed: judge it by tests or by the maker's catalogue."]
+
+
+def placeholders(ds: xr.Dataset) -> list[str]:
+    """Return the placeholders of materials on which the limits rest, one sentence for a limit and a material."""
+    return [note for note in _notes(ds) if GUESSES in note]
+
+
+def _notes(ds: xr.Dataset) -> list[str]:
+    return [note for note in str(ds.attrs.get("limits_notes", "")).split("\n") if note]

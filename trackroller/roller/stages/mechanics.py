@@ -87,6 +87,7 @@ def forces(results: Results) -> None:
     v["tilting_moment"] = tilting + (n * offset).sum(axis=1)
     v["yaw_moment"] = -((m[:, 0] + m[:, 1]) * loads.cosine + (a[:, 0] - a[:, 1]) * loads.rolling_radius * loads.sine)
     v["transmitted_force"] = a[:, 0] + a[:, 1]
+    v["drive_torque"] = v["drilling_torque"] + v["transmitted_force"] * loads.rolling_radius
 
 
 def force_error(results: Results, options: Options) -> None:

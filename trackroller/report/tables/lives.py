@@ -1,0 +1,109 @@
+"""The lives of one solved roller in hours, kilometres and overrollings: roller, guide, and both as a pair."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.analysis.designs import DATA_END
+from trackroller.analysis.table import BODIES
+from trackroller.damage.limit import roller_overrollings
+from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
+from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.report.numbers import lasting, number, rounded
+from trackroller.report.tables.inputs import Row
+from trackroller.roller.geometry import rolling_radius
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import Material
+
+UNKNOWN = {"guide": "not known: give guide_overrollings_per_hour", "roller": "not defined in this regime"}
+
+
+def overrollings(inputs: Mapping[str, Any], body: str) -> float:
+    """Return the overrollings of a point of a body [1/h]; NaN for a guide without a number."""
+    if body == "guide":
+        rate = inputs.get("guide_overrollings_per_hour")
+        return math.nan if rate is None else float(rate)
+    alpha = math.radians(inputs["contact_angle"])
+    radius = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
+    return float(roller_overrollings(inputs["velocity"], radius))
+
+
+def life_rows(
+    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
+) -> list[Row]:
+    """Return the overrollings an hour, the life of each body, and the life of the pair.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of one case with the output `life`; other results have no rows.
+    inputs : mapping
+        Inputs of the case by name.
+    materials : mapping of str to Material
+        Material of each body. A body whose material has scatter has lives at 10, 50 and 90 % failure probability.
+    lifeless : mapping of str to str
+        Why a body has no fatigue life; an empty text if it has one.
+    """
+    if "pair_life_hours" not in ds:
+        return []
+    rows = []
+    for body in BODIES:
+        rate = overrollings(inputs, body)
+        if math.isfinite(rate):
+            rows.append(Row(f"{body}, overrollings of a point", number(rate), "1/h"))
+    for body in BODIES:
+        rows += _of_body(ds, body, inputs, materials[body], lifeless[body])
+    return [*rows, _of_pair(ds, inputs, lifeless, materials)]
+
+
+def _of_body(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Material, lifeless: str) -> list[Row]:
+    if lifeless:
+        return [Row(f"{body}, no fatigue life", lifeless)]
+    if math.isnan(float(ds[f"{body}_life_hours"])):
+        return [Row(f"{body}, median life", UNKNOWN[body])]
+    if not (material.scatter_in_cycles or material.scatter_in_stress):
+        return [Row(f"{body}, median life (its material has no scatter T_N)", _life(ds, body, inputs, material, 0.5))]
+    return [
+        Row(f"{body}, until {100 * p:.0f} % have failed", _life(ds, body, inputs, material, p)) for p in PROBABILITIES
+    ]
+
+
+def _life(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Material, probability: float) -> str:
+    """Write the life of a body as hours, kilometres of travel and overrollings."""
+    curve = SNCurve.of(material, str(ds.attrs["life_rule"])).changed(failure_probability=probability)
+    stress = ds["fatigue_stress" if "fatigue_stress" in ds else "peak_stress"]
+    cycles = float(np.min(curve.life_cycles(stress.sel(body=body).values)))
+    hours = cycles / overrollings(inputs, body)
+    beyond = cycles > min(material.cycles_at_fatigue_limit, DATA_END)
+    return _text(hours, inputs, beyond, f"{rounded(cycles)} {'turns' if body == 'roller' else 'overrollings'}")
+
+
+def _text(hours: float, inputs: Mapping[str, Any], beyond: bool, further: str = "") -> str:
+    if math.isinf(hours):
+        return lasting(hours)
+    told = [f"{rounded(hours)} h", f"{rounded(hours * inputs['velocity'] * 60.0 / 1e3)} km", *filter(None, [further])]
+    return lasting(1.0, beyond=beyond).replace("1", "; ".join(told), 1)
+
+
+def _of_pair(
+    ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str, str], materials: Mapping[str, Material]
+) -> Row:
+    """Return the life of the pair, which ends with its first body."""
+    hours, first = float(ds["pair_life_hours"]), FIRST_TO_FAIL[int(ds["first_to_fail"])]
+    if any(lifeless.values()):
+        return Row("pair, no fatigue life", next(filter(None, lifeless.values())))
+    if math.isnan(hours):
+        return Row("pair, median life", UNKNOWN["roller"])
+    body = "guide" if first == "guide" else "roller"
+    cycles = float(ds["life_cycles"].sel(body=body).min())
+    told = _text(hours, inputs, cycles > min(materials[body].cycles_at_fatigue_limit, DATA_END))
+    if first == "unknown":
+        return Row("pair, median life of the roller alone (the guide's hours are unknown)", told)
+    return Row("pair, median life" + (f" (the {first} fails first)" if first != "none" else ""), told)

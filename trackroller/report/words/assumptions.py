@@ -1,0 +1,97 @@
+"""What a sheet rests on: assumptions, standards, friction from the database, and the database's own warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from trackroller.damage import LIMITS
+from trackroller.materials.properties import PROPERTIES
+from trackroller.report.numbers import capital, listing, number, plain, unit_text
+from trackroller.report.tables.inputs import friction_source
+from trackroller.roller.record import friction_records
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import Material
+
+ALWAYS = (
+    "Dry contact: no lubricant and no dirt.",
+    "Isothermal: no value of a material and no friction changes with temperature, and nothing expands.",
+    "No wear: the profiles stay as given.",
+    "Smooth surfaces, elastic half-spaces, steady rolling and constant loads; no shocks and no vibration.",
+    "Pressure limit: R_m stands for the yield strength.",
+)
+POLYMER = 20e3  # MPa; a material with a lower Young's modulus is treated as a polymer
+
+
+def assumptions(ds: xr.Dataset) -> list[str]:
+    """Return the assumptions of a solved case, those of the limits that were computed among them."""
+    return [*ALWAYS, *(sentence for name in _computed(ds) for sentence in LIMITS[name].assumes)]
+
+
+def standards(ds: xr.Dataset) -> str:
+    """Return the standards that the computed limits follow, in one sentence."""
+    told = [f"{LIMITS[name].standard} ({name})" for name in _computed(ds) if LIMITS[name].standard]
+    return f"{capital('; '.join(told))}." if told else "No standard is followed."
+
+
+def _computed(ds: xr.Dataset) -> list[str]:
+    """Return the limits that have a utilisation or a life; those of the output `life` without the verdict too."""
+    if "utilisation" not in ds:
+        return ["fatigue"] if "life_cycles" in ds else []
+    found = ds["utilisation"].notnull() | ds["life_hours_by_limit"].notnull()
+    return [str(name) for name in ds["limit"].values if bool(found.sel(limit=name).any())]
+
+
+def friction_sentence(ds: xr.Dataset) -> str:
+    """Say which entry of the database the friction coefficient is; an empty text if the case gives the number."""
+    told = [
+        f"Friction coefficient {number(r['value'])}: {r['level']} value of the database for {r['material_pair']}, "
+        f"source: {friction_source(r)}."
+        for r in friction_records(ds.attrs)
+    ]
+    return " ".join(told)
+
+
+def material_warnings(stored: Mapping[str, Mapping[str, Any]], materials: Mapping[str, Material]) -> list[str]:
+    """Return what the database itself says against the values of the materials, and what polymers need.
+
+    Parameters
+    ----------
+    stored : mapping of str to mapping
+        Values with sources, guesses and notes, by `roller_material` and `guide_material`.
+    materials : mapping of str to Material
+        Material of each body.
+    """
+    out = []
+    for body, material in materials.items():
+        own = stored[f"{body}_material"]
+        by_note: dict[str, list[str]] = {}
+        for name, note in own.get("notes", {}).items():
+            by_note.setdefault(note, []).append(PROPERTIES[name].symbol)
+        out += [f"{material.name}: {listing(symbols)}: {note}." for note, symbols in by_note.items()]
+        if own.get("guesses"):
+            guessed = [plain(name) for name in own["guesses"]]
+            out.append(f"{material.name}: guesses without a source: {listing(guessed)}.")
+        if material.youngs_modulus < POLYMER:
+            out.append(
+                f"{material.name}: stiffness, strength and friction of a polymer depend on temperature and moisture. "
+                "The database states neither: give values for the temperature and the moisture in use."
+            )
+    return list(dict.fromkeys(out))
+
+
+def strength_sentences(materials: Mapping[str, Material]) -> list[str]:
+    """Say for each material which values stand for its yield strength."""
+    out = []
+    for material in dict.fromkeys(materials.values()):
+        given = [
+            f"{plain(name)} {number(value)} {unit_text(PROPERTIES[name].unit)}"
+            for name in ("yield_strength", "hardness")
+            if (value := getattr(material, name)) is not None
+        ]
+        told = f"shakedown and standard rating use {listing(given)}" if given else "neither yield strength nor hardness"
+        out.append(f"{material.name}: {told}; the pressure limit uses R_m = {number(material.tensile_strength)} MPa.")
+    return out
