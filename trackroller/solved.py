@@ -17,10 +17,11 @@ from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.stored_study import read_results
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
-from trackroller.files import write_text
 from trackroller.numerics.threads import limited_to
 from trackroller.report.build import report_text
 from trackroller.report.explorer.page import write_explorer
+from trackroller.report.html import write_page
+from trackroller.report.workbook import write_cases
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar
@@ -130,10 +131,13 @@ class Solved(StudyResults):
         """Return one row a case: factors, other inputs that vary, and results by contact and body."""
         return self.view.table.copy()
 
+    def export(self, path: Path | str) -> Path:
+        """Write `to_table` as a workbook (.xlsx) or as CSV by the name of the file, and return its path."""
+        return write_cases(self.view.table, Path(path))
+
     def report(self, path: Path | str) -> Path:
-        """Write the report as one HTML file, and return its path."""
-        write_text(Path(path), report_text(self))
-        return Path(path)
+        """Write the report as one HTML file, or as PDF by the name of the file, and return its path."""
+        return write_page(Path(path), report_text(self))
 
     def explore(self, path: Path | str) -> Path:
         """Write the explorer as one HTML file that works without a network, and return its path."""

@@ -87,6 +87,14 @@ def writable(out: Path) -> Path:
     return target
 
 
+def writable_page(page: Path) -> Path:
+    """Return the page to write for the path that a user gave, .html or .pdf; see `writable`."""
+    from trackroller.report.html import check_page  # heavy: jinja2
+
+    check_page(page)
+    return writable(page)
+
+
 def write_result(dataset: xr.Dataset, target: Path) -> None:
     """Write a result as netCDF, whole or not at all; `target` comes from `writable`."""
     write_whole(target, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
@@ -114,7 +122,7 @@ def solve_and_tell(
 
     `limits` are names of limits, of which the margins alone are printed; `more` are further options of `solve`.
     """
-    target, page = (None if path is None else writable(path) for path in (out, sheet))
+    target, page = None if out is None else writable(out), None if sheet is None else writable_page(sheet)
     groups = _groups(limits, page is not None, json or target is not None or "outputs" in case_of(case, words)[1])
     dataset = solve_case(case, words, **more | ({"outputs": groups} if groups else {}))
     if target is not None:
@@ -143,7 +151,7 @@ def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) ->
 
     `out` receives netCDF, and `page` the page. `json` prints JSON; without `json` and `out`, tables are printed.
     """
-    target, sheet = (None if place is None else writable(place) for place in (out, page))
+    target, sheet = None if out is None else writable(out), None if page is None else writable_page(page)
     from trackroller.report.pages.sheet_text import as_json, print_spectrum
     from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
     from trackroller.study.spectrum.file import load_spectrum

@@ -63,7 +63,7 @@ def solve(
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
-    sheet: Annotated[Path | None, typer.Option("--report", help="write a printable sheet (HTML) as well")] = None,
+    sheet: Annotated[Path | None, typer.Option("--report", help="write a sheet (.html or .pdf) as well")] = None,
     limits: Annotated[str | None, typer.Option(help="print limits in one table: all, or names with commas")] = None,
     no_shortcuts: NoShortcuts = False,
 ) -> None:
@@ -107,11 +107,15 @@ def run(
 
 
 @app.command()
-def report(study: AnyStudy, results: Results = Path("results")) -> None:
+def report(
+    study: AnyStudy,
+    results: Results = Path("results"),
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="a copy as .html or .pdf; cases as .xlsx")] = None,
+) -> None:
     """Make analysis, figures and report of a study that was run."""
     from trackroller.cli.study import make_report
 
-    make_report(study, results)
+    make_report(study, results, out)
 
 
 @app.command()
@@ -176,7 +180,7 @@ def spectrum(
     file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
-    report: Annotated[Path | None, typer.Option("--report", help="write the page of the spectrum (HTML) too")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
 ) -> None:
     """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours."""
     from trackroller.cli.case import run_spectrum

@@ -10,7 +10,7 @@ from typing import Any, TextIO
 import numpy as np
 from rich.filesize import decimal
 
-from trackroller.cli.case import case_of, is_study
+from trackroller.cli.case import case_of, is_study, writable, writable_page
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report.terminal import print_table
@@ -54,10 +54,22 @@ def run_with_progress(
         print(plan.folder.gathered)
 
 
-def make_report(name: str, results: Path) -> None:
-    """Make analysis, figures and report of a study that was run."""
+def make_report(name: str, results: Path, out: Path | None) -> None:
+    """Make analysis, figures and report of a study that was run; write a copy of the report, or the cases, to `out`."""
     study = find_study(name, results)
-    print(_report(study_folder(study.name, results)))
+    table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
+    target = out if out is None else writable(out) if table else writable_page(out)
+    folder = study_folder(study.name, results)
+    report = _report(folder)
+    print(report)
+    if target is not None and table:
+        from trackroller.solved import open_study  # heavy: SALib
+
+        print(open_study(folder.root).export(target))
+    elif target is not None:
+        from trackroller.report.html import write_page  # heavy: jinja2
+
+        print(write_page(target, report.read_text(encoding="utf-8")))
 
 
 def _report(folder: StudyFolder) -> Path:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def write(ds: xr.Dataset, path: Path | str) -> Path:
-    """Write the sheet of one case, the page of a load spectrum or the report of a study as one HTML file.
+    """Write the sheet of one case, the page of a load spectrum or the report of a study, as HTML or PDF.
 
     Parameters
     ----------
@@ -23,7 +23,8 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
         Result of `trackroller.solve` for one case or for the design of a study, result of `solve_spectrum`, or the
         data set in `study.nc`.
     path : Path or str
-        The file to write. It stands alone and can be sent by mail.
+        The file to write, .html or .pdf. It stands alone and can be sent by mail. A browser prints the PDF: Chromium,
+        Chrome or Edge.
 
     Returns
     -------
@@ -50,11 +51,10 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     if "study" not in ds.attrs:
         return write_sheet(ds, path)
     from trackroller.analysis.stored_study import read_results  # heavy: pandas, SciPy and SALib, for studies only
-    from trackroller.files import write_text
+    from trackroller.report import html
     from trackroller.report.build import report_text
 
-    write_text(Path(path), report_text(read_results(ds)))
-    return Path(path)
+    return html.write_page(Path(path), report_text(read_results(ds)))
 
 
 class _CallableModule(ModuleType):

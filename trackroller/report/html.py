@@ -1,10 +1,14 @@
-"""What the pages of this room share: templates, marked-up texts and pictures inside a page."""
+"""What the pages of this room share: templates, marked-up texts, pictures inside a page, and pages as files."""
 
 from __future__ import annotations
 
 import base64
 import html
+import os
 import re
+import shutil
+import subprocess
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,7 +16,13 @@ from typing import Any
 import jinja2
 from markupsafe import Markup, escape
 
+from trackroller.errors import InputError, WorkError
+from trackroller.files import write_text, write_whole
+
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
+_BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
+_PATIENCE = 300  # seconds that printing may take
+_PRINT = "--headless --disable-gpu --no-first-run --disable-background-networking --no-pdf-header-footer".split()
 _GREEK = {"alpha": "α", "mu": "μ", "nu": "ν", "sigma": "σ", "tau": "τ", "xi": "ξ"}
 
 
@@ -58,3 +68,54 @@ def symbols(text: str) -> Markup:
 def data_uri(path: Path) -> str:
     """Return an SVG or PNG file as a data URI, which stands in a page in place of the file."""
     return f"data:{_KINDS[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+
+
+def check_page(path: Path) -> None:
+    """Refuse a page whose name ends neither in .html nor in .pdf, and a PDF without a browser that prints it.
+
+    Raises
+    ------
+    InputError
+        If the name has another ending.
+    WorkError
+        If it is a PDF, and neither Chromium, Chrome nor Edge is installed.
+    """
+    if path.suffix.lower() not in (".html", ".htm", ".pdf"):
+        raise InputError("report", str(path), "a file whose name ends in .html or .pdf", "Change the name.")
+    if path.suffix.lower() == ".pdf" and _browser() is None:
+        remedy = "Install one of them, or write a page: give a name that ends in .html."
+        raise WorkError(f"{path}: Chromium, Chrome or Edge prints a PDF, and none of them was found. {remedy}")
+
+
+def write_page(path: Path, text: str) -> Path:
+    """Write a page as HTML, or print it as PDF if the name of the file ends in .pdf, and return its path.
+
+    Raises
+    ------
+    InputError, WorkError
+        As `check_page`, or if the browser does not print.
+    """
+    check_page(path)
+    if path.suffix.lower() == ".pdf":
+        write_whole(path, lambda beside: _print(text, beside))
+    else:
+        write_text(path, text)
+    return path
+
+
+def _browser() -> str | None:
+    return next((found for name in _BROWSERS if (found := shutil.which(name))), None)
+
+
+def _print(text: str, path: Path) -> None:
+    """Print a page by a headless browser with a profile of its own."""
+    with tempfile.TemporaryDirectory(prefix="trackroller-print-", ignore_cleanup_errors=True) as place:
+        page, made = Path(place, "page.html"), Path(place, "page.pdf")
+        page.write_text(text, encoding="utf-8")
+        alone = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []  # root has no sandbox
+        own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={made}", page.as_uri()]
+        try:
+            subprocess.run([str(_browser()), *_PRINT, *alone, *own], capture_output=True, timeout=_PATIENCE, check=True)
+            shutil.copyfile(made, path)
+        except (subprocess.SubprocessError, OSError) as exc:
+            raise WorkError(f"{_browser()} does not print the page: {exc}. Give a name that ends in .html.") from exc

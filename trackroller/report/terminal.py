@@ -48,8 +48,8 @@ def print_table(
         for i in own:
             more = max(0, min(spare, max(map(len, columns[i])) - least[i]))
             spare -= more
-            side = "right" if i in right else "left"
-            table.add_column(heads[i], justify=side, width=least[i] + more, overflow="fold")
+            table.add_column(heads[i], width=least[i] + more, overflow="fold")
+            table.columns[-1].justify = "right" if i in right else "left"
         for row in rows:
             table.add_row(*(row[i] for i in own))
         console.print(table)

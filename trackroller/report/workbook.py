@@ -1,4 +1,4 @@
-"""Export of the report's tables as CSV files and one XLSX workbook."""
+"""Export of the report's tables, and of the cases of a study, as CSV files and XLSX workbooks."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from trackroller.errors import InputError
 from trackroller.files import write_whole
 from trackroller.report import html
 from trackroller.report.tables.table import Table, cell
@@ -37,6 +39,34 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
     book = folder / "tables.xlsx"
     write_whole(book, lambda beside: _save(beside, tables))
     return [*paths, book]
+
+
+MOST_ROWS = 1_048_575  # of a sheet below its head, by the format XLSX
+
+
+def write_cases(table: pd.DataFrame, path: Path) -> Path:
+    """Write the cases of a study as a workbook with one sheet, or as CSV, by the name of the file.
+
+    Parameters
+    ----------
+    table : one row a case
+    path : the file, .xlsx or .csv
+
+    Returns
+    -------
+    The path.
+    """
+    if path.suffix.lower() == ".csv":
+        write_whole(path, lambda beside: table.to_csv(beside, index=False))
+        return path
+    if path.suffix.lower() != ".xlsx":
+        raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")
+    if len(table) > MOST_ROWS:
+        remedy = "Write them as .csv."
+        raise InputError("cases", len(table), f"a workbook holds at most {MOST_ROWS:,} cases", remedy)
+    sheet = Table("cases", "Cases", list(map(str, table.columns)), table.astype(object).to_numpy().tolist())
+    write_whole(path, lambda beside: _save(beside, [sheet]))
+    return path
 
 
 def _inert(value: Any) -> Any:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.files import write_text
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.pages.sheet_facts import collect, side_by_side
@@ -23,7 +22,7 @@ FULL = 150.0  # percent of a limit at the right end of a bar
 
 
 def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "") -> Path:
-    """Write the sheet of a solved roller as one HTML file that stands alone.
+    """Write the sheet of a solved roller as one HTML file that stands alone, or as PDF by the name of the file.
 
     Parameters
     ----------
@@ -42,10 +41,11 @@ def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "") -> Path:
     Raises
     ------
     InputError
-        If `ds` is not the result of one case.
+        If `ds` is not the result of one case, or for another name than .html or .pdf.
+    WorkError
+        If no browser is there that prints a PDF.
     """
-    write_text(Path(path), render(ds, name))
-    return Path(path)
+    return html.write_page(Path(path), render(ds, name))
 
 
 def render(ds: xr.Dataset, name: str = "") -> str:
@@ -55,16 +55,17 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         from trackroller.report.figures.contact import plot_case  # heavy: matplotlib
 
         drawn = _pictures(partial(plot_case, ds))
+    facts = collect(ds)
     content = {
-        "facts": collect(ds),
+        "facts": facts,
+        "lines": side_by_side(facts.contacts),
+        "aside": _less_stressed(ds),
         "name": name or "Track roller",
         "drawing": drawing(ds) if "normal_force" in ds else "",
         "figures": [drawn[name] for name in SHOWN if name in drawn],
         "full": FULL,
         "probability": f"{100 * float(ds.attrs['failure_probability']):g} %",
     }
-    content["aside"] = _less_stressed(ds)
-    content["lines"] = side_by_side(content["facts"].contacts)
     return html.render("sheet.html.j2", content, bar=bar)
 
 

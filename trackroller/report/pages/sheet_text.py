@@ -30,10 +30,10 @@ def print_facts(ds: xr.Dataset) -> None:
     print_text(f"regime: {regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
     if facts.reason:
         print_text(f"reason: {facts.reason}")
-    rows = [[row.words, row.value, row.unit, "default" if row.default else "given"] for row in facts.inputs]
+    rows = [[row.words, row.value, row.unit, "example" if row.default else "given"] for row in facts.inputs]
     print_table(["input", "value", "unit", "from"], rows, (1,))
     if facts.not_given:
-        print_text(facts.not_given)
+        print_text("Values from 'example' were not given: the paper's example has them. Give yours.")
     print_text(facts.options, "options")
     if any(contact.carries for contact in facts.contacts):
         heads = ["quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit"]

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trackroller.analysis.table import BODIES
-from trackroller.files import write_text
 from trackroller.report import html
 from trackroller.report.numbers import capital
 from trackroller.report.pages.sheet import _pictures
@@ -86,7 +85,7 @@ def warnings(ds: xr.Dataset) -> list[str]:
 
 
 def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml") -> Path:
-    """Write the page of a load spectrum as one HTML file that stands alone.
+    """Write the page of a load spectrum as one HTML file that stands alone, or as PDF by the name of the file.
 
     Parameters
     ----------
@@ -120,5 +119,4 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
         "command": f"trackroller spectrum {shlex.quote(file)} --report {shlex.quote(Path(path).name)}",
         "versions": versions_text(),
     }
-    write_text(Path(path), html.render("spectrum.html.j2", content))
-    return Path(path)
+    return html.write_page(Path(path), html.render("spectrum.html.j2", content))
