@@ -484,6 +484,7 @@ def designs_of(view):
 def test_designs_and_conditions_are_chosen_in_their_lists(page, grid):
     view = view_of(grid)
     keys, worst = designs_of(view)
+    assert "guide's hours are unknown" in page.run("document.querySelector('[data-list=design]').textContent")
     cells = "[...document.querySelectorAll('[data-list=%s] tbody tr')].map(e => [...e.cells].map(c => c.textContent))"
     designs, conditions = page.run(cells % "design"), page.run(cells % "condition")
     assert len(designs) == len(worst) == 15 and len(conditions) == view.valid.size // 15
@@ -493,7 +494,7 @@ def test_designs_and_conditions_are_chosen_in_their_lists(page, grid):
     (design,) = {tuple(key) for key in view.table.loc[rows, keys].to_numpy()}
     own = (view.table[keys] == design).all(axis=1)
     assert rows == np.flatnonzero(own).tolist() and len(rows) == len(conditions)
-    radius, _, life, valid, _ = designs[2][2:]
+    radius, _, life, valid = designs[2][2:]
     assert float(radius.replace("−", "-")) == design[0] and valid == f"{view.valid[own].sum()} of {len(rows)}"
     assert float(life.split(" (")[0].replace(",", "")) == pytest.approx(worst[design], rel=5e-3)
     page.run("document.querySelector('[data-list=condition] summary').click()")

@@ -10,9 +10,10 @@ from trackroller.analysis.designs import Designs, pair_beyond_data
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
-from trackroller.report.numbers import Life, count
+from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count
 from trackroller.report.tables.designs import first_words
 from trackroller.report.tables.table import cell, factor_cell, heading
+from trackroller.report.words.designs import alone
 from trackroller.report.words.pareto import goal_heading
 from trackroller.study.file.goals import statistic
 
@@ -67,11 +68,14 @@ def _designs(designs: Designs, worst: str) -> dict[str, Any]:
         key = tuple(row[n] for n in designs.choices)
         lives = [Life(row[name], row[f"{name}_beyond"]) for name in (["b10", "worst"] if nine else ["worst"])]
         valid = f"{count(int(row['valid']))} of {count(int(row['cases']))}"
-        told = [*map(cell, lives if designs.rising else map(float, lives)), valid, first_words(row) or "–"]
+        told = [*map(cell, lives if designs.rising else map(float, lives)), valid]
+        told += [] if alone(designs) else [first_words(row) or "–"]
         told += cells.get(key, ["–"] * len(heads))
         rows.append([*(cell(factor_cell(n, row[n])) for n in designs.choices), *told])
-    heads = [*map(heading, designs.choices), *nine, worst, "Valid in", "Fails first", *heads]
-    return {"factors": designs.choices, "heads": heads, "rows": rows, "of": len(designs.table), "note": note}
+    first = [] if alone(designs) else ["Fails first"]
+    note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}." if alone(designs) else ""
+    heads = [*map(heading, designs.choices), *nine, worst, "Valid in", *first, *heads]
+    return {"factors": designs.choices, "heads": heads, "rows": rows, "of": len(designs.table), "note": note.strip()}
 
 
 def _goals(designs: Designs) -> tuple[list[str], dict[tuple[Any, ...], list[str]], str]:
