@@ -1,10 +1,13 @@
-"""The rules of the code are kept: rooms in one order, small files, small functions, few arguments."""
+"""The rules of the code are kept: rooms in one order, so no circles, small files, small functions.
+
+ruff holds the number of arguments and imports inside functions.
+"""
 
 from __future__ import annotations
 
 import pytest
 
-from validation.house import LONGEST_FUNCTION, MOST_ARGUMENTS, MOST_LINES, survey
+from validation.house import LONGEST_FUNCTION, MOST_LINES, survey
 
 LINES_OF_CODE = 22_698  # 725 of them for designs over their conditions, 100 for what sentences rest on
 FOR_LIMITS = 1_835  # what the limits of the room `damage`, with what declares and serves them, may take
@@ -14,7 +17,6 @@ LONG_FUNCTIONS = {
     "trackroller/halfspace/kernels.py:uniform_corner": "closed form of the corner of a uniform cell",
     "trackroller/halfspace/kernels.py:bilinear_corner": "closed form of the corner of a bilinear cell",
 }
-MANY_ARGUMENTS = {"trackroller/roller/solver.py:solve": "the public options of a solution, by name"}
 
 
 @pytest.fixture(scope="module")
@@ -30,10 +32,6 @@ def test_no_room_imports_a_later_room(house):
     assert house.upward == []
 
 
-def test_no_circle_between_rooms(house):
-    assert house.circles() == []
-
-
 def test_files_are_short(house):
     assert not house.long_files(), f"over {MOST_LINES} lines: {house.long_files()}"
 
@@ -41,10 +39,6 @@ def test_files_are_short(house):
 def test_functions_are_short(house):
     long = house.long_functions()
     assert set(long) <= set(LONG_FUNCTIONS), f"over {LONGEST_FUNCTION} lines of code: {long}"
-
-
-def test_functions_have_few_arguments(house):
-    assert set(house.arguments) <= set(MANY_ARGUMENTS), f"over {MOST_ARGUMENTS} arguments: {house.arguments}"
 
 
 def test_the_package_keeps_its_budget(house):
@@ -60,15 +54,12 @@ def test_the_counter_finds_what_it_counts(tmp_path):
     (tmp_path / "trackroller" / "__init__.py").write_text("")
     (upper / "case.py").write_text("from ..contact import hertz\n")
     (lower / "hertz.py").write_text(
-        '"""Two lines\n\nof words."""\n\n# a comment\ndef f(a, b, c, d, e, f, g, h, i):\n    """Say."""\n'
-        "    from trackroller.roller.case import Case  # fmt: skip\n" + 60 * "    a = b\n" + 300 * "\n"
+        '"""Two lines\n\nof words."""\n\n# a comment\ndef f(a, b):\n    """Say."""\n'
+        "    from trackroller.roller.case import Case\n" + 60 * "    a = b\n" + 300 * "\n"
     )
     house = survey(tmp_path)
     assert house.entries == ["__init__.py", "contact", "roller"]
     assert house.upward == ["trackroller/contact/hertz.py:8 imports trackroller.roller.case"]
-    assert house.circles() == [("contact", "roller")]
     assert house.code["trackroller/contact/hertz.py"] == 62
     assert list(house.long_files()) == ["trackroller/contact/hertz.py"]
     assert house.long_functions() == {"trackroller/contact/hertz.py:f": 62}
-    assert house.arguments == {"trackroller/contact/hertz.py:f": 9}
-    assert house.late == house.skipped == ["trackroller/contact/hertz.py:8"]

@@ -1,4 +1,4 @@
-"""Count what the rules of the code limit: rooms, arrows between them, lines, long functions, late imports.
+"""Count what the rules of the code limit and ruff does not: rooms and their order, lines of code, long functions.
 
 `python -m validation.house [FOLDER]` prints the counts of a checkout, by default of the one this file lies in.
 `tests/test_house.py` holds the limits. A line of code is a line that is no docstring, comment or blank.
@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import ast
 import io
-import re
 import sys
 import tokenize
 from collections import Counter
@@ -36,7 +35,7 @@ ORDER = (
     "cli",
     "__init__",
 )
-MOST_LINES, LONGEST_FUNCTION, MOST_ARGUMENTS = 320, 50, 8
+MOST_LINES, LONGEST_FUNCTION = 320, 50
 _NO_CODE = {
     tokenize.COMMENT,
     tokenize.NL,
@@ -56,33 +55,21 @@ class House:
     ----------
     entries : list of str
         Files and folders at the top of the package.
-    arrows : Counter
-        Imports by (importing room, imported room), those for type checking and those inside functions included.
     upward : list of str
-        Imports from a later room.
+        Imports from a later room, those for type checking and those inside functions included.
     code : dict
         Lines of code by file, relative to the checkout.
     lines : dict
         All lines by file.
     functions : dict
         Lines of code by "file:function".
-    arguments : dict
-        Number of arguments by "file:function", where there are more than `MOST_ARGUMENTS`.
-    late : list of str
-        Imports inside functions, as "file:line".
-    skipped : list of str
-        Uses of `fmt: skip` and `fmt: off`, as "file:line".
     """
 
     entries: list[str] = field(default_factory=list)
-    arrows: Counter[tuple[str, str]] = field(default_factory=Counter)
     upward: list[str] = field(default_factory=list)
     code: dict[str, int] = field(default_factory=dict)
     lines: dict[str, int] = field(default_factory=dict)
     functions: dict[str, int] = field(default_factory=dict)
-    arguments: dict[str, int] = field(default_factory=dict)
-    late: list[str] = field(default_factory=list)
-    skipped: list[str] = field(default_factory=list)
 
     def long_files(self) -> dict[str, int]:
         """Return the files with more than `MOST_LINES` lines."""
@@ -91,15 +78,6 @@ class House:
     def long_functions(self) -> dict[str, int]:
         """Return the functions with more than `LONGEST_FUNCTION` lines of code."""
         return {name: count for name, count in self.functions.items() if count > LONGEST_FUNCTION}
-
-    def circles(self) -> list[tuple[str, ...]]:
-        """Return the groups of rooms that import each other, directly or through other rooms."""
-        reach = {room: {b for a, b in self.arrows if a == room} for room in {a for pair in self.arrows for a in pair}}
-        for _ in reach:
-            for found in reach.values():
-                found |= {c for b in found for c in reach.get(b, ())}
-        groups = {tuple(sorted(b for b in reach[a] if a in reach[b])) for a in reach if a in reach[a]}
-        return sorted(groups)
 
 
 def room_of(module: str) -> str:
@@ -174,32 +152,15 @@ def survey(root: Path = ROOT) -> House:
         tree = ast.parse(source)
         lines = code_lines(source, tree)
         house.code[name], house.lines[name] = len(lines), len(source.splitlines())
-        house.skipped += [f"{name}:{i}" for i, line in enumerate(source.splitlines(), 1) if re.search(r"# fmt: ", line)]
-        _count_imports(house, name, imported(tree, module, path.name == "__init__.py", set(paths)), module)
+        place = ORDER.index(room_of(module))
+        for other, line in imported(tree, module, path.name == "__init__.py", set(paths)):
+            if ORDER.index(room_of(other)) > place:
+                house.upward.append(f"{name}:{line} imports {other}")
         for node in ast.walk(tree):
             if isinstance(node, _FUNCTIONS):
-                _count_function(house, name, node, lines)
-    house.late = sorted(set(house.late))
+                own = lines.intersection(range(node.lineno, (node.end_lineno or 0) + 1))
+                house.functions[f"{name}:{node.name}"] = len(own)
     return house
-
-
-def _count_imports(house: House, name: str, found: list[tuple[str, int]], module: str) -> None:
-    here = room_of(module)
-    for other, line in found:
-        there = room_of(other)
-        if there != here:
-            house.arrows[here, there] += 1
-            if ORDER.index(there) > ORDER.index(here):
-                house.upward.append(f"{name}:{line} imports {other}")
-
-
-def _count_function(house: House, name: str, node: ast.FunctionDef | ast.AsyncFunctionDef, lines: set[int]) -> None:
-    label = f"{name}:{node.name}"
-    house.functions[label] = len(lines.intersection(range(node.lineno, (node.end_lineno or 0) + 1)))
-    count = len(node.args.posonlyargs + node.args.args + node.args.kwonlyargs)
-    if count > MOST_ARGUMENTS:
-        house.arguments[label] = count
-    house.late += [f"{name}:{n.lineno}" for n in ast.walk(node) if isinstance(n, (ast.Import, ast.ImportFrom))]
 
 
 def told(house: House) -> str:
@@ -207,25 +168,14 @@ def told(house: House) -> str:
     rooms: Counter[str] = Counter()
     for name, count in house.code.items():
         rooms[name.split("/")[1]] += count
-    parts = [
-        f"entries at the top of the package: {len(house.entries)} ({', '.join(house.entries)})",
-        f"lines of code: {sum(house.code.values())} ({', '.join(f'{room} {n}' for room, n in rooms.most_common())})",
-        f"arrows between rooms: {len(house.arrows)}, imports {sum(house.arrows.values())}",
-        *_listed("upward imports", house.upward),
-        *_listed("circles between rooms", [" <-> ".join(group) for group in house.circles()]),
-        *_listed(f"files over {MOST_LINES} lines", [f"{n} {c}" for n, c in house.long_files().items()]),
-        *_listed(
-            f"functions over {LONGEST_FUNCTION} lines of code", [f"{n} {c}" for n, c in house.long_functions().items()]
-        ),
-        *_listed(f"functions with over {MOST_ARGUMENTS} arguments", [f"{n} {c}" for n, c in house.arguments.items()]),
-        *_listed("late imports", house.late),
-        *_listed("fmt: skip", house.skipped),
-    ]
-    return "\n".join(parts)
-
-
-def _listed(title: str, found: list[str]) -> list[str]:
-    return [f"{title}: {len(found)}", *(f"  {line}" for line in found)]
+    listed = {
+        "entries at the top of the package": house.entries,
+        f"lines of code {sum(house.code.values())}; rooms and files": [f"{n} {c}" for n, c in rooms.most_common()],
+        "upward imports": house.upward,
+        f"files over {MOST_LINES} lines": [f"{n} {c}" for n, c in house.long_files().items()],
+        f"functions over {LONGEST_FUNCTION} lines of code": [f"{n} {c}" for n, c in house.long_functions().items()],
+    }
+    return "\n".join(f"{title}: {len(found)} ({', '.join(found)})" for title, found in listed.items())
 
 
 if __name__ == "__main__":
