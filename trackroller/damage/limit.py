@@ -2,6 +2,8 @@
 
 A limit ends the life of a roller or of its guide. Its file holds the formulas and one object `LIMIT`. Output groups,
 result variables, fields of a case, values of a material, the JSON schema and the documentation follow from it.
+A life in hours is overrollings over `Solved.overrollings_per_hour`. A case gives its own value of a material as
+`roller_material={"like": "PA6", "permissible_pressure": 60.0}`.
 """
 
 from __future__ import annotations
