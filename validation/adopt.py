@@ -27,7 +27,7 @@ DOCS = Path(__file__).resolve().parents[1] / "docs"
 DATA, FIGURES = DOCS / "data", DOCS / "figures"
 LADDERS = Path(accuracy.__file__).with_name("accuracy.json")
 TABLE = Path(spline.__file__).with_name(spline.TABLE)
-TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "peers", "kalker_table", "benchmarks")
+TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "kalker_table", "benchmarks")
 # figures that the pages show, by target: pattern of their names, and colours of the reduced palette, if it is reduced
 PICTURES = {
     "extremes": ("extremes_*.png", 0),

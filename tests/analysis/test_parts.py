@@ -17,7 +17,7 @@ from trackroller.report.words.indices import level_indices
 from trackroller.study.design.saltelli import as_set, pairs_sharing, serves
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
-from validation.known_indices import functions
+from validation.benchmarks.known_indices import functions
 
 G = functions()["g-function"]
 SHARE = 1 / (3 * (1 + np.array([0, 1, 4.5, 9, 99.0])) ** 2)

@@ -7,7 +7,7 @@ from SALib.analyze import rbd_fast
 from trackroller.analysis import pawn
 from trackroller.analysis.givendata import firsts
 from trackroller.analysis.pairs import GROUPS, held_out, pairs
-from validation.known_indices import functions, random_rows
+from validation.benchmarks.known_indices import functions, random_rows
 
 
 def test_held_out_residuals_of_nested_fits_equal_fits_without_the_row():

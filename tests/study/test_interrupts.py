@@ -1,4 +1,7 @@
-"""Ctrl-C at a random moment: the command ends, says in one sentence what is kept, and goes on when started again."""
+"""Signals at random moments: an interrupted or killed command goes on when it is started again, and nothing is lost.
+
+An interrupted one ends with one sentence that says what is kept. `tests/workflow/test_workflow.py` kills the workflow.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +47,10 @@ PHASES = {
     "explore": (("explorer.html",), ("explore", "stopped")),
     "plan": ((), ("plan", "large.yaml")),
 }
+# killed phases; workers are processes of their own, which are killed with the main process
+KILLED = {name: PHASES[name] for name in ("solve", "gather")} | {
+    "solve by workers": (("chunks", "study.nc"), ("run", "study.yaml", "-q", "--scheduler", "local")),
+}
 # A shell reports 130 for both. CPython notes an interrupt that passes through `exec` or `eval` of a text, as in the
 # definition of a data class, as unhandled; at its end it then sends the signal to itself, although the code was 130.
 STOPPED_CODES = (130, -signal.SIGINT)
@@ -57,28 +64,29 @@ def command(place, words, results):
     return time.monotonic() - begun
 
 
-def stopped_after(seconds, place, words, results):
-    """Start a command, interrupt it, and return its exit code and what it printed on stderr."""
-    words = [*PROGRAM, *words, "--results", results]
-    process = subprocess.Popen(words, cwd=place, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+def stopped_after(seconds, place, words, results, sent):
+    """Start a command, send it a signal (SIGKILL to its workers too), and return its exit code and its stderr."""
+    words, null = [*PROGRAM, *words, "--results", results], subprocess.DEVNULL
+    process = subprocess.Popen(words, cwd=place, stdout=null, stderr=subprocess.PIPE, text=True, start_new_session=True)
     time.sleep(seconds)
-    process.send_signal(signal.SIGINT)
+    if process.poll() is None:
+        (os.killpg if sent == signal.SIGKILL else os.kill)(process.pid, sent)
     try:
         _, told = process.communicate(timeout=120)
     except subprocess.TimeoutExpired:
         process.kill()
-        pytest.fail(f"{words} hangs after an interrupt at {seconds} s")
+        pytest.fail(f"{words} hangs after {sent.name} at {seconds} s")
     return process.returncode, told
 
 
-def lay_out(place):
+def lay_out(place, phases):
     """Write the studies and return how long each phase takes without an interrupt [s]."""
     (place / "study.yaml").write_text(STUDY)
     (place / "large.yaml").write_text(LARGE)
     command(place, ("run", "study.yaml", "-q", "--report"), "calm")
     shutil.copytree(place / "calm", place / "rough")
     lengths = {}
-    for phase, (deleted, words) in PHASES.items():
+    for phase, (deleted, words) in phases.items():
         remove(place / "rough", ("chunks", "study.nc") if phase == "solve" else deleted)
         lengths[phase] = command(place, words, "rough")
     return lengths
@@ -89,24 +97,24 @@ def remove(results, names):
         shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
 
 
-def interrupted_runs(place, tries, seed):
-    lengths = lay_out(place)
+def stopped_runs(place, tries, seed, sent, phases):
+    lengths = lay_out(place, phases)
     chance, stopped = random.Random(seed), Counter()
     for number in range(tries):
-        phase = list(PHASES)[number % len(PHASES)]
-        deleted, words = PHASES[phase]
-        again = phase == "solve" and number % (8 * len(PHASES)) == 0
+        phase = list(phases)[number % len(phases)]
+        deleted, words = phases[phase]
+        again = phase == "solve" and number % (8 * len(phases)) == 0
         remove(place / "rough", ("chunks", "study.nc") if again else deleted)
         if words[0] in ("report", "explore") and not (place / "rough/stopped/study.nc").is_file():
             command(place, PHASES["solve"][1], "rough")
-        code, told = stopped_after(chance.uniform(0.1, 1.05) * lengths[phase], place, words, "rough")
-        assert code in (0, *STOPPED_CODES), f"{phase}: {code} {told}"
+        code, told = stopped_after(chance.uniform(0.1, 1.05) * lengths[phase], place, words, "rough", sent)
+        assert code in (0, *(STOPPED_CODES if sent == signal.SIGINT else (-sent,))), f"{phase}: {code} {told}"
         assert "Traceback" not in told, f"{phase}: {told}"
+        stopped[phase] += code != 0
         if code in STOPPED_CODES:
-            stopped[phase] += 1
             assert told.strip().splitlines()[-1].startswith("trackroller: stopped. The finished chunks"), told
     command(place, ("run", "study.yaml", "-q", "--report"), "rough")
-    for words in PHASES.values():
+    for words in phases.values():
         command(place, words[1], "rough")
     subprocess.run([*PROGRAM, "verify", "rough/stopped"], cwd=place, check=True, capture_output=True)
     for name in ("study.nc", "sensitivity.nc"):
@@ -117,8 +125,9 @@ def interrupted_runs(place, tries, seed):
 
 
 @pytest.mark.slow
-def test_commands_interrupted_in_any_phase_end_with_a_sentence_and_go_on(tmp_path):
-    interrupted_runs(tmp_path, TRIES, int(os.environ.get("INTERRUPT_SEED", "2")))
+@pytest.mark.parametrize(("sent", "phases"), [(signal.SIGINT, PHASES), (signal.SIGKILL, KILLED)])
+def test_commands_stopped_in_any_phase_go_on(tmp_path, sent, phases):
+    stopped_runs(tmp_path, TRIES, int(os.environ.get("INTERRUPT_SEED", "2")), sent, phases)
 
 
 def test_an_interrupt_waits_while_a_file_is_written_and_comes_afterwards(tmp_path):

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from validation import index_estimators as tool
-from validation.known_indices import functions
+from validation.benchmarks import index_estimators as tool
+from validation.benchmarks.known_indices import functions
 
 
 def measured(kind: str, name: str, seeds: int) -> dict[str, dict[str, float]]:
     """Return the numbers of both estimators in the comparison whose name starts with `name`."""
     data, truth = next((d, t) for k, n, d, t in tool.cases() if k == kind and n.startswith(name))
-    return {who: tool.measure(one, data, truth, seeds) for who, one in tool.ESTIMATORS[kind].items()}
+    return {who: tool.numbers(one, data, truth, seeds) for who, one in tool.ESTIMATORS[kind].items()}
 
 
 def test_closed_forms_agree_with_brute_force():
@@ -54,10 +54,8 @@ def test_interactions_and_pawn_have_smaller_errors_than_salib():
     assert found["ours"]["rmse"] < 0.03 and found["SALib pawn"]["rmse"] > 0.1
 
 
-def test_the_program_prints_each_estimator(capsys):
-    tool.main(["--seeds", "4", "--only", "pawn", "morris", "repeat", "designs"])
-    text = capsys.readouterr().out
-    assert "PAWN of three categories, 1000 rows" in text and "SALib pawn" in text
-    assert "Repeated with seed 0: SALib's interval is another one, ours is the same" in text
-    assert "box_behnken, by number of factors: the same rows for 3, 4, 5; pyDOE has more rows for 6, 7" in text
-    assert "pyDOE fails for 24, 25, 26, 27, 32" in text
+def test_the_program_compares_each_estimator_and_design():
+    found = tool.measure(seeds=4, only=("pawn",))
+    assert set(found["estimators"]["PAWN of three categories, 1000 rows"]) == {"ours", "SALib pawn"}
+    assert found["designs"]["box_behnken"] == {"the same rows": [3, 4, 5], "pyDOE has more rows": [6, 7]}
+    assert found["designs"]["plackett_burman"]["pyDOE fails"][:5] == [24, 25, 26, 27, 32]

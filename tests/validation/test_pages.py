@@ -70,7 +70,7 @@ def test_the_readme_holds_the_measured_table():
 def test_a_changed_number_changes_the_page(monkeypatch):
     """The page follows its data: another measured value stands in the text."""
     data = measured()
-    data["force_errors"] = data["force_errors"] | {"exceeded": 0.123}
+    data["kalker_errors"] = data["kalker_errors"] | {"exceeded": 0.123}
     monkeypatch.setattr("validation.pages.measured", lambda: data)
     assert "`force_error_estimate` is exceeded in 12 % of" in render("accuracy.md", presets="")
 

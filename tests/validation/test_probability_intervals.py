@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from validation import probability_intervals as program
+from validation.benchmarks import probability_intervals as program
 
 
 @pytest.mark.parametrize("design", ["lhs", "grown lhs"])
@@ -11,7 +11,7 @@ def test_our_intervals_hold_the_truth_where_wilsons_do_not(design):
     """Ours cover at least 88 %, with partly empty strata too; Wilson's stay below 85 % for a mean of four points."""
     unit = program.DESIGNS["sobol"](1 << 15, 1)
     exact = np.mean([event(unit) for event, _ in program.EVENTS.values()], axis=1)
-    found = program.measure(design, 100, 60, exact)
+    found = program.coverage(design, 100, 60, exact)
     assert (found["ours"] >= 0.88).all()
     shared = list(program.EVENTS).index("mean of four points, product")
     assert found["wilson"][shared] < 0.85 < found["ours"][shared]

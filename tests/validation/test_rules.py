@@ -35,7 +35,7 @@ def modules(rules: str) -> list[tuple[str, ...]]:
     return [tuple(re.findall(r'"((?:trackroller|validation)[\w.]+)"', call)) for call in calls]
 
 
-@pytest.mark.parametrize("room", ["paper", "extremes", "tradeoff", "contact_models", "peers"])
+@pytest.mark.parametrize("room", ["paper", "extremes", "tradeoff", "contact_models"])
 def test_evidence_depends_on_the_whole_solver_and_on_its_own_code(room):
     files = source_files([f"validation.{room}.__main__", sources.SOLVER])
     found = {path.relative_to(ROOT).as_posix() for path in files}
@@ -64,8 +64,7 @@ def test_programs_of_the_evidence_run_with_the_interpreter_of_the_workflow():
 def test_each_program_has_a_small_instance():
     """The small instance that CI runs gives every program of the evidence fewer cases, and names no other program."""
     small = yaml.safe_load((ROOT / "validation" / "config" / "small.yaml").read_text(encoding="utf-8"))
-    others = {"tradeoff", "extremes", "contact_models", "kalker_table", "index_estimators", "probability_intervals"}
-    assert set(small) == set(programs()) | others
+    assert set(small) == set(programs()) | {"tradeoff", "extremes", "contact_models", "kalker_table"}
 
 
 @pytest.mark.parametrize("target", ["analysis", "report"])

@@ -174,8 +174,8 @@ def test_measurement_runs_from_parts_to_page(tmp_path, monkeypatch):
     orders = {(o["stage"], o["method"], o["quantity"]): o["order"] for o in found["orders"]}
     assert 1.0 < orders["tractions", "grid", "friction_force"] < 3.0
     assert orders["stress", "bilinear elements", "stress"] > orders["stress", "constant elements", "stress"] > 0.4
-    exact = next(r for r in found["settings"] if r["stage"] == "ellipse alone" and r["label"] == "exact")
-    assert exact["errors"]["semi_axes"][0] < 1e-13
+    published = next(r for r in found["settings"] if r["stage"] == "ellipse" and r["label"] == "published")
+    assert published["errors"]["semi_axes"][0] > 1e-4, "linear interpolation in the printed table"
     paper = {r["what"]: r for r in found["paper_table"]}
     assert paper["converged"]["inner"] == pytest.approx(389.8, rel=3e-3)
     assert paper["converged"]["peak"] == pytest.approx(412.3, rel=2e-3)

@@ -199,5 +199,5 @@ def test_the_comparison_of_contact_models_is_a_study_like_any_other(place, targe
 
 def test_a_users_run_holds_no_rule_of_the_validation(place):
     rules = set(snakemake(place, "--list-rules").split())
-    assert not rules & {"extremes", "tradeoff", "paper", "contact_models", "peers"}
+    assert not rules & {"extremes", "tradeoff", "paper", "contact_models", "benchmark"}
     assert {"design", "solve", "gather", "sensitivity", "figures", "report"} <= rules

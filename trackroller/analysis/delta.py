@@ -9,10 +9,10 @@ best rule is (1 - delta) / 2 [3]_. The rule used here is the sign of a smoothed 
 estimated from held-out rows (too large on average) and from its own rows (too small), weighted as in the .632+
 estimator [4]_: the weight depends on how far the rule overfits.
 
-SALib's estimator (class-conditional densities [2]_) was measured beside this one by ``validation/index_estimators.py``
-and is worse. At 400 rows its delta of an inert factor is 0.06 too large and of a strong factor up to 0.17 too small.
-Its intervals do not cover these errors. Its delta of an exponential of y exceeds 1. With only 10 resamples it takes
-as long as this estimator at 400 rows and four times longer at 2000 rows.
+SALib's estimator (class-conditional densities [2]_) was measured beside this one by
+``validation/benchmarks/index_estimators.py`` and is worse. At 400 rows its delta of an inert factor is 0.06 too large
+and of a strong factor up to 0.17 too small. Its intervals do not cover these errors. Its delta of an exponential of y
+exceeds 1. With only 10 resamples it takes as long as this estimator at 400 rows and four times longer at 2000 rows.
 
 References
 ----------

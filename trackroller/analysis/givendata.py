@@ -97,7 +97,8 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     rows. For an inert factor the true half width falls faster, as one over the rows; the interval is then too wide.
     Categories and columns whose values repeat: `first_order` of the groups, because RBD-FAST orders equal values by
     their rows. It is biased for a category (0.88 for a share of 0.96), and in a table with the rows of a grid it
-    takes other factors for this one (0.63 for a share of 0.004). ``validation/index_estimators.py`` compares both.
+    takes other factors for this one (0.63 for a share of 0.004).
+    ``validation/benchmarks/index_estimators.py`` compares both.
 
     References
     ----------

@@ -5,8 +5,8 @@ their products for each pair. The squared coefficients of the products are the s
 (polynomial chaos [1]_). The variance that the fit misses cannot be divided. The share that the fit predicts for
 held-out rows therefore stands beside the result, and below `TRUSTED` there is no result.
 
-SALib's `hdmr` was measured beside this fit by ``validation/index_estimators.py``: its error is two times larger, it
-finds 0.01 to 0.05 where there is no interaction, it needs 300 rows and it takes no categories.
+SALib's `hdmr` was measured beside this fit by ``validation/benchmarks/index_estimators.py``: its error is two times
+larger, it finds 0.01 to 0.05 where there is no interaction, it needs 300 rows and it takes no categories.
 
 References
 ----------

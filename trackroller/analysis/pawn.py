@@ -1,8 +1,8 @@
 """PAWN from given data: how far knowing a factor moves the distribution function of an output.
 
-SALib's PAWN was measured beside this one by ``validation/index_estimators.py``. Both agree for continuous factors.
-SALib's has no interval and no noise, drops the row with the largest value, and is wrong for lists (0.50 for three
-categories whose index is 0.36).
+SALib's PAWN was measured beside this one by ``validation/benchmarks/index_estimators.py``. Both agree for continuous
+factors. SALib's has no interval and no noise, drops the row with the largest value, and is wrong for lists (0.50 for
+three categories whose index is 0.36).
 
 References
 ----------

@@ -41,7 +41,7 @@ def probabilities(
     function fits such a sum, and takes var(p) as the variance of the residuals at held-out rows, divided by n. A Latin
     hypercube that has grown has empty strata; their share of the removed part counts again. Few events (or few
     non-events) support a fit badly. The effective number of samples is therefore at most n times the smaller of the
-    numbers of events and non-events. ``validation/probability_intervals.py`` measures the coverage.
+    numbers of events and non-events. ``validation/benchmarks/probability_intervals.py`` measures the coverage.
 
     References
     ----------

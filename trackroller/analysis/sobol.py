@@ -6,10 +6,9 @@ correlation of A with AB_j (and of B with BA_j). S2_jk = corr(BA_j, AB_k) - S1_j
 whose true value is 0, serves as control variate for each of them, so that neither an inert nor a dominant factor has
 noise [1]_, [2]_, [3]_.
 
-SALib's `sobol` (Saltelli 2010) was measured beside this estimator by ``validation/index_estimators.py``, incomplete
-blocks dropped first. At equal coverage its root mean square error is 1.6 to 6 times larger (four functions, 128
-blocks), its intervals are 1.4 to 3 times wider and it takes four times longer. A single NaN makes all its indices 0,
-and its intervals do not repeat with seed 0.
+SALib's `sobol` (Saltelli 2010) was measured beside this estimator by ``validation/benchmarks/index_estimators.py``,
+incomplete blocks dropped first. At equal coverage its root mean square error is 1.6 to 6 times larger (four functions,
+128 blocks), its intervals are 1.4 to 3 times wider and it takes four times longer.
 
 References
 ----------

@@ -7,9 +7,7 @@ from pathlib import Path
 
 # Their results are times, so nothing else may run beside them.
 TIMED = (
-    "analysis_speed",
     "explorer_speed",
-    "kalker_cost",
     "million",
     "scaling",
     "shortcuts",

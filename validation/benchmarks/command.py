@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.files import write_whole
+from trackroller.files import write_text
 
 
 def plain(value: Any) -> Any:
@@ -74,4 +74,4 @@ def run(measure: Callable[..., Any], doc: str | None, words: list[str] | None = 
     text = json.dumps(plain({"options": options, **measure(**options)}), indent=1, allow_nan=False) + "\n"
     print(text, end="")
     if output:
-        write_whole(output, lambda beside: beside.write_text(text, encoding="utf-8"))
+        write_text(output, text)

@@ -1,4 +1,4 @@
-"""Time a plain NumPy transcription of the paper's stress calculation, eqs. (1)-(6).
+"""Time a plain NumPy transcription of the paper's stress calculation, eqs. (1)-(6), under the tractions of `sliding`.
 
 Written from the equations of Wenzel et al., Appl. Mech. 2022, 3, 692-704, and not from any program: the derivatives of
 Omega come from SymPy (as in the paper), are evaluated on n x n surface points, weighted with the tractions and
@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
@@ -27,7 +27,8 @@ from scipy.optimize import differential_evolution
 import trackroller as tr
 from trackroller.halfspace.influence import corner_loads, stress_parts
 from trackroller.halfspace.stress import body_stress, von_mises
-from trackroller.roller.case import Case
+from trackroller.materials import load_database
+from trackroller.roller.accuracy import PRESETS
 
 POINTS = 40  # surface points per direction
 POPSIZE = 15  # scipy's default; 3 unknowns make a population of 45
@@ -143,69 +144,17 @@ def evaluations_of_search(contact: Contact, seed: int = 1) -> int:
     return count
 
 
-def tractions_of_paper(
-    a: float,
-    b: float,
-    max_pressure: float,
-    sine: float,
-    cosine: float,
-    profile_radius: float,
-    shift: float,
-    friction: float,
-    poisson_ratio: float,
-    points: int = POINTS,
-) -> Contact:
-    """Return the tractions on the roller by eqs. (21)-(30), assumption 2.
-
-    `sine` and `cosine` belong to the signed contact angle, `shift` is r_Delta0, lengths are in mm; omega_r cancels. The
-    misprint of eq. (21) is corrected.
-    """
-    x, y = np.linspace(-a, a, points), np.linspace(-b, b, points)
-    xx, yy = np.meshgrid(x, y)
-    pole = shift / sine
-    y_pole = -b * np.sqrt(1 - (pole / a) ** 2) if abs(pole) < a else 0.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        y_delta = np.where(xx < pole, (xx + a) / (pole + a), (xx - a) / (pole - a)) * y_pole
-    y_delta = np.where(np.isfinite(y_delta) & (xx != pole), y_delta, 0.0)
-    v_x = sine * (yy - y_delta)
-    height = np.sqrt(profile_radius**2 - (xx * cosine + profile_radius * sine) ** 2)
-    v_y = height - profile_radius * cosine + shift
-    size = np.hypot(v_x, v_y)
-    size[size == 0.0] = 1.0
-    p = max_pressure * np.sqrt(np.clip(1 - (xx / a) ** 2 - (yy / b) ** 2, 0, None))
-    return Contact(x, y, -v_x / size * friction * p, -v_y / size * friction * p, p, poisson_ratio)
-
-
-def contacts_of_case(case=None, points: int = POINTS) -> list[Contact]:
-    """Return both contacts of a case (default: the paper's), from our forces and ellipses and the paper's tractions."""
-
-    case = Case() if case is None else case
-    ds = tr.solve(case, outputs=("forces", "contact"), contact_model="sliding").squeeze()
-    angle = np.deg2rad(float(case.contact_angle))
-    found = []
-    for k, sign in enumerate((1.0, -1.0)):
-        one = ds.isel(contact=k)
-        a, b, p = (float(one[n]) for n in ("semi_axis_lateral", "semi_axis_rolling", "max_pressure"))
-        mu = case.friction_coefficient
-        found.append(
-            tractions_of_paper(
-                a,
-                b,
-                p,
-                sign * np.sin(angle),
-                np.cos(angle),
-                case.guide_profile_radius,
-                float(ds["rolling_radius_shift"]),
-                0.3 if mu is None else mu,
-                0.33,
-                points,
-            )
-        )
-    return found
+def contacts_of_case(case: tr.Case, points: int = POINTS) -> list[Contact]:
+    """Return both contacts on the roller of a case, with the forces, ellipses and tractions of `sliding`."""
+    accuracy = replace(PRESETS["standard"], traction_points=points)
+    ds = tr.solve(case, outputs=("tractions",), contact_model="sliding", accuracy=accuracy).squeeze()
+    nu = load_database().material(case.roller_material).poisson_ratio
+    names = ("patch_x", "patch_y", "shear_lateral", "shear_rolling", "pressure")
+    return [Contact(*(ds.isel(contact=k)[name].values for name in names), nu) for k in (0, 1)]
 
 
 def time_transcription(
-    contacts: Sequence[Contact], sample: int = 20, seed: int = 1, style: str = "printed"
+    contacts: Sequence[Contact], style: str = "printed", sample: int = 20, seed: int = 1
 ) -> dict[str, Any]:
     """Return the processor time that the transcription needs for the peaks of one case (both contacts, one body each).
 

@@ -2,21 +2,17 @@
 
     python -m validation.benchmarks.shortcuts [--cases N]
 
-Each scene is solved with and without shortcuts in turn in one process; the smallest of three times counts. The
-program returns the ratio of both times and the largest relative difference of the numbers.
+Each scene is solved with and without shortcuts in turn in one process; the smallest of three times counts.
 """
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
 
-import trackroller as tr
 from validation.benchmarks.command import run
-
-OUTPUTS = ("forces", "contact", "peak_stress", "life")
+from validation.benchmarks.speed import costs
 
 
 def scenes(n: int) -> dict[str, tuple[list[dict], dict]]:
@@ -47,34 +43,13 @@ def scenes(n: int) -> dict[str, tuple[list[dict], dict]]:
     }
 
 
-def seconds(cases, **told) -> tuple[float, object]:
-    """Return the CPU time of a solution and its data set."""
-    start = time.process_time()
-    found = tr.solve(cases, contact_model="sliding", **told)
-    return time.process_time() - start, found
-
-
-def difference(one, other) -> float:
-    """Return the largest relative difference of forces and peaks where both have them."""
-    worst = 0.0
-    for name in ("normal_force", "spin_moment", "peak_stress", "life_cycles"):
-        if name in one and name in other:
-            a, b = one[name].values, other[name].values
-            both = np.isfinite(a) & np.isfinite(b)
-            if both.any() and np.any(b[both]):
-                worst = max(worst, float(np.max(np.abs(a[both] - b[both])) / np.max(np.abs(b[both]))))
-    return worst
-
-
 def measure(cases: int = 400) -> dict[str, Any]:
-    """Return speed-up and largest difference of the results, scene by scene."""
-    tr.solve([{}, {"friction_coefficient": 0.0}], outputs=OUTPUTS, contact_model="sliding")
+    """Return the speed-up scene by scene."""
     found = {}
-    for name, (drawn, told) in scenes(cases).items():
-        whole = {"outputs": OUTPUTS, "shortcuts": False}
-        pairs = [(seconds(drawn, **{"outputs": OUTPUTS} | told), seconds(drawn, **whole)) for _ in range(3)]
-        on, off = (min(run[k][0] for run in pairs) for k in range(2))
-        found[name] = {"faster": off / on, "difference": difference(pairs[-1][0][1], pairs[-1][1][1])}
+    for name, (drawn, options) in scenes(cases).items():
+        model = {"contact_model": "sliding"}
+        spent = costs(drawn, {"with": model | options, "without": model | {"shortcuts": False}}, repeats=3)
+        found[name] = {"faster": spent["without"] / spent["with"]}
     return {"scenes": found}
 
 

@@ -1,25 +1,24 @@
-"""Solve, draw and report the comparison of the contact models: python -m validation.contact_models FOLDER.
+"""Solve and report the comparison of the contact models: python -m validation.contact_models FOLDER.
 
-The study is `validation/config/contact_models.yaml`; its name becomes that of the folder. With `--small`, four designs
+The study is `validation/config/contact_models.yaml`; its name becomes that of the folder, its errors
+`contact_models.json` in it. With `--small`, four designs
 at accuracy `preview` show that it runs.
 """
 
+import json
 import sys
 from pathlib import Path
 
 import yaml
 
+from trackroller.files import write_text
 from validation.contact_models.product import compare
 
 STUDY = Path(__file__).resolve().parents[1] / "config" / "contact_models.yaml"
 FEW = {"friction_coefficient": {"values": [0.05, 0.3]}, "motor_force": {"values": [0, -15]}}
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1])
-    folder.mkdir(parents=True, exist_ok=True)
-    study = yaml.safe_load(STUDY.read_text(encoding="utf-8"))
+    folder, study = Path(sys.argv[1]), yaml.safe_load(STUDY.read_text(encoding="utf-8"))
     if "--small" in sys.argv:
         study |= {"factors": FEW, "accuracy": "preview"}
-    path = folder / "contact_models.yaml"
-    path.write_text(yaml.safe_dump(study, sort_keys=False), encoding="utf-8")
-    compare(path, folder)
+    write_text(folder / "contact_models.json", json.dumps(compare(study, folder), indent=1) + "\n")

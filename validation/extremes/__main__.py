@@ -7,7 +7,7 @@ import json
 import sys
 from pathlib import Path
 
-from trackroller.files import write_whole
+from trackroller.files import write_text
 from validation.extremes.figures import draw_extremes
 from validation.extremes.run import run
 from validation.extremes.scenes import scenes
@@ -18,5 +18,4 @@ if __name__ == "__main__":
     record = run(scenes()[:2], {"sliding": 20}, points=9) if small else run(scenes())
     draw_extremes(record, folder / "figures")
     kept = {name: value for name, value in record.items() if name != "map"}  # the figure shows the map of regimes
-    text = json.dumps(kept) + "\n"
-    write_whole(folder / "extremes.json", lambda beside: beside.write_text(text, encoding="utf-8"))
+    write_text(folder / "extremes.json", json.dumps(kept) + "\n")

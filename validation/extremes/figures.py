@@ -165,7 +165,7 @@ def draw_regimes(record: Record, out_dir: Path) -> FigureInfo:
 
 
 def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
-    """Draw the relative errors of kernels against many digits, in double and in single precision."""
+    """Draw the relative errors of kernels against many digits."""
     kernels = record["kernels"]
     with look():
         figure = new_figure(30 + 9.5 * len(kernels), 180.0)
@@ -174,31 +174,20 @@ def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
             errors = np.maximum(kernel["errors"], 1e-17)
             axes.scatter(errors, np.full(len(errors), i), marker="|", color="k", s=60, linewidths=1.1)
             axes.scatter([kernel["tolerance"]], [i], marker="<", color="0.5", s=22, label=None if i else "tolerated")
-            if kernel["single"] is not None:
-                axes.scatter(
-                    [kernel["single"]],
-                    [i],
-                    marker="o",
-                    facecolors="none",
-                    edgecolors="k",
-                    s=22,
-                    label=None if i else "worst in single precision",
-                )
         axes.set(xscale="log", xlabel="Relative error [–]", ylim=(len(kernels) - 0.5, -0.5))
         axes.set_yticks(range(len(kernels)), [f"{k['name']}\nover {k['quantity']}" for k in kernels])
         axes.legend(loc="lower right")
         head(
             figure,
             "Kernels against many digits",
-            "each stroke is a point of the sweep in double precision (1e-17: no difference); the 12-point rule stands "
+            "each stroke is a point of the sweep (1e-17: no difference); the 12-point rule stands "
             "against 600 points and shows its own quadrature error, not cancellation",
         )
         save(figure, out_dir, "extremes_kernels")
     return FigureInfo(
         "extremes_kernels",
         "Relative errors of kernels at places of cancellation.",
-        "In double precision every kernel keeps nine digits or more (the 12-point rule seven, by its "
-        "quadrature); in single precision some closed formulas keep none.",
+        "Every kernel keeps nine digits or more (the 12-point rule seven, by its quadrature).",
     )
 
 

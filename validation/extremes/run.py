@@ -84,9 +84,7 @@ def run(catalogue: Sequence[Scene], random: dict[str, int] | None = None, points
             rows.append(
                 {
                     "scene": scene.name,
-                    "title": scene.title,
                     "quantity": scene.quantity,
-                    "unit": scene.unit,
                     "values": [str(v) for v in scene.values],
                     "model": model,
                     "regimes": regimes,
@@ -114,7 +112,6 @@ def run(catalogue: Sequence[Scene], random: dict[str, int] | None = None, points
                 "errors": list(k.errors),
                 "tolerance": k.tolerance,
                 "against": k.against,
-                "single": k.single,
                 "holds": k.holds,
             }
             for k in kernels

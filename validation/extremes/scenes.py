@@ -49,7 +49,7 @@ FORCES = ("radial_force", "axial_force", "motor_force")
 
 @dataclass(frozen=True)
 class Scene:
-    """A series of cases along `quantity` (values in `unit`) and the claims made on it.
+    """A series of cases along `quantity` and the claims made on it.
 
     `rising` and `falling` name results that may only rise or fall along the series; `pairs` says that cases come in
     pairs just below and just above a border; `limit` says that the last case is the limit of the cases before. The
@@ -62,9 +62,7 @@ class Scene:
     """
 
     name: str
-    title: str
     quantity: str
-    unit: str
     values: tuple[float, ...]
     cases: tuple[CaseDict, ...]
     rising: tuple[str, ...] = ()
@@ -95,15 +93,13 @@ class Scene:
         return (*ALWAYS, *more)
 
 
-def _series(name: str, title: str, quantity: str, unit: str, values: Any, build: Any, **options: Any) -> Scene:
+def _series(name: str, quantity: str, values: Any, build: Any, **options: Any) -> Scene:
     values = tuple(float(v) for v in values)
-    return Scene(name, title, quantity, unit, values, tuple(BASE | build(v) for v in values), **options)
+    return Scene(name, quantity, values, tuple(BASE | build(v) for v in values), **options)
 
 
-def _searched(name: str, title: str, quantity: str, values: Any, build: Any, span: Any, **options: Any) -> Scene:
-    return Scene(
-        name, title, quantity, "1", tuple(map(float, values)), (), build=lambda v: BASE | build(v), span=span, **options
-    )
+def _searched(name: str, quantity: str, values: Any, build: Any, span: Any, **options: Any) -> Scene:
+    return Scene(name, quantity, tuple(map(float, values)), (), build=lambda v: BASE | build(v), span=span, **options)
 
 
 def _material(**changes: Any) -> CaseDict:
@@ -172,9 +168,7 @@ def _friction_and_load() -> tuple[Scene, ...]:
     return (
         _series(
             "friction to 0",
-            "friction coefficient to 0, rolling freely",
             "mu",
-            "1",
             (1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0),
             lambda v: {"friction_coefficient": v, "motor_force": 0.0},
             falling=("max_shear",),
@@ -182,18 +176,14 @@ def _friction_and_load() -> tuple[Scene, ...]:
         ),
         _series(
             "friction to 2",
-            "friction coefficient to 2",
             "mu",
-            "1",
             (0.1, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0),
             lambda v: {"friction_coefficient": v, "contact_angle": 60.0, "motor_force": 0.0},
             rising=("max_shear_sum",),
         ),
         _series(
             "loads",
-            "all loads from 1 mN to 1 MN",
-            "F_rad",
-            "N",
+            "F_rad [N]",
             10.0 ** np.arange(-3, 6.5),
             _loads,
             rising=("normal_force", "max_pressure", "peak_stress"),
@@ -201,25 +191,20 @@ def _friction_and_load() -> tuple[Scene, ...]:
         ),
         _series(
             "no axial, no motor force",
-            "axial and motor force to 0",
-            "F_ax = F_motor",
-            "N",
+            "F_ax = F_motor [N]",
             (1.0, 1e-3, 1e-6, 1e-9, 0.0),
             lambda v: {"axial_force": v, "motor_force": v},
             limit=True,
         ),
         _series(
             "spin pole",
-            "motor force from driving to braking: the spin pole crosses the patch",
-            "F_motor",
-            "N",
+            "F_motor [N]",
             40.0 * np.array([-0.999, -0.9, -0.5, -0.2, -0.05, 0, 0.05, 0.2, 0.5, 0.9, 0.999]),
             lambda v: {"motor_force": v, "axial_force": 0.0},
             rising=("rolling_radius_shift",),
         ),
         _searched(
             "spin pole on the edge",
-            "spin pole from far behind to far ahead, at the centre and on the edge",
             "x_spin/a",
             (-50, -3, *_edge(-1.0), -0.5, 0, 0.5, *_edge(1.0), 3, 50),
             lambda v: {"motor_force": v * COMPLETE, "axial_force": 0.0},
@@ -234,36 +219,28 @@ def _geometry() -> tuple[Scene, ...]:
     return (
         _series(
             "ellipticity",
-            "curvatures from 1e-5 to 1e5: a/b from above 1e3 to below 1e-3",
             "k_x/k_y",
-            "1",
             10.0 ** np.arange(-5, 5.5),
             _of_ellipticity,
             reach=("kalker", "fastsim"),
         ),
         _series(
             "near circle",
-            "curvatures nearly equal",
             "k_x/k_y - 1",
-            "1",
             (1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0),
             lambda v: _of_ellipticity(1.0 + v),
             limit=True,
         ),
         _series(
             "contact angle",
-            "contact angle from end to end, axial force and friction in proportion",
-            "alpha",
-            "deg",
+            "alpha [deg]",
             (0.01, 0.1, 1, 10, 30, 60, 80, 89, 89.9, 89.99),
             _steep,
             reach=("fastsim",),
         ),
         _series(
             "outer curve to straight",
-            "curve radius to infinity",
-            "r_Curve",
-            "mm",
+            "r_Curve [mm]",
             (1e1, 1e2, 1e4, 1e6, 1e9, math.inf),
             lambda v: {"guide_curve_radius": v},
             falling=("max_pressure",),
@@ -271,18 +248,14 @@ def _geometry() -> tuple[Scene, ...]:
         ),
         _series(
             "outer straight, inner straight",
-            "curve radius +inf beside -inf",
-            "1/r_Curve",
-            "1/mm",
+            "1/r_Curve [1/mm]",
             (1e-9, 1e-12, 0.0, -0.0, -1e-12, -1e-9),
             lambda v: {"guide_curve_radius": _over(v)},
             constant=("max_pressure", "peak_stress", "slip"),
         ),
         _series(
             "straight to inner curve",
-            "inner curve to just above conformity",
             "-r_Curve/r_A - 1",
-            "1",
             (1e3, 1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
             lambda v: {"guide_curve_radius": -r_a * (1 + v), **_loads(1e-2)},
             falling=("max_pressure",),
@@ -290,9 +263,7 @@ def _geometry() -> tuple[Scene, ...]:
         ),
         _series(
             "close groove",
-            "profile to just above conformity",
             "r_C,TR/r_C,G - 1",
-            "1",
             (1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
             lambda v: {"roller_profile_radius": -6.0 * (1 + v), **_loads(1e-2)},
             falling=("max_pressure",),
@@ -300,9 +271,7 @@ def _geometry() -> tuple[Scene, ...]:
         ),
         _series(
             "size",
-            "all lengths from a thousandth to a thousandfold, forces with their square",
             "scale",
-            "1",
             (1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3),
             lambda v: {k: BASE[k] * v for k in LENGTHS} | {k: BASE[k] * v * v for k in FORCES},
             constant=("max_pressure", "peak_stress", "slip"),
@@ -314,9 +283,7 @@ def _materials() -> tuple[Scene, ...]:
     return (
         _series(
             "Poisson's ratio",
-            "Poisson's ratio of both bodies from 0 to 0.5",
             "nu",
-            "1",
             (0.0, 0.1, 0.3, 0.4, 0.49, 0.4999, 0.5 - 1e-9, 0.5),
             lambda v: dict.fromkeys(("roller_material", "guide_material"), _material(poisson_ratio=v)),
             rising=("max_pressure",),
@@ -324,18 +291,14 @@ def _materials() -> tuple[Scene, ...]:
         ),
         _series(
             "soft guide",
-            "stiffness of the guide over that of the roller from a millionth",
             "E_G/E_TR",
-            "1",
             10.0 ** np.arange(-6, 0.5),
             lambda v: {"guide_material": _material(youngs_modulus=210000.0 * v), **_loads(1e-3)},
             rising=("max_pressure", "peak_stress"),
         ),
         _series(
             "soft roller",
-            "stiffness of the guide over that of the roller to a million",
             "E_G/E_TR",
-            "1",
             10.0 ** np.arange(0, 6.5),
             lambda v: {"roller_material": _material(youngs_modulus=210000.0 / v), **_loads(1e-3)},
             falling=("max_pressure", "peak_stress"),
@@ -348,9 +311,7 @@ def _borders() -> tuple[Scene, ...]:
     return (
         _series(
             "slip limit, braking",
-            "motor force just below and above what friction can brake",
             "share of limit",
-            "1",
             _border(1.0),
             _brake,
             pairs=True,
@@ -359,9 +320,7 @@ def _borders() -> tuple[Scene, ...]:
         # table and elements reach the complete friction within their error
         _series(
             "slip limit, braking",
-            "motor force just below and above what friction can brake",
             "share of limit",
-            "1",
             _border(1.0, (1e-3, 1e-4, 1e-5)),
             _brake,
             pairs=True,
@@ -369,7 +328,6 @@ def _borders() -> tuple[Scene, ...]:
         ),
         _searched(
             "slip limit, driving",
-            "motor force just below and just above what friction can drive",
             "share of limit",
             _border(1.0, (1e-2, 1e-4, 1e-5)),
             lambda v: {"motor_force": -v * COMPLETE},
@@ -378,16 +336,13 @@ def _borders() -> tuple[Scene, ...]:
         ),
         _series(
             "lift-off without friction",
-            "axial force just below and above lift-off",
             "share of limit",
-            "1",
             _border(_lift_share()),
             lambda v: {"axial_force": v * lift, "friction_coefficient": 0.0, "motor_force": 0.0},
             pairs=True,
         ),
         _searched(
             "lift-off with friction",
-            "axial force just below and above lift-off",
             "share of limit",
             _border(1.0, (1e-2, 1e-4, 1e-5)),
             lambda v: {"axial_force": v * lift, "motor_force": 0.0},
@@ -396,9 +351,7 @@ def _borders() -> tuple[Scene, ...]:
         ),
         _series(
             "self-locking, no axial force",
-            "friction across mu = tan(alpha), no axial force",
             "mu/tan(alpha)",
-            "1",
             (0.5, 0.9, 1.1, 1.5, 3.0),
             lambda v: {
                 "contact_angle": 11.0,
@@ -409,9 +362,7 @@ def _borders() -> tuple[Scene, ...]:
         ),
         _series(
             "self-locking",
-            "friction across mu = tan(alpha), axial force small",
             "mu/tan(alpha)",
-            "1",
             (0.5, 0.9, 0.99, 1.01, 1.1, 1.5, 3.0),
             lambda v: {
                 "contact_angle": 11.0,

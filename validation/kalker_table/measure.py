@@ -1,7 +1,5 @@
 """Measure the table of the exact theory: the share of rolling designs outside its range, and its errors.
 
-    python -m validation.kalker_table.measure [--designs N] [--patches N] [--seed S] [--elements N] [--table FILE]
-
 Designs are the random rollers of `validation.benchmarks.samples`. Patches cover the whole range evenly; every other
 one has unlike bodies with |K|/mu from 0.1 to 20. Errors are differences from elements, over mu F_N for forces and over
 mu F_N sqrt(a b) for the spin moment.
@@ -9,7 +7,6 @@ mu F_N sqrt(a b) for the spin moment.
 
 from __future__ import annotations
 
-import argparse
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -121,25 +118,21 @@ def summary(p: Problem, off: np.ndarray) -> dict[str, float]:
     return out
 
 
-def measure(designs: int, count: int, seed: int, elements: int, tables: spline.Tables) -> dict[str, dict[str, float]]:
+def measure(tables: spline.Tables) -> dict[str, dict[str, float]]:
     """Return the share of designs outside the table, and its errors on patches of designs and of its whole range."""
     unknown = accuracy.Levels(1.0, 1.0, 1.0, 1.0)  # the errors that the table will state
     with (
         mock.patch.object(spline, "stored", lambda: tables),
         mock.patch.object(accuracy, "own_errors", lambda name: {"friction_force": unknown}),
     ):
-        return _measure(designs, count, seed, elements)
-
-
-def _measure(designs: int, count: int, seed: int, elements: int) -> dict[str, dict[str, float]]:
-    rollers = random_designs(designs, seed)
-    found = rolling(rollers)
-    pick = np.random.default_rng(seed).permutation(designs)[: max(count // 2, 1)]
-    own = [rollers[i] for i in pick]
-    told = {"range": outside(rollers, found)}
-    for name, p in (("designs", design_patches(own, found.isel(case=pick))), ("patches", patches(count, seed))):
-        told[name] = summary(p, errors(p, elements))
-    return told
+        rollers = random_designs(DESIGNS, SEED)
+        found = rolling(rollers)
+        pick = np.random.default_rng(SEED).permutation(DESIGNS)[: PATCHES // 2]
+        own = design_patches([rollers[i] for i in pick], found.isel(case=pick))
+        measured = {"range": outside(rollers, found)}
+        for name, p in (("designs", own), ("patches", patches(PATCHES, SEED))):
+            measured[name] = summary(p, errors(p, ELEMENTS))
+        return measured
 
 
 def write_measured(levels: Sequence[Path], path: Path, report: Path) -> None:
@@ -149,23 +142,6 @@ def write_measured(levels: Sequence[Path], path: Path, report: Path) -> None:
         with np.load(file) as arrays:
             parts.append(dict(arrays))
     splines = build.join(parts)
-    told = measure(DESIGNS, PATCHES, SEED, ELEMENTS, spline.Tables(**splines, errors={}))
-    build.write(path, splines, told["patches"])
-    report.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
-
-
-def main() -> None:
-    """Print the report as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--designs", type=int, default=DESIGNS)
-    parser.add_argument("--patches", type=int, default=PATCHES)
-    parser.add_argument("--seed", type=int, default=SEED)
-    parser.add_argument("--elements", type=int, default=ELEMENTS)
-    parser.add_argument("--table", type=Path, default=Path(spline.__file__).with_name(spline.TABLE))
-    given = parser.parse_args()
-    told = measure(given.designs, given.patches, given.seed, given.elements, spline.read(given.table))
-    print(json.dumps(told, indent=2))
-
-
-if __name__ == "__main__":
-    main()
+    measured = measure(spline.Tables(**splines, errors={}))
+    build.write(path, splines, measured["patches"])
+    report.write_text(json.dumps(measured, indent=1) + "\n", encoding="utf-8")

@@ -4,13 +4,12 @@ import json
 import sys
 from pathlib import Path
 
-from trackroller.files import write_whole
+from trackroller.files import write_text
 from validation.paper.compute import results
 from validation.paper.figures import draw_all
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(results(), indent=1) + "\n"
     draw_all(folder / "figures")
-    write_whole(folder / "paper.json", lambda beside: beside.write_text(text, encoding="utf-8"))
+    write_text(folder / "paper.json", json.dumps(results(), indent=1) + "\n")

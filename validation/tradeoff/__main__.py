@@ -12,7 +12,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from trackroller.files import write_whole
+from trackroller.files import write_text
 from validation.tradeoff.figures import draw_all
 from validation.tradeoff.parts import write_gathered, write_part
 from validation.tradeoff.summary import summary
@@ -20,11 +20,9 @@ from validation.tradeoff.summary import summary
 
 def show(measured: Path) -> None:
     """Write `tradeoff.json` and `figures/` beside a gathered measurement."""
-    ds = xr.load_dataset(measured)
-    found = summary(ds)
-    draw_all(found, ds, measured.parent / "figures")
-    text = json.dumps(found, indent=1, ensure_ascii=False) + "\n"
-    write_whole(measured.with_name("tradeoff.json"), lambda beside: beside.write_text(text, encoding="utf-8"))
+    found = summary(xr.load_dataset(measured))
+    draw_all(found, measured.parent / "figures")
+    write_text(measured.with_name("tradeoff.json"), json.dumps(found, indent=1, ensure_ascii=False) + "\n")
 
 
 if __name__ == "__main__":

@@ -34,30 +34,31 @@ def relative_errors(result: xr.Dataset, reference: xr.Dataset) -> dict[str, np.n
     # the friction force scale comes with the case: without friction there is nothing to compare
     friction = reference["friction"].values[:, None] * n_ref
     with np.errstate(divide="ignore", invalid="ignore"):
-        out["normal_force"] = _largest(np.abs(result["normal_force"].values / n_ref - 1.0))
+        out["normal_force"] = largest(np.abs(result["normal_force"].values / n_ref - 1.0))
         apart = np.hypot(*(result[q].values - reference[q].values for q in ("lateral_force", "driving_force")))
-        out["friction_force"] = _largest(apart / friction)
+        out["friction_force"] = largest(apart / friction)
         if "semi_axis_lateral" in result:
             axes = [
                 np.abs(result[q].values / reference[q].values - 1.0) for q in ("semi_axis_lateral", "semi_axis_rolling")
             ]
-            out["semi_axes"] = _largest(np.maximum(*axes))
-            out["max_pressure"] = _largest(np.abs(result["max_pressure"].values / reference["max_pressure"].values - 1))
+            out["semi_axes"] = largest(np.maximum(*axes))
+            out["max_pressure"] = largest(np.abs(result["max_pressure"].values / reference["max_pressure"].values - 1))
         size = np.sqrt(reference["semi_axis_lateral"].values * reference["semi_axis_rolling"].values)
         apart = np.abs(result["spin_moment"].values - reference["spin_moment"].values)
-        out["spin_moment"] = _largest(apart / (friction * size))
+        out["spin_moment"] = largest(apart / (friction * size))
         for quantity, name in (
             ("friction_energy", "friction_energy_per_distance"),
             ("peak_stress", "peak_stress"),
             ("life", "life_cycles"),
         ):
             if name in result and name in reference:
-                out[quantity] = _largest(np.abs(result[name].values / reference[name].values - 1.0))
+                out[quantity] = largest(np.abs(result[name].values / reference[name].values - 1.0))
     other = result["regime"].values != reference["regime"].values
     return {name: np.where(other, np.inf, value) for name, value in out.items()}
 
 
-def _largest(values: np.ndarray) -> np.ndarray:
+def largest(values: np.ndarray) -> np.ndarray:
+    """Return the largest known value of each case, (n,); NaN where none is known."""
     flat = values.reshape(len(values), -1)
     known = ~np.isnan(flat)
     return np.where(known.any(axis=1), np.max(np.where(known, flat, -np.inf), axis=1), np.nan)

@@ -1,8 +1,7 @@
-"""Error against cost by quantity, convergence of the stages, and how errors spread over the designs."""
+"""Error against cost by quantity, and convergence of the stages."""
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +13,6 @@ from trackroller.report.numbers import rounded, with_unit
 from validation.tradeoff.summary import levels, yardstick
 
 if TYPE_CHECKING:
-    import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -49,18 +47,13 @@ CONVERGENCE = {
     ("elements", "kalker", "elements", "friction_force"): "Kalker: friction force",
     ("elements", "kalker", "elements", "peak_stress"): "Kalker: peak stress",
 }
-_GREY = "0.25"
 
 
-def draw_all(summary: dict[str, Any], ds: xr.Dataset | None, out_dir: Path) -> list[style.FigureInfo]:
+def draw_all(summary: dict[str, Any], out_dir: Path) -> list[style.FigureInfo]:
     """Draw every figure for which there are measurements; return their index."""
     infos = []
     with style.look():
-        drawn = [pareto(summary, quantity) for quantity in PARETO]
-        drawn.append(convergence(summary))
-        if ds is not None:
-            drawn.append(spread(summary, ds))
-        for item in drawn:
+        for item in (*(pareto(summary, quantity) for quantity in PARETO), convergence(summary)):
             if item is not None:
                 figure, info = item
                 style.save(figure, out_dir, info.name)
@@ -238,36 +231,3 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
         caption,
         "Quadrature in smooth pieces converges much faster than grids and elements.",
     )
-
-
-def spread(summary: dict[str, Any], ds: xr.Dataset) -> Drawn | None:
-    """Draw the share of designs whose peak stress errs by more than x, for the presets."""
-    figure = style.new_figure(72, style.COLUMN_MM)
-    axes = figure.add_subplot()
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    colours, smallest = style.palette(3), 100.0
-    if not summary["presets"]:
-        return None
-    for k, (name, parts) in enumerate(summary["presets"].items()):
-        row = next(i for i, text in enumerate(ds["ladder"].values) if json.loads(str(text)) == parts["peak"])
-        errors = ds["error"].isel(setting=row).sel(quantity="peak_stress").values.astype(float)
-        errors = np.sort(np.maximum(errors[np.isfinite(errors)], 1e-8))[::-1]
-        smallest = min(smallest, 100.0 / errors.size)
-        axes.plot(
-            errors,
-            100.0 * np.arange(1, errors.size + 1) / errors.size,
-            color=colours[k],
-            linestyle=style.LINES[k],
-            label=name,
-        )
-    axes.axhline(1.0, color=_GREY, linewidth=0.7, linestyle=(0, (1, 2)))
-    axes.text(0.02, 1.12, "1 % of the designs", fontsize=6.5, color=_GREY, transform=axes.get_yaxis_transform())
-    axes.set_ylim(0.7 * smallest, 130)
-    axes.set_xlabel(with_unit("Relative error of the peak stress", "-"))
-    axes.set_ylabel("Share of designs beyond [%]")
-    figure.legend(loc="outside lower left", ncols=3, handlelength=2.6)
-    style.head(figure, "How the error of the peak stress spreads", "full sliding; worst of the four peaks of a design")
-    caption = "Share of the designs whose worst peak stress errs by more than the abscissa; presets of sliding."
-    sentence = "A preset keeps its tolerance in 99 of 100 designs; the error of most designs is much smaller."
-    return figure, style.FigureInfo("tradeoff_spread", caption, sentence)

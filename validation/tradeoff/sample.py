@@ -1,13 +1,16 @@
 """Make the fixed sample of designs for errors and costs: low-discrepancy, seeded, wider than real designs.
 
 Loads over three decades, contact angles 10 to 80 deg, friction 0 to 1, drawn-in to flat grooves and convex rollers,
-straight, outer and inner curves, driven, free and braked,
-materials of the database and others of any stiffness and Poisson's ratio.
+straight, outer and inner curves, driven, free and braked, materials of the database and others of any stiffness and
+Poisson's ratio.
 """
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -57,25 +60,33 @@ def design_at(u: np.ndarray) -> Case:
     )
 
 
-def sample(count: int, seed: int = SEED) -> list[Case]:
-    """Return the first `count` usable designs of a scrambled Sobol sequence.
+def _blocks(seed: int) -> Iterator[list[Case]]:
+    """Yield the designs of 256 points after 256 points of a scrambled Sobol sequence, without refused designs."""
+    sequence = qmc.Sobol(DIMENSIONS, scramble=True, seed=seed)
+    while True:
+        drawn = []
+        for point in sequence.random(256):
+            with contextlib.suppress(InputError):
+                drawn.append(design_at(point))
+        yield drawn
 
-    Usable designs roll or slide on both contacts within the groove.
+
+def wide_designs(count: int, seed: int) -> list[Case]:
+    """Return the first `count` designs with point contact."""
+    return list(itertools.islice(itertools.chain.from_iterable(_blocks(seed)), count))
+
+
+def sample(count: int, seed: int = SEED) -> list[Case]:
+    """Return the first `count` usable designs: they roll or slide on both contacts within the groove.
 
     Left out: surfaces without point contact, lift-off, self-locking without a solution, and patches in which the slip
     of the sliding model makes the stress itself infinite (bits `conformal` and `split_pole`).
     """
-
-    sequence = qmc.Sobol(DIMENSIONS, scramble=True, seed=seed)
     kept: list[Case] = []
-    while len(kept) < count:
-        drawn = []
-        for point in sequence.random(256):
-            try:
-                drawn.append(design_at(point))
-            except InputError:
-                continue
+    for drawn in _blocks(seed):
         kept += [case for case, good in zip(drawn, _usable(drawn), strict=True) if good]
+        if len(kept) >= count:
+            break
     return kept[:count]
 
 

@@ -1,23 +1,20 @@
-"""Single stages on given inputs: ellipse, traction grids, stress at points, peak as the highest point of a grid."""
+"""Single stages on given inputs: traction grids, stress at points, peak as the highest point of a grid."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-import mpmath
 import numpy as np
 import xarray as xr
 
 from trackroller.contact import sliding
 from trackroller.contact.common import Ellipse
-from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.slip import Slip, spin_model_index
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
-from trackroller.roller.case import Case, CaseTable, to_table
-from trackroller.roller.geometry import curvatures, rolling_radius
+from trackroller.roller.case import Case, to_table
+from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.solver import solve
 from validation.tradeoff.errors import QUANTITIES
 from validation.tradeoff.measure import cpu, labelled
@@ -28,7 +25,6 @@ WAVES = (4, 6, 8, 12, 16, 24, 32)
 STRESS_ELEMENTS = (10, 20, 40, 80)
 SCAN_POINTS = (10, 20, 40, 80)
 PUBLISHED_START = 1.5  # grid steps below the surface at which the published search begins
-NAN = float("nan")
 Found = tuple[Setting, str, np.ndarray, float]  # setting, quantity, errors (n,), CPU seconds a case
 
 
@@ -65,64 +61,12 @@ def measure_stages(cases: Sequence[Case]) -> xr.Dataset:
     """Measure all single stages: errors (setting, quantity, design) and CPU time of a patch or case."""
     patches = patches_of(cases)
     sliding.tractions(patches.ellipse, patches.slip, patches.friction, points=5)  # compiled before the clock runs
-    found = [*ellipse_stage(cases), *traction_stage(patches), *stress_stage(patches), *grid_search_stage(patches)]
+    found = [*traction_stage(patches), *stress_stage(patches), *grid_search_stage(patches)]
     names, width = list(QUANTITIES), max(errors.size for _, _, errors, _ in found)
     errors = np.full((len(found), len(names), width), np.nan)
     for i, (_, quantity, values, _) in enumerate(found):
         errors[i, names.index(quantity), : values.size] = values
     return labelled([f[0] for f in found], errors, np.array([f[3] for f in found]), {})
-
-
-def ellipse_stage(cases: Sequence[Case]) -> list[Found]:
-    """Compare the semi-axes of both methods with elliptic integrals in 30 digits."""
-    table = to_table(list(cases))
-    k_x, k_y, modulus = _hertz_input(table)
-    exact = np.array([_axes(*row) for row in zip(k_x, k_y, modulus, strict=True)])
-    out: list[Found] = []
-    for method in ("exact", "published"):
-        found, seconds = cpu(lambda m=method: [shape(k_x, k_y, modulus, m) for _ in range(20)])
-        axes = np.stack([found[0].lateral, found[0].rolling], axis=1)
-        error = np.max(np.abs(axes / exact - 1.0), axis=1)
-        name = {"exact": "elliptic integrals", "published": "published table"}[method]
-        setting = Setting("ellipse alone", "any", name, method, NAN)
-        out.append((setting, "semi_axes", np.where(np.isnan(error), np.inf, error), seconds / 20 / len(cases)))
-    return out
-
-
-def _hertz_input(table: CaseTable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    alpha = np.deg2rad(table.contact_angle)
-    radius = rolling_radius(table.axis_distance, table.guide_profile_radius, alpha)
-    k_x, k_y = curvatures(
-        table.roller_profile_radius, table.guide_profile_radius, table.guide_curve_radius, radius, alpha
-    )
-    roller, guide = table.roller, table.guide
-    return (
-        k_x,
-        k_y,
-        contact_modulus(roller.youngs_modulus, roller.poisson_ratio, guide.youngs_modulus, guide.poisson_ratio),
-    )
-
-
-def _axes(k_x: float, k_y: float, modulus: float) -> tuple[float, float]:
-    """Return a, b for 1 N [mm] by complete elliptic integrals in 30 digits, Johnson (1985) eqs (4.25), (4.26)."""
-
-    with mpmath.workdps(30):
-        small, large = sorted((mpmath.mpf(float(k_x)), mpmath.mpf(float(k_y))))
-
-        def parts(m: Any) -> tuple[Any, Any]:
-            k, e = mpmath.ellipk(m), mpmath.ellipe(m)
-            return (k - e) / m, (e - (1 - m) * k) / m
-
-        def mismatch(log_ratio: Any) -> Any:
-            d, b = parts(1 - mpmath.exp(2 * log_ratio))
-            return 2 * log_ratio + mpmath.log(d / b) - mpmath.log(small / large)
-
-        guess = mpmath.log(small / large) * 2 / 3
-        log_ratio = mpmath.findroot(mismatch, (guess, guess * mpmath.mpf("1.02")), solver="secant", tol=1e-24)
-        d, _ = parts(1 - mpmath.exp(2 * log_ratio))
-        major = mpmath.cbrt(3 * d / (mpmath.pi * mpmath.mpf(float(modulus)) * small))
-        minor = major * mpmath.exp(log_ratio)
-    return (float(major), float(minor)) if k_x <= k_y else (float(minor), float(major))
 
 
 def traction_stage(patches: Patches) -> list[Found]:

@@ -1,5 +1,7 @@
 """Compare this package with the published program, CONTACT, Kalker's printed table and pyLife.
 
+    python -m validation.benchmarks.peers
+
 Reference numbers lie in `tests/data`; pyLife is run. Each comparison gives deviations over all its cases, without
 choosing cases: a case that is left out is counted and its reason is stated.
 """
@@ -19,6 +21,7 @@ import trackroller as tr
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.parameters import LIFE_RULES
+from validation.benchmarks.command import run
 
 DATA = Path(__file__).resolve().parents[2] / "tests" / "data"
 REFERENCES = ("published_program.json", "contact.json", "kalker_coefficients.csv")
@@ -167,11 +170,15 @@ def pylife_lives() -> list[Row]:
     return rows
 
 
-def compare() -> dict[str, Any]:
-    """Return all comparisons, as they stand in `peers.json`."""
+def measure() -> dict[str, Any]:
+    """Return all comparisons, the cases left out, and the recorded times of CONTACT."""
     published, left_out = published_program()
     return {
         "rows": [*published, *contact_program(), *linear_theory(), *pylife_lives()],
         "left_out": left_out,
         "contact_seconds": CONTACT_SECONDS,
     }
+
+
+if __name__ == "__main__":
+    run(measure, __doc__)

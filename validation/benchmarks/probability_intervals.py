@@ -1,18 +1,18 @@
-"""Coverage of the intervals of probabilities from stratified samples, where the truth is known.
+"""Measure the coverage of the intervals of probabilities from stratified samples, where the truth is known.
 
-    python -m validation.probability_intervals [--seeds N]
+    python -m validation.benchmarks.probability_intervals [--seeds N]
 
-Each line is an event over four uniform factors and a design. `ours` is the interval of
+Each entry is an event over four uniform factors and a design. `ours` is the interval of
 `trackroller.analysis.probability`; `Wilson` takes the samples as independent, for the mean of four design points all
-four times as many. The table gives the coverage and the mean half width of both, and the standard deviation of the
+four times as many. Found are the coverage and the mean half width of both, and the standard deviation of the
 estimate from seed to seed. An interval of a random sample would need a half width of about twice that deviation.
 """
 
 from __future__ import annotations
 
-import argparse
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from scipy import stats
@@ -20,6 +20,7 @@ from scipy.stats import qmc
 
 from trackroller.analysis.probability import probabilities
 from trackroller.study.design.grown_lhs import grown_lhs
+from validation.benchmarks.command import run
 
 COUNT = 4  # factors
 NORMAL = np.array([1.0, 0.5, 0.3, 0.1])  # weights of the normal scores of the factors
@@ -69,7 +70,7 @@ def truth() -> np.ndarray:
     return np.mean([_hits(DESIGNS["sobol"](1 << 18, seed)).mean(axis=0) for seed in range(1000, 1004)], axis=0)
 
 
-def measure(design: str, size: int, seeds: int, exact: np.ndarray) -> dict[str, np.ndarray]:
+def coverage(design: str, size: int, seeds: int, exact: np.ndarray) -> dict[str, np.ndarray]:
     """Return coverage and mean half width of both intervals and the deviation of the estimate, shape (events,)."""
     points = np.array([points for _, points in EVENTS.values()])
     found: dict[str, list[np.ndarray]] = {key: [] for key in ("ours", "ours half", "wilson", "wilson half", "share")}
@@ -84,26 +85,17 @@ def measure(design: str, size: int, seeds: int, exact: np.ndarray) -> dict[str, 
     return out | {"deviation": np.std(found["share"], axis=0)}
 
 
-def main(argv: list[str] | None = None) -> None:
-    """Measure the coverage and print it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=400)
-    args = parser.parse_args(argv)
+def measure(seeds: int = 400) -> dict[str, Any]:
+    """Return the numbers of each design, size and event, and the least coverage of our intervals."""
     warnings.simplefilter("ignore")  # of Sobol sequences whose size is no power of two
-    exact = truth()
-    heads = ("ours", "half", "Wilson", "half", "deviation")
-    print(f"{'':42}{'truth':>8}" + "".join(f"{head:>10}" for head in heads))
-    least = 1.0
+    exact, found = truth(), {}
     for design in DESIGNS:
         for size in (25, 100, 400):
-            found = measure(design, size, args.seeds, exact)
-            least = min(least, float(found["ours"].min()))
+            by_kind = coverage(design, size, seeds, exact)
             for i, name in enumerate(EVENTS):
-                label = f"{design}, {size}, {name}"
-                numbers = [found[key][i] for key in ("ours", "ours half", "wilson", "wilson half", "deviation")]
-                print(f"{label:42}{exact[i]:8.4f}" + "".join(f"{number:10.4f}" for number in numbers))
-    print(f"least coverage of ours: {least:.3f}")
+                found[f"{design}, {size}, {name}"] = {"truth": exact[i], **{k: v[i] for k, v in by_kind.items()}}
+    return {"least_coverage": min(one["ours"] for one in found.values()), "events": found}
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

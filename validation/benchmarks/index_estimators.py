@@ -1,42 +1,39 @@
 """Compare the sensitivity estimators with SALib, and the designs with pyDOE, where the truth is known.
 
-    python -m validation.index_estimators [--seeds N] [--only sobol first delta pairs pawn morris designs]
+    python -m validation.benchmarks.index_estimators [--seeds N] [--only sobol first delta pairs pawn]
 
-Each estimator runs on samples of many seeds. The table gives, for each function and estimator: the largest bias and
-root mean square error over the factors, the smallest and mean coverage of the 95 % intervals, the mean half width and
-the time of one analysis.
+Each estimator runs on samples of many seeds. Found are, for each function and estimator: the largest bias and root mean
+square error over the factors, the smallest and mean coverage of the 95 % intervals, the mean half width and the time of
+one analysis.
 """
 
 from __future__ import annotations
 
-import argparse
 import time
 import warnings
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pydoe
 from SALib.analyze import delta as salib_delta
 from SALib.analyze import hdmr, rbd_fast
-from SALib.analyze import morris as salib_morris
 from SALib.analyze import pawn as salib_pawn
 from SALib.analyze import sobol as salib_sobol
-from SALib.sample import sobol as sobol_sample
 
-from trackroller.analysis import givendata, indices
+from trackroller.analysis import givendata
 from trackroller.analysis.delta import delta
 from trackroller.analysis.pairs import pairs
 from trackroller.analysis.pawn import pawn, pawn_interval
 from trackroller.analysis.sobol import sobol
 from trackroller.study.design import arrays
-from trackroller.study.design.sampling import sample
-from validation.known_indices import (
+from validation.benchmarks.command import run
+from validation.benchmarks.known_indices import (
     Data,
     category_rows,
     exact_delta,
     functions,
-    ishigami,
     normal_pair,
     problem,
     random_rows,
@@ -47,7 +44,6 @@ RESAMPLES = 300
 DELTA_RESAMPLES = 10  # SALib's 100 would take ten times longer and change the mean little
 Estimate = tuple[np.ndarray, np.ndarray, np.ndarray]  # values, lower and upper bounds
 Estimator = Callable[[np.ndarray, np.ndarray, int], Estimate]  # quantiles, output, seed
-Numbers = dict[str, dict[str, dict[str, float]]]  # comparison -> estimator -> numbers
 
 
 def summary(found: list[Estimate], truth: np.ndarray, seconds: float) -> dict[str, float]:
@@ -66,7 +62,7 @@ def summary(found: list[Estimate], truth: np.ndarray, seconds: float) -> dict[st
     }
 
 
-def measure(estimator: Estimator, data: Callable[[int], Data], truth: np.ndarray, seeds: int) -> dict[str, float]:
+def numbers(estimator: Estimator, data: Callable[[int], Data], truth: np.ndarray, seeds: int) -> dict[str, float]:
     """Run an estimator on the data of the seeds 0 to `seeds` - 1."""
     rows = [data(seed) for seed in range(seeds)]
     with warnings.catch_warnings():
@@ -174,49 +170,16 @@ def cases() -> Iterator[tuple[str, str, Callable[[int], Data], np.ndarray]]:
     yield "pawn", "PAWN of three categories, 1000 rows", partial(category_rows, 1000), np.array([1 / 3])
 
 
-def morris_facts(trajectories: int = 40, count: int = 10, lost: float = 0.05) -> list[str]:
-    """Compare elementary effects on complete data, and count the effects left when rows are lost."""
-    design = sample({f"x{i}": {"uniform": [0.0, 1.0]} for i in range(count)}, "morris", trajectories, 1)
-    table = np.stack(list(design.columns.values()), axis=1)
-    y = (table * np.arange(count)).sum(axis=1) + table[:, 0] * table[:, 1] ** 2
-    ours = indices.morris(y, design.unit, design.listed)
-    theirs = salib_morris.analyze(problem(count), table, y, seed=1)
-    apart = max(float(np.abs(ours[n] - np.asarray(theirs[n], float)).max()) for n in ("mu", "mu_star", "sigma"))
-    y[np.random.default_rng(0).random(len(y)) < lost] = np.nan
-    kept = int(indices.morris(y, design.unit, design.listed)["effects_used"].sum())
-    whole = int(np.isfinite(y.reshape(trajectories, -1)).all(axis=1).sum()) * count
-    nothing = np.ma.count(np.ma.masked_invalid(salib_morris.analyze(problem(count), table, y, seed=1)["mu_star"]))
-    return [
-        f"Morris: largest difference from SALib on complete data {apart:.1e}",
-        f"Morris: {lost:.0%} of the rows lost: {kept} of {trajectories * count} effects used, "
-        f"{whole} in complete trajectories; SALib with the NaN gives {nothing} indices",
-    ]
-
-
-def repeat_facts() -> list[str]:
-    """Return whether the interval of each Sobol estimator repeats with the seeds 0 and 1."""
-    y = ishigami(sobol_sample.sample(problem(3), 64, seed=1))
-    out = []
-    for seed in (0, 1):
-        theirs = [salib_sobol.analyze(problem(3), y, seed=seed)["S1_conf"] for _ in range(2)]
-        ours = [sobol(y, 3, True, seed)["S1_low"] for _ in range(2)]
-        same = ["the same" if np.array_equal(*two) else "another one" for two in (theirs, ours)]
-        out.append(f"Repeated with seed {seed}: SALib's interval is {same[0]}, ours is {same[1]}")
-    y[5] = np.nan
-    nothing = salib_sobol.analyze(problem(3), y, seed=1)["S1"]
-    return [*out, f"One NaN among the rows: SALib's first-order indices are {np.round(nothing, 3).tolist()}"]
-
-
-def design_facts() -> list[str]:
-    """Compare the classical designs with pyDOE's, row for row, for each number of factors."""
+def designs() -> dict[str, dict[str, list[int]]]:
+    """Compare the classical designs with pyDOE's, row for row: the numbers of factors by finding."""
     theirs: dict[str, tuple[Callable[[int], np.ndarray], range]] = {
         "central_composite": (lambda k: pydoe.ccdesign(k, center=(0, 1), face="ccf"), range(1, 9)),
         "box_behnken": (lambda k: pydoe.bbdesign(k, center=1), range(3, 8)),
         "plackett_burman": (lambda k: np.concatenate([half := pydoe.pbdesign(k), -half]), range(1, 48)),
     }
-    out = []
+    out: dict[str, dict[str, list[int]]] = {}
     for name, (design, counts) in theirs.items():
-        kinds: dict[str, list[int]] = {}
+        kinds = out.setdefault(name, {})
         for count in counts:
             ours = getattr(arrays, name)(count)
             try:
@@ -229,8 +192,6 @@ def design_facts() -> list[str]:
             else:
                 kind = "the same rows" if np.array_equal(found, ours) else "as many rows, others or in another order"
             kinds.setdefault(kind, []).append(count)
-        told = "; ".join(f"{kind} for {', '.join(map(str, found))}" for kind, found in kinds.items())
-        out.append(f"{name}, by number of factors: {told}")
     return out
 
 
@@ -238,36 +199,15 @@ def _symmetric(value: np.ndarray, half: np.ndarray) -> Estimate:
     return value, value - half, value + half
 
 
-FACTS: dict[str, Callable[[], list[str]]] = {"morris": morris_facts, "repeat": repeat_facts, "designs": design_facts}
-COLUMNS = ("bias", "rmse", "least_coverage", "coverage", "half_width", "ms")
-
-
-def table(found: Numbers) -> str:
-    """Return the comparison as text."""
-    lines = [f"{'':28}" + "".join(f"{name:>15}" for name in COLUMNS)]
-    for key, rows in found.items():
-        lines.append(key)
-        for who, numbers in rows.items():
-            lines.append(f"  {who:26}" + "".join(f"{numbers[name]:15.3f}" for name in COLUMNS))
-    return "\n".join(lines)
-
-
-def main(argv: list[str] | None = None) -> None:
-    """Run the comparison and print it."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", type=int, default=200)
-    parser.add_argument("--only", nargs="+", choices=(*ESTIMATORS, *FACTS), default=(*ESTIMATORS, *FACTS))
-    args = parser.parse_args(argv)
-    found: Numbers = {}
+def measure(seeds: int = 200, only: tuple[str, ...] = tuple(ESTIMATORS)) -> dict[str, Any]:
+    """Return the numbers of each comparison and estimator, and the comparison of the designs."""
+    found = {}
     for kind, name, data, truth in cases():
-        if kind in args.only:
-            seeds = args.seeds if kind in ("sobol", "first") else max(2, args.seeds // 2)  # the others are slow
-            found[name] = {who: measure(one, data, truth, seeds) for who, one in ESTIMATORS[kind].items()}
-    if found:
-        print(table(found))
-    for name in [name for name in FACTS if name in args.only]:
-        print("\n".join(FACTS[name]()))
+        if kind in only:
+            count = seeds if kind in ("sobol", "first") else max(2, seeds // 2)  # the others are slow
+            found[name] = {who: numbers(one, data, truth, count) for who, one in ESTIMATORS[kind].items()}
+    return {"estimators": found, "designs": designs()}
 
 
 if __name__ == "__main__":
-    main()
+    run(measure, __doc__)

@@ -1,1 +1,0 @@
-"""Reference numbers of other programs beside numbers of this package."""
