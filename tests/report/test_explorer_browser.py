@@ -625,13 +625,15 @@ def test_the_selection_is_exported_with_every_digit(page, grid, tmp_path):
 def test_the_address_holds_the_view_and_wrong_addresses_do_no_harm(browser, pages):
     page = browser.open(pages["grid"])
     page.run(
-        "trackroller.select({friction_coefficient: [0.1, 0.3], roller_life_hours: [100, null]}); trackroller.pin(7)"
+        "trackroller.select({friction_coefficient: [0.1, 0.3], roller_life_hours: [100, null], design: [1, 4]});"
+        "for (const row of [7, 3, 5]) trackroller.pin(row)"
     )
     rows, fragment = page.run("trackroller.selected()"), page.run("trackroller.fragment()")
     page.close()
     again = browser.open(pages["grid"], fragment)
     assert again.run("trackroller.selected()") == rows
-    assert "case 7" in again.run("document.querySelector('.pinned').textContent")
+    heads = again.run("[...document.querySelectorAll('.pinned thead th')].map(e => e.textContent)")
+    assert heads == ["A: case 7 Unpin", "B: case 3 Unpin", "C: case 5 Unpin"] and rows
     again.close()
     wrong = "#explore&brush.__proto__=[1]&brush.nothing=[1,2]&x=constructor&pins=a,-1,99999999&axes=7&slice=[1,[2]]"
     payload = "&colour=%3Cimg%20src%3Dx%20onerror%3Dalert(1)%3E&brush.regime={%22a%22:1}&sort=%3Cb%3E"
