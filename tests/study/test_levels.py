@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from trackroller.parameters import OUTPUT_GROUPS
 from trackroller.roller.case import mapping_text
+from trackroller.study.cost import bytes_a_case, rate
 from trackroller.study.design.levels import short
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
@@ -80,3 +82,11 @@ def test_status_tells_failed_profiles_in_words(tmp_path):
     run_study(study, tmp_path)
     levels = [level for _, level in status_of(study, tmp_path).by_level]
     assert len(levels) == 2 and all(t.startswith("drawn") and t.endswith("361 points") for t in levels)
+
+
+def test_a_plan_knows_time_and_size_of_every_group_of_outputs():
+    """More outputs take no less time and more disk; limits of patches cost more than the forces alone."""
+    for group in OUTPUT_GROUPS:
+        both = tuple(dict.fromkeys(("forces", group)))
+        assert bytes_a_case(both) >= bytes_a_case(("forces",)) and rate({"outputs": both}) <= rate({})
+    assert rate({"outputs": ("forces", "multiaxial")}) < 0.5 * rate({})

@@ -8,6 +8,7 @@ import os
 # algebra library, and a command takes one as well, so that both write the same bits. This stands before NumPy's import.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+ALLOW_CODE = "--allow-code"  # loads the limits of config/limits
 INTERRUPTED = 130  # exit code after Ctrl-C, as in a shell
 STOPPED = (
     "stopped. The finished chunks of a study are kept, and no file is half written. Start the same command again to go "

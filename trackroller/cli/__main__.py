@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from pathlib import Path
 
-from trackroller.cli import INTERRUPTED, STOPPED
+from trackroller.cli import ALLOW_CODE, INTERRUPTED, STOPPED
+from trackroller.errors import InputError
 
 
 def run() -> None:
     """Import the command line and run it; Ctrl-C during the import ends in one sentence, too."""
     try:
+        if ALLOW_CODE in sys.argv:  # anywhere on the line, because limits are known before anything else is imported
+            sys.argv.remove(ALLOW_CODE)
+            os.environ["TRACKROLLER_ALLOW_CODE"] = str(Path("config", "limits").resolve())
         from trackroller.cli.main import main  # the import takes longer than everything before it
 
         main()
+    except InputError as error:
+        print(f"trackroller: {error}", file=sys.stderr)
+        raise SystemExit(2) from None
     except KeyboardInterrupt:
         print(f"trackroller: {STOPPED}", file=sys.stderr)
         raise SystemExit(INTERRUPTED) from None

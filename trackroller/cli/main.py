@@ -33,6 +33,7 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help="Parameter studies of locating-bearing track rollers.",
+    epilog="--allow-code with any command: load the limits of your own in config/limits/NAME.py, which are programs.",
 )
 materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 app.add_typer(materials, name="materials")

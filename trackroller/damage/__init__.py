@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from trackroller.damage import bearing, catalogue, fatigue, heat, multiaxial, rating, shakedown, static, verdict
+from trackroller.damage import bearing, catalogue, fatigue, heat, multiaxial, own, rating, shakedown, static, verdict
 from trackroller.damage.limit import TRACTIONS, Limit, declarations
+from trackroller.parameters import own_limits
 
 _FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, multiaxial)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
+LIMITS |= {path.stem: own.load(path) for path in own_limits.files()}
 
 
 def asked(outputs: Collection[str]) -> tuple[Limit, ...]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
@@ -114,6 +115,8 @@ class Option:
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
+            if self.name == "outputs" and (file := Path("config", "limits", f"{value}.py")).is_file():
+                raise InputError(where, value, self.allowed(), f"{file} declares it: add --allow-code.")
             raise unknown_name(where, value, self.values)
         return value
 

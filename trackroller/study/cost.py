@@ -24,6 +24,8 @@ _BYTES = {
     "tractions": 300_000,
     "subsurface": 1_500_000,
 }
+_BYTES_OF_A_LIMIT = 150
+_PATCH_LIMITS = {"shakedown": 0.012, "heat": 0.004, "multiaxial": 0.06}  # s; the limits of forces take no time
 
 
 def rate(options: Mapping[str, Any]) -> float:
@@ -40,6 +42,7 @@ def rate(options: Mapping[str, Any]) -> float:
     if groups & {"peak_stress", "life", "subsurface"}:  # one search serves all
         seconds += cost.peaks[level]
     seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
+    seconds += sum(_PATCH_LIMITS.get(group, 0.0) for group in groups)
     return 1.0 / seconds
 
 
@@ -52,7 +55,7 @@ def study_rate(study: Study) -> float:
 
 def bytes_a_case(outputs: tuple[str, ...]) -> int:
     """Return the expected size of a case on the disk, chunk and gathered set together."""
-    return 2 * (60 + sum(_BYTES[group] for group in set(outputs)))
+    return 2 * (60 + sum(_BYTES.get(group, _BYTES_OF_A_LIMIT) for group in set(outputs)))
 
 
 def duration(seconds: float) -> str:

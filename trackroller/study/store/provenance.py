@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller import __version__
+from trackroller.parameters.own_limits import digests
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.store.folder import STORE_FORMAT
 from trackroller.study.store.sources import solver_digest
@@ -45,8 +46,9 @@ def git_commit() -> str:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of this package, of Python and of the packages that compute the numbers."""
+    """Return the versions of all that computes the numbers: this package, Python, packages, limits of a user's own."""
     found = {"trackroller": __version__, "python": platform.python_version()}
+    found |= {f"config/limits/{name}.py": f"sha256 {digest}" for name, digest in digests().items()}
     for name in _PACKAGES:
         try:
             found[name] = metadata.version(name)

@@ -36,6 +36,8 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
+from trackroller.parameters.own_limits import digests
+
 PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "trackroller.roller.solver"
 # The values of materials stand in each fingerprint, so the file of materials need not count as well.
@@ -105,7 +107,8 @@ def code_digest(modules: str | Iterable[str], leave_out: Iterable[str] = ()) -> 
 @cache
 def solver_digest() -> str:
     """Return the digest of all that `trackroller.solve` depends on except the values in a fingerprint."""
-    return code_digest(SOLVER, BY_VALUE)
+    digest, own = code_digest(SOLVER, BY_VALUE), digests()
+    return hashlib.sha256(f"{digest} {sorted(own.items())}".encode()).hexdigest()[:16] if own else digest
 
 
 def digest_file(folder: str | Path, *modules: str) -> str:

@@ -1,0 +1,83 @@
+"""A limit of a user's own in config/limits: only with --allow-code, and with its digest in all that it touched."""
+
+import hashlib
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CASE = "{motor_force: 0, roller_material: {like: 1.7225-normalised, permissible_pressure: 500}}\n"
+MATERIALS = "materials:\n  lined: {like: 1.7225-normalised, permissible_pressure: 500}\n"
+STUDY = """name: own
+base: {motor_force: 0, roller_material: lined}
+factors: {friction_coefficient: {values: [0.1, 0.3]}}
+outputs: [forces, contact, lining, peak_stress, life]
+contact_model: sliding
+accuracy: preview
+"""
+
+
+@pytest.fixture
+def place(tmp_path):
+    recipe = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Add a damage limit")[2]
+    (tmp_path / "config" / "limits").mkdir(parents=True)
+    lines = re.search(r"```python\n(.*?)```", recipe, re.DOTALL)[1]
+    (tmp_path / "config" / "limits" / "lining.py").write_text(lines, encoding="utf-8")
+    (tmp_path / "config" / "materials.yaml").write_text(MATERIALS, encoding="utf-8")
+    (tmp_path / "case.yaml").write_text(CASE, encoding="utf-8")
+    (tmp_path / "study.yaml").write_text(STUDY, encoding="utf-8")
+    return tmp_path
+
+
+def command(place, *words, code=0):
+    line = [sys.executable, "-m", "trackroller.cli", *words]
+    done = subprocess.run(line, cwd=place, capture_output=True, text=True)
+    assert done.returncode == code and "Traceback" not in done.stderr, done.stderr
+    return done.stdout + done.stderr
+
+
+def solve(place, *more, code=0):
+    quick = [w for key in ("outputs=contact,lining", "contact_model=sliding") for w in ("--set", key)]
+    return command(place, "solve", "case.yaml", "--json", *quick, *more, code=code)
+
+
+@pytest.mark.slow
+def test_code_runs_only_where_it_is_allowed(place):
+    (place / "config" / "limits" / "lining.py").write_text("print('ran')\n")
+    said = solve(place, code=2)
+    assert "lining.py declares it: add --allow-code" in said and "ran" not in said
+    said = solve(place, "--allow-code", code=2)
+    assert "must declare LIMIT = Limit(name='lining', ...)" in said and len(said.splitlines()) == 1
+
+
+@pytest.mark.slow
+def test_a_limit_of_the_user_stands_in_the_results(place):
+    found = json.loads(solve(place, "--allow-code"))
+    used, pressure = found["lining_utilisation"]["value"], found["max_pressure"]["value"]
+    assert [row[0] for row in used] == pytest.approx([p / 500.0 for p in pressure], rel=1e-12)
+
+
+@pytest.mark.slow
+def test_a_study_names_the_digest_and_an_edited_limit_solves_anew(place):
+    file = place / "config" / "limits" / "lining.py"
+    assert "2 cases" in command(place, "run", "study.yaml", "--allow-code")
+    command(place, "report", "own", "--allow-code")
+    crate = (place / "results" / "own" / "ro-crate-metadata.json").read_text(encoding="utf-8")
+    assert "config/limits/lining.py" in crate and hashlib.sha256(file.read_bytes()).hexdigest() in crate
+    assert "permissible_pressure" in command(place, "report", "own", code=2)  # nothing is half read
+    assert "2 of them solved already" in command(place, "plan", "study.yaml", "--allow-code")
+    file.write_text(file.read_text(encoding="utf-8").replace("pressure / solved", "2.0 * pressure / solved"))
+    assert "0 of them solved already" in command(place, "plan", "study.yaml", "--allow-code")
+
+
+@pytest.mark.slow
+def test_names_that_exist_and_empty_folders_are_refused(place):
+    file = place / "config" / "limits" / "lining.py"
+    file.write_text(file.read_text(encoding="utf-8").replace('"permissible_pressure", "p_zul"', '"density", "p_zul"'))
+    assert "new materials: these exist" in solve(place, "--allow-code", code=2)
+    file.unlink()
+    assert "a folder with limits" in solve(place, "--allow-code", code=2)
