@@ -127,7 +127,7 @@ def test_designs_of_a_grid_against_a_group_by(rate):
     assert ("beyond the S-N data" in said["best"]) == bool(top["beyond"])
     if rate is None:
         assert "first" not in said and "give `guide_overrollings_per_hour`" in said["next"]
-        assert "give `guide_overrollings_per_hour`" in best_table(view).note
+        assert "Life of the roller, worst condition [h]" in {row[0] for row in best_table(view).rows}
     else:
         body = "guide" if top["first_guide"] > top["first_roller"] else "roller"
         assert (body == "guide" or rate == 600) and said["first"].startswith(f"The {body} fails first in")
@@ -263,7 +263,7 @@ def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
     assert "each goal at the worst of the conditions" in text
     ds, _ = solved(base={})
     view = view_of(ds)
-    assert "give `guide_overrollings_per_hour`" in pareto_sentence(study_pareto(view), view).text
+    assert "h (beyond the S-N data) life of the roller" in pareto_sentence(study_pareto(view), view).text
 
 
 def test_a_condition_that_is_a_goal_is_no_condition():

@@ -122,7 +122,7 @@ def test_best_designs_and_pareto_set_are_those_of_one_model(own):
     assert told == pytest.approx([lives.min(), np.median(lives), lives.max()])
     assert best["Valid in"] == [f"{lives.size} of 4"]
     assert front.attrs["model"] == "kalker" and front.sizes["row"] == 1 and "contact_model" not in front
-    assert front["pair_life_hours"].item() == pytest.approx(lives.min())
+    assert front["roller_life_hours"].item() == pytest.approx(lives.min())
     assert "One design is left, so there is no Pareto set" in page["decide_said"][0]
 
 

@@ -73,10 +73,10 @@ def test_a_sentence_that_should_appear_does(name):
     rolls, total = int((table["regime"] == 0).sum()), len(table)
     counts = {"full slip": int((table["regime"] == 1).sum()), "lift-off": int((table["regime"] == 2).sum())}
     why = ", ".join(f"{n} {words}" for words, n in counts.items() if n)
-    assert f"{rolls} of {total} designs roll" + (f" (the others: {why})" if why else "") in text
+    assert f"{rolls} of {total} cases roll" + (f" (the others: {why})" if why else "") in text
     for code, words in ((1, "Full slip"), (2, "Lift-off")):
         hit = int((table["regime"] == code).sum())
-        where = f"occurs in all {total}" if hit == total else f"occurs in {hit} of {total} designs"
+        where = f"occurs in all {total}" if hit == total else f"occurs in {hit} of {total} cases"
         assert (f"{words} {where}" in text) == (hit > 0), (words, hit)
     inside = (table["regime"] == 0) & (table["validity"] & 15 == 0)
     outside = rolls - int(inside.sum())
@@ -142,13 +142,16 @@ def test_what_a_constraint_removes_is_named(name):
     ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"constraints": [limit]}, sort_keys=False)
     inside = (table["regime"] == 0) & (table["validity"] & 15 == 0)
     kept = inside & (table["axial_force"] < 20 if name == "axial" else table["material_pair"] != PAIRS[2])
-    text = contents(view_of(ds))["summary"][0][1][0].text
+    text = dict(contents(view_of(ds))["summary"])["Valid cases"][0].text
     assert f"{kept.sum()} of the {inside.sum()} meet `{limit}`" in text
     gone = "Axial force 30 N" if name == "axial" else "EN AW-7075 on 1.7225-normalised"
     assert f"{gone} meets the constraints nowhere." in text
     one = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"constraints": ["friction_coefficient > 0.35"]})
     ds.attrs["study"] = one
-    assert "Only friction coefficient 0.4 meets the constraints." in contents(view_of(ds))["summary"][0][1][0].text
+    assert (
+        "Only friction coefficient 0.4 meets the constraints."
+        in dict(contents(view_of(ds))["summary"])["Valid cases"][0].text
+    )
 
 
 def test_pairs_of_materials_say_that_the_friction_of_the_database_changes_too():
@@ -159,7 +162,7 @@ def test_pairs_of_materials_say_that_the_friction_of_the_database_changes_too():
     both = view_of(ds)
     with style.look():
         one, two = (by_factor(view)[1].sentence for view in (same, both))
-    assert "pairs of valid designs that differ in nothing else;" in one
+    assert "pairs of valid cases that differ in nothing else;" in one
     assert "that differ in nothing else than the friction coefficient that follows from it" in two
 
 
@@ -172,7 +175,7 @@ def test_an_index_from_less_than_half_of_the_design_decides_nothing():
     used = float(view.analysis["used_share"].sel(output="roller_life_hours"))
     assert used < 0.5 and said[0].kind == "no_index"
     what = "No factor is named as decisive for log life of the roller"
-    assert said[0].text == f"{what}: its indices use only {100 * used:.0f} % of the design."
+    assert said[0].text == f"{what}: its indices use only {100 * used:.0f} % of the cases."
     next_one = said[1].values["output"]
     assert said[1].kind == "index" and float(view.analysis["used_share"].sel(output=next_one)) >= 0.5
 
@@ -184,8 +187,8 @@ def test_small_sets_are_named_by_their_common_property_and_radial_loads_by_their
     few = ds.isel(friction_coefficient=[1], roller_profile_radius=[1])
     few["regime"] = xr.where(hit, 2, 0).broadcast_like(few["regime"]).transpose(*few["regime"].dims)
     said = dict(contents(view_of(few))["summary"])["What limits"][0].text
-    assert said.startswith("Lift-off occurs in 2 of 8 designs (25 %), only at ") and "in all designs there" in said
-    assert "radial force −60 N or −50 N" in said and "axial force 30 N" in said and "case" not in said
+    assert said.startswith("Lift-off occurs in 2 of 8 cases (25 %), only at ") and "in all cases there" in said
+    assert "radial force −60 N or −50 N" in said and "axial force 30 N" in said and "(" not in said.split(",", 1)[1]
 
 
 def test_long_lists_say_how_many_names_they_leave_out():
@@ -212,7 +215,7 @@ def test_a_difference_between_levels_is_named_above_noise_and_a_tenth(rows, low,
     said = occurrence(view_of(ds), hit, "Full slip")
     assert (said.kind == "frequent") == named and said.text.startswith(f"Full slip occurs in {hit.sum():,} of {rows:,}")
     if named:
-        wanted = [f"contact angle {a}° ({hit[angle == a].sum():,} of {half:,} designs)" for a in (40, 30)]
+        wanted = [f"contact angle {a}° ({hit[angle == a].sum():,} of {half:,} cases)" for a in (40, 30)]
         assert f"most often at {wanted[0]} and least at {wanted[1]}." in said.text
 
 

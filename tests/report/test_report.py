@@ -67,7 +67,7 @@ def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
         "lift-off",
         "Best 1",
         "Best 5",
-        "of 540 designs roll",
+        "of 540 cases roll",
         "Build 1.7225",
         "Papers behind the methods",
         "applmech3020041",
@@ -102,15 +102,15 @@ def test_regimes_name_the_levels_at_which_they_occur():
     view = view_of(grid_study(FACTORS))
     rows = {row[0]: row for row in regime_table(view).rows}
     assert sum(row[1] for row in rows.values()) == len(view.table)
-    assert rows["lift-off"][3].endswith("only at axial force 130 N: in all designs there.")
-    assert "only at" in rows["full slip"][3] and "friction coefficient 0.05" in rows["full slip"][3]
-    assert rows["rolling"][3] == "" and "failed" not in rows
+    slip, lift = (s.text for s in dict(contents(view)["summary"])["What limits"])
+    assert lift.endswith("only at axial force 130 N: in all cases there.")
+    assert "only at" in slip and "friction coefficient 0.05" in slip and "failed" not in rows
 
 
 def test_events_of_all_designs_and_of_none():
     view = view_of(grid_study(FACTORS))
     everywhere = occurrence(view, np.ones(len(view.table), bool), "Slip")
-    assert everywhere.text == "Slip occurs in all 540 designs."
+    assert everywhere.text == "Slip occurs in all 540 cases."
     assert occurrence(view, np.zeros(len(view.table), bool), "Slip") is None
 
 
@@ -208,7 +208,7 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     assert models_used(asked) == [Row("Contact model used", "kalker_table in 40 of 40 cases")]
     assert models_used(asked.assign_attrs(contact_model="kalker_table")) == []
     told = contents(view_of(ds))
-    valid = dict(told["summary"])["Valid designs"]
+    valid = dict(told["summary"])["Valid cases"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)
     assert models_used(sampled_study(40)) == []
 
@@ -218,7 +218,7 @@ def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
     hit = np.zeros(400, dtype=bool)
     hit[:3] = True
     said = occurrence(view, hit, "Jamming")
-    assert said.kind == "cases" and said.text == "Jamming occurs in 3 of 400 designs: cases 0, 1 and 2."
+    assert said.kind == "cases" and said.text == "Jamming occurs in 3 of 400 cases (0, 1 and 2)."
 
 
 @pytest.mark.parametrize(

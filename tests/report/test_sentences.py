@@ -19,7 +19,7 @@ from trackroller.report.tables.cases import validity_table
 from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import SLIDING_ERROR, friction_error, full_sliding
-from trackroller.report.words.cases import valid_designs
+from trackroller.report.words.cases import valid_cases
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.regimes import occurrence
@@ -78,7 +78,7 @@ def test_a_single_event_is_named_and_attributed_to_nothing():
     hit = np.zeros(len(view.table), bool)
     hit[77] = True
     text = occurrence(view, hit, "Lift-off").text
-    assert text == f"Lift-off occurs in 1 of {len(hit):,} designs: case 77."
+    assert text == f"Lift-off occurs in 1 of {len(hit):,} cases (77)."
 
 
 def test_head_lines_count_valid_cases_and_say_by_body_why_others_are_not():
@@ -87,7 +87,7 @@ def test_head_lines_count_valid_cases_and_say_by_body_why_others_are_not():
     bits = xr.concat([roller * 4 + guide * 8, guide * 8 + 0 * roller], "body").astype("int32")
     ds["validity_body"] = bits.transpose(..., "body")
     view = view_of(ds)
-    said = valid_designs(view)
+    said = valid_cases(view)
     rolls = ds["regime"] == 0
     exceeds = int((roller & rolls).sum())
     assert f"the peak stress exceeds the tensile strength of the roller ({exceeds:,})" in said.text
@@ -159,7 +159,7 @@ def test_a_set_with_designs_outside_the_model_says_how_many():
         attrs={"objectives": "a max, b min", "excluded": "nothing"},
     )
     ds = study({"axial_force": [0.0, 1.0]}, regime=[0, 1])
-    assert "1 of the set lie outside the model" in pareto_sentence(front, view_of(ds)).text
+    assert "1 of the set lies outside the model" in pareto_sentence(front, view_of(ds)).text
 
 
 def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
@@ -168,7 +168,8 @@ def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
     table = xr.Dataset(
         {
             **{n: (dims, np.ones((3, points))) for n in ("b10", "b10_low", "b10_high", "b10_safe", "mean")},
-            "percentile_value": ((*dims, "percentile"), np.ones((3, points, 3))),
+            "percentile_value": ((*dims, "percentile"), np.ones((3, points, 4))),
+            "beyond_data": (dims, np.full((3, points), np.nan)),
             **{n: (("regime", "point"), np.zeros((4, points))) for n in ("probability", "probability_low")},
             "probability_high": (("regime", "point"), np.full((4, points), 0.03)),
         },
@@ -176,7 +177,7 @@ def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
             "output": names,
             "output_name": ("output", names),
             "output_units": ("output", ["h", "W", "MPa"]),
-            "percentile": [5.0, 50.0, 95.0],
+            "percentile": [5.0, 10.0, 50.0, 95.0],
             "regime": ["rolling", "full_slip", "lift_off", "failed"],
             "velocity": ("point", [30.0, 60.0]),
         },
@@ -232,5 +233,5 @@ def test_pairs_agree_with_a_closed_form():
     said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
     assert said.text == (
         "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold (median of 6 pairs of valid "
-        "designs that differ in nothing else; same direction in all pairs)."
+        "cases that differ in nothing else; same direction in all pairs)."
     )

@@ -14,7 +14,7 @@ from random_studies import FLAGS, random_study
 from synthetic_results import view_of
 
 from trackroller.report.words.accuracy import accuracy, friction_error
-from trackroller.report.words.cases import extremes, valid_designs
+from trackroller.report.words.cases import extremes, valid_cases
 from trackroller.report.words.designs import best_design
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.regimes import lift_off, occurrence
@@ -90,7 +90,7 @@ def first(pattern, text):
 
 
 def check_valid(raw, said):
-    rolls, total = first(rf"^{NUMBER} of {NUMBER} designs roll", said.text)
+    rolls, total = first(rf"^{NUMBER} of {NUMBER} cases roll", said.text)
     assert (value(rolls), value(total)) == (raw.rolling.sum(), raw.n)
     if "stay inside" in said.text:
         assert value(first(rf"; {NUMBER} of them stay", said.text)[0]) == raw.inside.sum() > 0
@@ -136,10 +136,12 @@ def check_occurrence(raw, said, hit, among):
     if said.kind == "everywhere":
         assert hit.sum() == among.sum()
         return
-    counts = first(rf"occurs in {NUMBER} of {NUMBER} designs", said.text)
+    counts = first(rf"occurs in {NUMBER} of {NUMBER} cases", said.text)
     assert [value(c) for c in counts] == [hit.sum(), among.sum()]
     if said.kind == "cases":
-        named = [int(t) for t in re.findall(r"\d+", said.text.split("case", 1)[1])]
+        named = [int(t) for t in re.findall(r"\d+", said.text.split("cases (")[1].split(")")[0])]
+        for name, levels in said.values["conditions"]:
+            assert (hit <= inside(raw, name, levels)).all() and not inside(raw, name, levels)[among].all()
         assert named == np.flatnonzero(hit).tolist() and hit.sum() < 20
         return
     assert hit.sum() >= 20 or (said.kind == "only" and said.values["inside"] == hit.sum())
@@ -151,9 +153,9 @@ def check_occurrence(raw, said, hit, among):
             here = inside(raw, name, levels)
             assert not (hit & ~here).any() and (among & ~here).any()
             met &= here
-        assert ("in all designs there" in said.text) == (met.sum() == hit.sum())
+        assert ("in all cases there" in said.text) == (met.sum() == hit.sum())
         if met.sum() != hit.sum():
-            assert value(first(rf"of the {NUMBER} designs there", said.text)[0]) == met.sum()
+            assert value(first(rf"of the {NUMBER} cases there", said.text)[0]) == met.sum()
     elif said.kind == "frequent":
         name, most, least = (said.values[k] for k in ("factor", "most", "least"))
         own = raw.columns[name]
@@ -197,7 +199,7 @@ def check_pairs(raw, said):
     steps = ratios(raw, v["column"], v["factor"], v["low"], v["high"], raw.valid)
     up, down = int((steps > 0).sum()), int((steps < 0).sum())
     assert len(steps) == v["size"] >= 5
-    assert value(first(rf"{NUMBER} pairs of valid designs", said.text)[0]) == len(steps)
+    assert value(first(rf"{NUMBER} pairs of valid cases", said.text)[0]) == len(steps)
     middle = float(np.median(steps))
     parts = [
         ratios(raw, v["column"], v["factor"], v["low"], v["high"], rows)
@@ -373,7 +375,7 @@ def sentences_of(seed):
     ds = random_study(seed)
     raw, view = Raw(ds), view_of(ds)
     assert set(view.factors) == set(raw.factors)
-    said = [valid_designs(view)]
+    said = [valid_cases(view)]
     check_valid(raw, said[0])
     for code, words in ((1, "Full slip"), (2, "Lift-off"), (3, "Failure")):
         found = occurrence(view, view.regime == code, words)

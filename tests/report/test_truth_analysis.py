@@ -287,6 +287,7 @@ def test_every_sentence_on_design_points_is_true():
         shares = np.round(shares * inner) / inner
         shares[0] = 1 - shares[1:].sum(axis=0)
         safe = np.where(shares[1:].sum(axis=0) >= 0.1, 0.0, 0.8 * b10)
+        beyond = np.where(rng.random(points) < 0.5, np.nan, b10 * rng.choice([0.5, 2.0], points))
         dims = ("output", "point")
         table = xr.Dataset(
             {
@@ -295,8 +296,11 @@ def test_every_sentence_on_design_points_is_true():
                 "b10_high": (dims, 1.1 * b10[None]),
                 "b10_safe": (dims, safe[None]),
                 "probability": (("regime", "point"), shares),
+                "percentile_value": ((*dims, "percentile"), b10[None, :, None]),
+                "beyond_data": (dims, beyond[None]),
             },
             coords={
+                "percentile": [10.0],
                 "output": np.array(["roller_life_hours"], dtype=object),
                 "output_name": ("output", np.array(["life of the roller"], dtype=object)),
                 "output_units": ("output", np.array(["h"], dtype=object)),
@@ -310,6 +314,7 @@ def test_every_sentence_on_design_points_is_true():
         assert safe[best] == safe.max() and b10[best] == b10[safe == safe.max()].max()
         assert f"at mean travel speed {10 + best} m/min" in said.text
         told = float(re.search(r"reach ([\d,.]+) h", said.text)[1].replace(",", ""))
+        assert ("h (beyond the S-N data) (95 %" in said.text) == bool(b10[best] >= beyond[best])
         assert told == pytest.approx(b10[best], rel=0.006)
         slip = float(re.search(r"full slip there in ([\d.]+) %", said.text)[1])
         assert slip == pytest.approx(100 * shares[1, best], abs=0.51)

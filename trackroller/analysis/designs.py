@@ -5,7 +5,6 @@ A design is one combination of choices. It is judged over all conditions in whic
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,14 +13,13 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.limits import column
-from trackroller.analysis.robustness import b10
+from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.table import BODIES, StudyView
-from trackroller.parameters import FIRST_TO_FAIL, MATERIAL_FIELDS
+from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import parse
 from trackroller.study.design.roles import roles_of
 
-DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
 DRAWN = ("lhs", "sobol", "saltelli", "morris", "inner_outer")  # designs of experiments with random conditions
 TIED = 1e-9  # relative difference of lives that count as equal
@@ -33,30 +31,6 @@ def factor_roles(view: StudyView) -> dict[str, str]:
     specs = given if isinstance(given, Mapping) else {}
     parsed = {name: parse(name, spec) for name, spec in specs.items() if isinstance(spec, Mapping) and spec}
     return roles_of(view.factors, parsed, view.study.get("roles") or {}, str(view.study.get("design", "")))
-
-
-def beyond_data(view: StudyView, body: str) -> np.ndarray:
-    """Mark the cases in which the life of a body lies beyond the S-N data, shape (n,).
-
-    The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings.
-    """
-    stored = json.loads(str(view.attrs.get("materials", "{}")))
-    i = BODIES.index(body)
-    if "material_pair" in view.table:
-        names = view.table["material_pair"].astype(str).str.split(" / ").str[i]
-    else:
-        field = MATERIAL_FIELDS[i]
-        names = view.table.get(field, pd.Series(str(view.base.get(field, "")), index=view.table.index)).astype(str)
-    knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
-    limit = np.minimum(names.map(knees).to_numpy(dtype=float), DATA_END)
-    beyond: np.ndarray = (view.column(f"life_cycles_{body}") > limit) | np.isposinf(view.column(f"{body}_life_hours"))
-    return beyond
-
-
-def pair_beyond_data(view: StudyView) -> np.ndarray:
-    """Mark the cases in which the life of the body that fails first (otherwise the roller) lies beyond, shape (n,)."""
-    guide = view.column("first_to_fail") == FIRST_TO_FAIL.index("guide")
-    return np.where(guide, beyond_data(view, "guide"), beyond_data(view, "roller"))
 
 
 def slip_margin(view: StudyView) -> np.ndarray:
@@ -192,7 +166,7 @@ class Designs:
         for body in BODIES:
             case = self._least(view.column(f"{body}_life_hours"), self.usable)
             found[f"worst_{body}"] = np.where(case < 0, np.nan, view.column(f"{body}_life_hours")[case])
-            found[f"worst_{body}_beyond"] = (case >= 0) & beyond_data(view, body)[case]
+            found[f"worst_{body}_beyond"] = (case >= 0) & view.beyond_data(f"{body}_life_hours")[case]
         for name, margin in (("slip_margin", slip_margin(view)), ("lift_off_margin", lift_off_margin(view))):
             case = self._least(margin, view.rolling)
             found[name] = np.where(case < 0, np.nan, margin[case])
@@ -258,7 +232,7 @@ class Designs:
         order = rows[np.lexsort((values[rows] if self.rising else -values[rows], self.place[rows]))]
         number = self._count(self.usable)
         start, some = np.cumsum(number) - number, number > 0
-        beyond = pair_beyond_data(self.view) if self.rising else np.zeros(len(values), dtype=bool)
+        beyond = self.view.beyond_data(self.goal[0])
         ends = {"worst": (0, 0), "median": ((number - 1) // 2, number // 2), "best": (number - 1, number - 1)}
         found: dict[str, np.ndarray] = {}
         for name, two in ends.items():
@@ -271,11 +245,21 @@ class Designs:
         return found
 
     def _quantile(self) -> dict[str, np.ndarray]:
-        """Return the life that nine of ten cases of each design reach, its interval, and whether it lies beyond."""
-        lives = np.where(self.usable, self.view.column(self.goal[0]), 0.0)
-        ends = np.array([b10(lives[self.cases_of(i)]) for i in range(len(self.size))])
-        found = dict(zip(("b10", "b10_low", "b10_high"), ends.T, strict=True))
-        there = self.usable & (lives == ends[self.place, 0]) & pair_beyond_data(self.view)
+        """Return the life that nine of ten cases of each design reach, its interval, and whether it lies beyond.
+
+        Cases that are not valid have life 0. The scatter of the material of the body that fails first counts if the
+        study asks for it.
+        """
+        view = self.view
+        lives = np.where(self.usable, view.column(self.goal[0]), 0.0)
+        own = material_deviations(view.results) if view.results else {}
+        guide = view.column("first_to_fail") == FIRST_TO_FAIL.index("guide")
+        scatter = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0))
+        cases = [self.cases_of(i) for i in range(len(self.size))]
+        ends = np.array([b10(lives[c], scatter[c]) for c in cases]).T
+        found = dict(zip(("b10", "b10_low", "b10_high"), ends, strict=True))
+        rests = np.array([max(b10(lives[c])[0], value) for c, value in zip(cases, ends[0], strict=True)])
+        there = self.usable & (lives <= rests[self.place]) & view.beyond_data(self.goal[0])
         return found | {"b10_beyond": self._count(there) > 0}
 
 

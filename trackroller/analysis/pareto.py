@@ -231,7 +231,9 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
     Output -> `max` or `min`; empty if the study lacks one of the two goals.
     """
     found: dict[str, str] = {}
-    lives = [n for n in ("pair_life_hours", "roller_life_hours") if n in ds and np.isfinite(ds[n]).any()]
+    known = "guide_life_hours" in ds and not bool(ds["guide_life_hours"].isnull().all())
+    lives = ["pair_life_hours"] * known + ["roller_life_hours"]  # of the pair where the guide's hours are known
+    lives = [n for n in lives if n in ds and np.isfinite(ds[n]).any()]
     if lives:
         found[lives[0]] = "max"
     elif "life_cycles" in ds:

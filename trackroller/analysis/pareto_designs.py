@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.designs import Designs, pair_beyond_data
+from trackroller.analysis.designs import Designs
 from trackroller.analysis.limits import column
 from trackroller.analysis.pareto import default_objectives, pareto, pareto_mask, pareto_of_points
 from trackroller.analysis.table import StudyView
@@ -43,7 +43,7 @@ def study_pareto(view: StudyView) -> xr.Dataset | None:
     if mixed and not given:
         return None
     front = pareto(view.solved, goals, view.study.get("constraints") or ())
-    front["beyond"] = ("row", pair_beyond_data(view)[front["row"].values].astype(np.int8))
+    front = front.assign(_beyond(view, dict.fromkeys(goals, front["row"].values)))
     return front.assign_attrs(kind="case" if mixed else "design")
 
 
@@ -62,7 +62,7 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
     xarray.Dataset
         Dimension `row`, the case with the worst first goal of each design that is valid in a condition. Variables: the
         choices; each goal at the worst of the design's valid cases; `valid_in`, the number of these cases; `optimal`;
-        `beyond`, 1 where the life of that case lies beyond the S-N data.
+        `beyond_` and the name of a life, 1 where it lies beyond the S-N data.
     """
     view = designs.view
     columns = {name: column(view.data, view.dims, name, view.base, view.factors) for name in objectives}
@@ -77,7 +77,7 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
     goals = np.stack([np.asarray(data[name][1], dtype=float) for name in (*objectives, "valid_in")], axis=1)
     optimal = pareto_mask(goals, [*objectives.values(), "max"])
     data["optimal"] = ("row", optimal.astype(np.int8), {"long_name": "in the Pareto set"})
-    data["beyond"] = ("row", pair_beyond_data(view)[row].astype(np.int8))
+    data |= _beyond(view, {name: cases[kept] for name, cases in worst.items()})
     left = len(held) - len(kept)
     attrs = {
         "objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()),
@@ -90,3 +90,9 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
         "study": view.attrs.get("study", ""),
     }
     return xr.Dataset(data, {"row": row}, attrs)
+
+
+def _beyond(view: StudyView, cases: Mapping[str, np.ndarray]) -> dict[str, tuple[str, np.ndarray]]:
+    """Return for each life among the goals whether it lies beyond the S-N data in the cases that are compared."""
+    lives = {name: rows for name, rows in cases.items() if "life" in name}
+    return {f"beyond_{n}": ("row", view.beyond_data(n)[rows].astype(np.int8)) for n, rows in lives.items()}

@@ -40,6 +40,17 @@ def robust_design(sens: xr.Dataset) -> bool:
     return str(sens.attrs.get("method")) == "inner_outer"
 
 
+def main_lives(sens: xr.Dataset) -> list[str]:
+    """Name the lives of design points that a report shows: those that the study asks for, otherwise the deciding one.
+
+    The life of the pair decides, or that of the roller where the guide's hours are unknown.
+    """
+    lives = [str(n) for n in sens["output"].values if "life" in str(n)]
+    lives = [n for n in lives if np.isfinite(sens["percentile_value"].sel(output=n)).any()]
+    first = sorted(lives, key=lambda n: ("pair" not in n, "roller" not in n))[:1]
+    return lives if sens.attrs.get("outputs_named") else first
+
+
 def headline(sens: xr.Dataset) -> str:
     """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
     index = HEADLINES.get(str(sens.attrs.get("method")), "effect" if "effect" in sens else "first")

@@ -53,7 +53,8 @@ def robustness(
         Dimension `point`, with the factors of the outer array as coordinates. `percentile_value` (output, point,
         percentile); `mean` and `standard_deviation` (output, point) over the rolling cases. For each life `b10` with
         `b10_low` and `b10_high`, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in
-        full slip, in lift-off or failed counts as life 0. `probability` (regime, point) with intervals.
+        full slip, in lift-off or failed counts as life 0; `beyond_data`, the shortest life beyond the S-N data, NaN
+        without one. `probability` (regime, point) with intervals.
         `analysis.target` adds the variables of `trackroller.analysis.targets.targets`.
 
     Raises
@@ -75,6 +76,8 @@ def robustness(
     for column in columns:
         scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size)).reshape(shape)
         by_output.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
+        beyond = np.where(results.view.beyond_data(column.name).reshape(shape), column.values.reshape(shape), np.nan)
+        by_output[-1]["beyond_data"] = np.fmin.reduce(beyond, axis=1)
     out = xr.Dataset(coords=_coordinates(design, shape, columns))
     for key in by_output[0] if by_output else ():
         axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")

@@ -171,7 +171,7 @@ def analyse(results: StudyResults) -> xr.Dataset:
     ds, design, given = results.data, results.design, results.config.analysis
     how = Settings(given.resamples, given.measures)
     own = material_deviations(results)
-    aims = targets(ds, design, given.target, own, results.allowed) if given.target else xr.Dataset()
+    aims = targets(ds, design, given.target, own, results.view.valid) if given.target else xr.Dataset()
     if design.method == "inner_outer":
         return robustness(results, own).merge(aims, combine_attrs="override")
     columns = outputs(ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed)

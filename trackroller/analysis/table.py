@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -13,7 +14,7 @@ import xarray as xr
 
 from trackroller.analysis.columns import base_values, case_columns, factor_names
 from trackroller.analysis.limits import allowed_cases
-from trackroller.parameters import EXACTNESS, PARAMETERS
+from trackroller.parameters import EXACTNESS, FIRST_TO_FAIL, MATERIAL_FIELDS, PARAMETERS
 from trackroller.study.design.levels import NAMED
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.config import StudyFile
@@ -28,6 +29,7 @@ LIVES = (
     ("life_cycles_guide", "life of the guide", "overrollings"),
 )
 BODIES = ("roller", "guide")
+DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
 MOST_LEVELS = 12  # a factor with more levels is looked at in classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
 
@@ -260,6 +262,36 @@ class StudyView:
     def valid(self) -> np.ndarray:
         """Return the cases inside the model that meet the constraints of the study, shape (n,)."""
         return self.inside if self.met is None else self.inside & self.met
+
+    def beyond_data(self, column: str) -> np.ndarray:
+        """Mark the cases in which a life lies beyond the S-N data, shape (n,); no case for another quantity.
+
+        The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. For the pair the body that
+        fails first counts, or the roller where no body is known to fail first.
+
+        Parameters
+        ----------
+        column : a life, such as `pair_life_hours` or `life_cycles_guide`
+        """
+        if "life" not in column:
+            return np.zeros(len(self.table), dtype=bool)
+        if not any(body in column for body in BODIES):
+            guide = self.column("first_to_fail") == FIRST_TO_FAIL.index("guide")
+            return np.where(guide, *(self.beyond_data(f"{body}_life_hours") for body in ("guide", "roller")))
+        i = 1 if "guide" in column else 0
+        if "material_pair" in self.table:
+            names = self.table["material_pair"].astype(str).str.split(" / ").str[i]
+        else:
+            field = MATERIAL_FIELDS[i]
+            names = self.table.get(field, pd.Series(str(self.base.get(field, "")), index=self.table.index)).astype(str)
+        stored = json.loads(str(self.attrs.get("materials", "{}")))
+        knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
+        limit = np.minimum(names.map(knees).to_numpy(dtype=float), DATA_END)
+        body = BODIES[i]
+        beyond: np.ndarray = (self.column(f"life_cycles_{body}") > limit) | np.isposinf(
+            self.column(f"{body}_life_hours")
+        )
+        return beyond
 
     def has(self, *columns: str) -> bool:
         """Say whether these columns are there with at least one number in each."""

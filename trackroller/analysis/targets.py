@@ -56,14 +56,14 @@ def targets(
     design : its design
     wanted : output -> `min`, `max` or both, in the unit of the output
     deviations : body -> standard deviation of log10 life of its material [1], shape (n,), see `material_deviations`
-    allowed : cases that meet the constraints of the study, shape (n,)
+    allowed : cases that count, such as the valid ones, shape (n,)
 
     Returns
     -------
     Dimension `target` (with `all` for several targets). `target_probability` (target, point) of an inner/outer design,
     else (target,) of all cases; `level_probability` (target, target_level). Both with _low and _high (95 %), NaN in a
-    grid or a table, whose rows are no sample. A case that does not roll, misses a constraint or has no value misses
-    each target.
+    grid or a table, whose rows are no sample. A case that does not roll, is not allowed or has no value misses each
+    target.
 
     Notes
     -----

@@ -16,6 +16,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 BEYOND = "beyond the S-N data"
+NO_FAILURE = "no failure"
 GUIDE_UNKNOWN = (
     "the roller stands for the pair, because the guide's hours are unknown: give `guide_overrollings_per_hour`"
 )
@@ -72,7 +73,7 @@ def life(value: float) -> str:
 def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
     """Write a life, with the remark that it lies beyond the S-N data; an unlimited life is no number of hours."""
     if value == math.inf:
-        return f"no failure ({BEYOND})"
+        return f"{NO_FAILURE} ({BEYOND})"
     return f"{rounded(value)} {unit}".strip() + (f" ({BEYOND})" if beyond else "")
 
 
@@ -179,7 +180,7 @@ def with_unit(text: str, units: str) -> str:
 def quantity(value: float, units: str) -> str:
     """Write a number with its unit, for running text; pure numbers stand alone."""
     unit = unit_text(units)
-    return f"{life(value)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
+    return f"{rounded(value)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
 
 
 def plain(name: str) -> str:

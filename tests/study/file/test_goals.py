@@ -237,7 +237,7 @@ def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set(
     view = view_of(ds)
     np.testing.assert_array_equal(view.valid, kept)
     told = dict(contents(view_of(ds))["summary"])
-    assert f"{kept.sum()} of the 360 meet `friction_power < 12`" in told["Valid designs"][0].text
+    assert f"{kept.sum()} of the 360 meet `friction_power < 12`" in told["Valid cases"][0].text
     lives = ds["roller_life_hours"].values[kept]
     best = told["Best"][0].values
     assert {best["worst"], best["best"]} <= set(lives) and best["valid"] <= kept.sum() and lives.max() < 1e3

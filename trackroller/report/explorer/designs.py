@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.designs import Designs, pair_beyond_data
+from trackroller.analysis.designs import Designs
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
@@ -120,7 +120,7 @@ def _conditions(designs: Designs, place: np.ndarray, number: np.ndarray, worst: 
     """List the conditions with the designs that are valid there, the worst life, and the design that does best."""
     view, rows = designs.view, []
     values, sign = view.column(designs.goal[0]), 1.0 if designs.rising else -1.0
-    beyond = pair_beyond_data(view) if designs.rising else np.zeros(len(place), dtype=bool)
+    beyond = view.beyond_data(designs.goal[0])
     for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
         cases = np.flatnonzero(there & designs.usable)
         ranked = cases[np.argsort(sign * values[cases], kind="stable")]

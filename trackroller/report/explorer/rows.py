@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
-from trackroller.analysis.designs import beyond_data, pair_beyond_data
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.errors import InputError
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
@@ -136,8 +135,7 @@ def _beyond(view: StudyView, columns: Sequence[Column]) -> list[Column]:
     """
     found = []
     for column in (c for c in columns if c.role == "output" and "life" in c.name):
-        body = next((b for b in BODIES if b in column.name), "")
-        marks = (beyond_data(view, body) if body else pair_beyond_data(view)) & ~np.isnan(column.values)
+        marks = view.beyond_data(column.name) & ~np.isnan(column.values)
         if marks.any():
             name = f"{column.name}:beyond"
             found.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))

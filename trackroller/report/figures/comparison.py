@@ -41,7 +41,7 @@ def drawers(view: StudyView) -> list[partial[style.Drawn]]:
 def _lines(shown: Frame, axes: Any, values: Values) -> dict[str, Any]:
     """Draw one line a model in every column of a row of panels.
 
-    Of many designs the line is the median, with the band of the reference.
+    Of many cases the line is the median, with the band of the reference.
     """
     handles, rolls = {}, rolling(shown.ds)
     for model in map(str, shown.ds["contact_model"].values):
@@ -54,7 +54,7 @@ def _lines(shown: Frame, axes: Any, values: Values) -> dict[str, Any]:
 
 
 def _told(shown: Frame, words: str) -> str:
-    many = f" Medians of the designs; band: 5 to 95 % with {shown.ds.attrs['reference']}." if shown.many else ""
+    many = f" Medians of the cases; band: 5 to 95 % with {shown.ds.attrs['reference']}." if shown.many else ""
     return f"{words}{many} {shown.held}".strip()
 
 
@@ -74,7 +74,7 @@ def error(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
     for row, q in zip(axes, wanted, strict=True):
         handles |= _error_row(shown, row, found, q.name)
     dotted = f"Dotted: {percent(GOOD)}; at the foot: {percent(LEAST)} or less."
-    many = " Lines: medians of the designs; bands: 5 to 95 %." if shown.many else ""
+    many = " Lines: medians of the cases; bands: 5 to 95 %." if shown.many else ""
     words = f"{dotted} The worse contact; rolling only.{many}"
     _close(figure, handles, "What the cheaper contact models miss", words)
     caption = f"Error of the cheaper contact models against {paired.attrs['reference']}."
@@ -115,7 +115,7 @@ def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
             axes[row, 0].set_ylabel(f"{q.label}\nerror [%]")
             handles |= _error_row(shown, axes[row, column : column + 1], found, q.name)
         label_axis(axes[-1, column], shown.x, LETTERS // len(frames))
-    words = f"Lines: medians of all designs that roll; bands: 5 to 95 %; dotted: {percent(GOOD)}."
+    words = f"Lines: medians of all cases that roll; bands: 5 to 95 %; dotted: {percent(GOOD)}."
     _close(figure, handles, "Where the cheaper contact models miss most", words)
     caption = (
         "Error of the cheaper contact models over spin (spin creepage by radius of curvature) and over the "

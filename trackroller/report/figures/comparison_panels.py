@@ -53,7 +53,7 @@ class Frame:
 
     @property
     def many(self) -> bool:
-        """Return whether a place on the axis stands for several designs."""
+        """Return whether a place on the axis stands for several cases."""
         counts = [np.bincount(self.x.index[self._inside(k)]) for k in range(len(self.titles))]
         return max(int(count.max(initial=0)) for count in counts) > 1
 
@@ -68,8 +68,8 @@ def axis_name(view: StudyView) -> str | None:
 def frame(ds: xr.Dataset, name: str | None = None, hold: bool = False, split: bool = True) -> Frame | None:
     """Return the frame of a figure over `name`; None if no factor varies.
 
-    With `hold`, the frame of a grid has only the designs whose other factors are at the level of the base, or else at
-    their middle level; if no such design rolls, it has all designs. With `split` it has a column for each drive.
+    With `hold`, the frame of a grid has only the cases whose other factors are at the level of the base, or else at
+    their middle level; if no such case rolls, it has all cases. With `split` it has a column for each drive.
     """
     view = designs(ds)
     x = name or axis_name(view)
@@ -84,7 +84,7 @@ def frame(ds: xr.Dataset, name: str | None = None, hold: bool = False, split: bo
 
 
 def rolling(ds: xr.Dataset) -> np.ndarray:
-    """Return the designs that roll by every model, (n,): only these are compared."""
+    """Return the cases that roll by every model, (n,): only these are compared."""
     return np.asarray((ds["regime"] == 0).all("contact_model").values)
 
 

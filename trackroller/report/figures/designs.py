@@ -10,8 +10,8 @@ import pandas as pd
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
-from trackroller.report.numbers import GUIDE_UNKNOWN, capital, count, listing, long_name
-from trackroller.report.words.designs import BEYOND_MEANS, alone, design_words
+from trackroller.report.numbers import capital, count, listing, long_name
+from trackroller.report.words.designs import alone, design_words
 
 MOST = 20  # designs shown
 
@@ -43,9 +43,8 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     caption = (
         f"Designs as in the table of the best, over {listing([long_name(n) for n in designs.conditions])}; "
         f"{len(table)} of {count(len(designs.size))} designs. Lives of the valid conditions. Hollow marks lie beyond "
-        f"the S-N data. {BEYOND_MEANS}"
+        "the S-N data."
     )
-    caption += f" {capital(GUIDE_UNKNOWN)}." if alone(designs) else ""
     what = "its worst condition, among designs that are valid in as many"
     what = "nine of ten sampled conditions" if designs.drawn else what
     said = f"{capital(design_words(designs, table.iloc[0]))} lasts longest in {what}."

@@ -62,9 +62,9 @@ def by_factor(view: StudyView) -> style.Drawn:
         looks = [{"color": c, "marker": m} for c, m in zip(style.palette(len(colours)), style.MARKERS, strict=False)]
         legend(figure, [(text, look) for (text, _), look in zip(colours, looks, strict=True)])
     each = f" for each level of {long_name(lead)}" if apart else ""
-    told = f"Lines: medians{each}; bands: the middle half of the valid designs."
+    told = f"Lines: medians{each}; bands: the middle half of the valid cases."
     style.head(figure, f"{capital(words)} against each factor", told)
-    caption = f"{capital(words)} of the {rows.sum():,} valid designs along each factor, all others as they vary. {told}"
+    caption = f"{capital(words)} of the {rows.sum():,} valid cases along each factor, all others as they vary. {told}"
     return figure, style.FigureInfo(f"bands-{column}", caption, _sentence(view, column, words, rows))
 
 

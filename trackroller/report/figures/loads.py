@@ -18,7 +18,7 @@ from trackroller.report.words.regimes import lift_off
 from trackroller.report.words.stresses import surface
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
-MEDIANS = "Lines: medians of the designs; bands: 5 to 95 %."
+MEDIANS = "Lines: medians of the cases; bands: 5 to 95 %."
 FORCES = (
     ("normal_force", "Normal force", r"$F_\mathrm{N}$"),
     ("lateral_force", "Lateral force", r"$F_\mathrm{T}$"),
@@ -72,13 +72,13 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
     style.head(figure, "Peak stress against fit", told)
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
-        f"guide; rolling designs. {told}"
+        f"guide; rolling cases. {told}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip(), _stress_sentence(view, bodies[0], fits))
 
 
 def _stress_sentence(view: StudyView, body: str, fits: tuple[str, ...]) -> str:
-    """State the effect of the fit on the peak and where the peak lies, from all valid designs."""
+    """State the effect of the fit on the peak and where the peak lies, from all valid cases."""
     said = [surface(view, body, view.valid)]
     if fits[0] in view.factors:
         column = f"peak_stress_{body}"
@@ -201,7 +201,7 @@ def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
 
 
 def _force_sentence(view: StudyView) -> str:
-    """State from which axial force designs lift off, or else the normal forces at the largest axial force."""
+    """State from which axial force cases lift off, or else the normal forces at the largest axial force."""
     lifted = lift_off(view)
     if lifted is not None:
         return lifted.text

@@ -21,10 +21,6 @@ from trackroller.study.design.entries import OPTION_FACTORS
 _WAYS = {"max": "up", "min": "down"}
 
 
-def _judged(front: xr.Dataset) -> str:
-    return f" {capital(front.attrs['judged'])}." if front.attrs.get("judged") else ""
-
-
 def _given(front: xr.Dataset) -> str:
     """Warn where conditions of use are among the factors: a designer cannot choose their best value."""
     names = front.attrs["factors"].split(", ")
@@ -58,11 +54,7 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
     kind = str(front.attrs.get("kind", "design"))
     style.head(figure, f"Pareto-optimal {kind}s", "Arrows on the axes: the wanted direction.")
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
-    limits = f" where {front.attrs['constraints']}" if front.attrs.get("constraints") else ""
-    caption = (
-        f"Pareto set for {wanted}; {front.sizes['row']:,} allowed {kind}s of {front.attrs['rows']:,}{limits}. Left "
-        f"out: {front.attrs['excluded']}.{_judged(front)}{_given(front)}"
-    )
+    caption = f"Pareto set for {wanted}.{_given(front)}"
     return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, view).text)
 
 
@@ -93,7 +85,15 @@ def _trade(
     rest, shown = ~best & finite, best & finite
     other = rest & ~np.any([mask for _, mask in groups], axis=0) if groups else rest
     if other.any():
-        axes.scatter(xs[other], ys[other], s=5, color="0.65", marker=".", rasterized=True, label="other designs")
+        axes.scatter(
+            xs[other],
+            ys[other],
+            s=5,
+            color="0.65",
+            marker=".",
+            rasterized=True,
+            label=f"other {front.attrs.get('kind', 'design')}s",
+        )
     for (text, mask), colour, marker in zip(groups, style.palette(len(groups)), style.MARKERS, strict=False):
         look = {"s": 6, "color": colour, "marker": marker, "alpha": 0.6, "linewidth": 0}
         axes.scatter(xs[rest & mask], ys[rest & mask], rasterized=True, label=text, **look)

@@ -10,7 +10,7 @@ from pathlib import Path
 import xarray as xr
 
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.ranking import robust_design
+from trackroller.analysis.ranking import main_lives, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
@@ -75,7 +75,7 @@ def _jobs(view: StudyView) -> Iterator[Draw]:
 def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:
     """Return the drawings of the analysis: those before and those after the figures of the cases."""
     if robust_design(sens):
-        return [partial(robust_points, sens, str(n)) for n in sens["output"].values if "life" in str(n)], []
+        return [partial(robust_points, sens, name) for name in main_lives(sens)], []
     parts: list[list[Draw]] = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]
     first, *others = parts
     return first, [partial(overview, sens), *(draw for part in others for draw in part)]

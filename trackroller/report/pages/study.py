@@ -12,7 +12,7 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.ranking import headline, robust_design
+from trackroller.analysis.ranking import headline, main_lives, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.files import write_text
 from trackroller.parameters.example import not_given_text
@@ -38,6 +38,7 @@ from trackroller.report.tables.targets import target_tables
 from trackroller.report.words.accuracy import friction_error
 from trackroller.report.words.comparison import report_section
 from trackroller.report.words.design_points import best_point
+from trackroller.report.words.designs import size_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.workbook import export
@@ -121,11 +122,11 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     if front is not None:
         said.append(pareto_sentence(front, view).text)
         decide.append(pareto_table(front, view, error))
-    decide += target_tables(sens) if sens is not None else []
+    decide += target_tables(sens, view) if sens is not None else []
     why: list[Table] = []
     if sens is not None and robust_design(sens):
         decide += robust_tables(sens, error)
-        said += [best_point(sens, str(n)).text for n in sens["output"].values if "life" in str(n)]
+        said += [best_point(sens, name).text for name in main_lives(sens)]
     elif sens is not None:
         why = [index_table(sens, error), *part_tables(sens)]
         index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
@@ -148,7 +149,7 @@ def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     parts = [
         date[:10],
         f"design {design}{f' with {count(samples)} samples' if samples else ''}",
-        f"{count(len(view.table))} cases",
+        size_words(view),
         f"contact model {_option_text(merged['contact_model'])}" if merged.get("contact_model") else "",
         f"accuracy {_option_text(merged['accuracy'])}" if merged.get("accuracy") else "",
     ]

@@ -15,16 +15,15 @@ from trackroller.roller.dataset import VALIDITY_BITS
 
 
 def regime_table(view: StudyView) -> Table | None:
-    """Count the cases in each regime and say where each regime occurs."""
+    """Count the cases in each regime; In short says where each regime occurs."""
     if "regime" not in view.table or not len(view.table):
         return None
     rows = []
     for code, name in enumerate(REGIME_LABELS):
         hit = view.regime == code
         if hit.any():
-            said = occurrence(view, hit, capital(name)) if code else None
-            rows.append([name, int(hit.sum()), share(int(hit.sum()), len(hit)), said.text if said else ""])
-    return Table("regimes", "Regimes", ["Regime", "Cases", "Share", "Where"], rows)
+            rows.append([name, int(hit.sum()), share(int(hit.sum()), len(hit))])
+    return Table("regimes", "Regimes", ["Regime", "Cases", "Share"], rows)
 
 
 def validity_table(view: StudyView) -> Table | None:
@@ -42,7 +41,7 @@ def validity_table(view: StudyView) -> Table | None:
     if not rows:
         return None
     heads = ["Flag", "Body", "Meaning", "Cases", "Share of the rolling", "Where"]
-    return Table("validity", "Validity flags of the rolling designs", heads, rows)
+    return Table("validity", "Validity flags of the rolling cases", heads, rows)
 
 
 def reason_table(ds: xr.Dataset) -> Table | None:

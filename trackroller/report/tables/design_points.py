@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.ranking import estimate
+from trackroller.analysis.ranking import estimate, main_lives
 from trackroller.damage.sn_curve import DECADES
 from trackroller.report.numbers import capital, chance, listing, rounded, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.report.tables.targets import MAX_POINTS
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
-from trackroller.report.words.design_points import point_words
+from trackroller.report.words.design_points import life_at, point_words
 from trackroller.report.words.sentence import Sentence
 
 OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
@@ -21,7 +21,7 @@ def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
     """List every analysed output of an inner/outer design by design point: lives first, the best point on top."""
     names = [str(n) for n in table["output"].values]
     asked = table.attrs.get("outputs_named")
-    lives = [n for n in names if "life" in n and np.isfinite(table["percentile_value"].sel(output=n)).any()]
+    lives = main_lives(table)
     others = [n for n in names if "life" not in n] if asked or not lives else []
     found = [part for n in lives for part in _life_tables(table, n)]
     return found + [_point_table(table, n, error) for n in others]
@@ -43,7 +43,8 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
         b10, low, high = map(float, estimate(part, "b10")[:, p])
         span = f"{rounded(low)} to {rounded(high)}" if np.isfinite(high) else "–"
         chances = [chance(*estimate(table.sel(regime=r), "probability")[:, p]) for r in seen]
-        rows.append([capital(point_words(table, p)), b10, span, float(part["b10_safe"][p]), *chances])
+        lives = [life_at(part, p, value) for value in (b10, float(part["b10_safe"][p]))]
+        rows.append([capital(point_words(table, p)), lives[0], span, lives[1], *chances])
     unit = unit_text(str(part["output_units"].item()))
     name = capital(str(part["output_name"].item()))
     own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DECADES * scatter))}."
@@ -62,11 +63,12 @@ def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points:
     """Return the mean and percentiles of an output at each design point, by the scatter of the study's factors only."""
     part = table.sel(output=output)
     points = np.arange(min(table.sizes["point"], MAX_POINTS)) if points is None else points
-    shares = (5.0, 50.0, 95.0)
+    shares, life = (5.0, 50.0, 95.0), "life" in output
     rows = []
     for p in map(int, points):
         spread = [float(part["percentile_value"].sel(percentile=q)[p]) for q in shares]
-        rows.append([capital(point_words(table, p)), float(part["mean"][p]), *spread])
+        told = [float(part["mean"][p]), *spread]
+        rows.append([capital(point_words(table, p)), *([life_at(part, p, v) for v in told] if life else told)])
     heads = ["Design point", "Mean", *(f"{q:.0f} %" for q in shares)]
     name, unit = capital(str(part["output_name"].item())), unit_text(str(part["output_units"].item()))
     note = "Rolling cases; scatter of the study's factors alone, without that of the material."

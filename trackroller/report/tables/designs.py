@@ -10,7 +10,7 @@ import pandas as pd
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import FIRST_TO_FAIL
-from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, percent, rounded
+from trackroller.report.numbers import Life, capital, count, percent, rounded
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEYOND_MEANS, alone, condition_words
 
@@ -29,7 +29,7 @@ def best_table(view: StudyView) -> Table | None:
     rows: list[list[Any]] = [[heading(n), *(factor_cell(n, row[n]) for row in best)] for n in designs.choices]
     rows += _lives(designs, best) if designs.rising else _stresses(designs, best)
     for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
-        if any(np.isfinite(row[name]) for row in best):
+        if any(row[name] < 1 for row in best):  # without a drive nothing slips
             rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
     if designs.conditions:
         for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")):
@@ -105,8 +105,6 @@ def _note(designs: Designs) -> str:
         )
     if not designs.conditions:
         told = f"Designs by {designs.goal[1]}."
-    if alone(designs):
-        told += f" {capital(GUIDE_UNKNOWN)}."
     told += f" {BEYOND_MEANS}" if designs.rising else ""
     told += " Margin to slip: share of the transmissible force that the drive leaves. Margin to lift-off: load of the "
     told += "lighter over that of the heavier contact. Bold: differs from the best."

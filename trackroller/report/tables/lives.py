@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.analysis.designs import DATA_END
-from trackroller.analysis.table import BODIES
+from trackroller.analysis.table import BODIES, DATA_END
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.parameters import FIRST_TO_FAIL

@@ -28,7 +28,9 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     best = best[np.argsort(front[first].values[best] * (-1 if way == "max" else 1), kind="stable")]
     spread = np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int)
     shown = best[np.union1d(spread, np.flatnonzero(np.isin(best, end_places(front))))]  # the sentence names the ends
-    names = [n for n, _ in goals] + [str(n) for n in front.data_vars if n not in (*dict(goals), "optimal", "beyond")]
+    names = [n for n, _ in goals] + [
+        str(n) for n in front.data_vars if n not in (*dict(goals), "optimal") and not str(n).startswith("beyond_")
+    ]
     arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
     columns = [_column(front, name, shown) for name in names]
     rows: list[list[Any]] = [list(row) for row in zip(front["row"].values[shown].tolist(), *columns, strict=True)]
@@ -39,7 +41,6 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
         rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
     told = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
     note = f"{capital('; '.join(told))}."
-    note += f" {capital(front.attrs['judged'])}." if front.attrs.get("judged") else ""
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
     if len(best) > len(rows):
         note += f" The table shows {len(rows)} of the {len(best)} {kind}s, spread evenly along the first goal, and the"
@@ -51,6 +52,6 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
 def _column(front: xr.Dataset, name: str, shown: np.ndarray) -> list[Any]:
     """Return the cells of a goal or factor; lives beyond the S-N data are marked."""
     values = front[name].values[shown].tolist()
-    if "life" in name and "beyond" in front:
-        return [Life(v, b) for v, b in zip(values, front["beyond"].values[shown], strict=True)]
+    if f"beyond_{name}" in front:
+        return [Life(v, b) for v, b in zip(values, front[f"beyond_{name}"].values[shown], strict=True)]
     return [factor_cell(name, v if isinstance(v, str) else float(v) + 0.0) for v in values]  # -0 is 0

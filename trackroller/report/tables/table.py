@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.parameters import PARAMETERS
-from trackroller.report.numbers import Life, capital, count, lasting, level_text, life, long_name, rounded, unit_text
+from trackroller.report.numbers import Life, capital, count, lasting, level_text, long_name, rounded, unit_text
 
 _SPOKEN = ("motor_force", "guide_curve_radius")
 
@@ -37,7 +37,7 @@ def cell(value: Any) -> str:
         return lasting(value, beyond=value.beyond)
     if isinstance(value, (int, np.integer)):
         return count(int(value))
-    return life(value) if np.isposinf(value) else rounded(float(value), 4)
+    return rounded(float(value), 4)
 
 
 def heading(name: str) -> str:

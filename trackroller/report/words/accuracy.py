@@ -32,14 +32,14 @@ def friction_error(view: StudyView) -> Sentence | None:
     middle, most = float(np.median(residual[rows])), float(residual[rows].max())
     text = (
         f"Known model error: friction energy and power differ from the work put in by {rounded(100 * middle)} % in the "
-        f"median and {rounded(100 * most)} % at most of {count(int(rows.sum()))} rolling designs. Solve with "
+        f"median and {rounded(100 * most)} % at most of {count(int(rows.sum()))} rolling cases. Solve with "
         "`contact_model: kalker` before a decision rests on them."
     )
     return Sentence("friction_error", text, {"median": middle, "largest": most, "of": int(rows.sum())}, rows)
 
 
 def full_sliding(view: StudyView) -> Sentence | None:
-    """State the known error of full sliding if designs were solved by it.
+    """State the known error of full sliding if cases were solved by it.
 
     Return None if the study holds the friction work: another sentence then states the error measured in this study.
     """
@@ -48,7 +48,7 @@ def full_sliding(view: StudyView) -> Sentence | None:
         return None
     cases = int(rows.sum())
     text = (
-        f"Known model error: full sliding solved {count(cases)} rolling designs. {SLIDING_ERROR} Solve with "
+        f"Known model error: full sliding solved {count(cases)} rolling cases. {SLIDING_ERROR} Solve with "
         "`contact_model: kalker` before a decision rests on them."
     )
     return Sentence("full_sliding", text, {"count": cases}, rows)
@@ -62,13 +62,15 @@ def accuracy(view: StudyView) -> list[Sentence]:
         rows = view.valid & np.isfinite(error)
         if rows.any():
             middle, most = float(np.median(error[rows])), float(error[rows].max())
-            text = f"The peak stress of the {body} is resolved to {percent(middle)} in the median of the valid designs"
+            text = f"The peak stress of the {body} is resolved to {percent(middle)} in the median of the valid cases"
             values = {"body": body, "median": middle, "largest": most}
             said.append(Sentence("resolved", f"{text} and to {percent(most)} at worst.", values, rows))
             break
     if "split_pole" in view.flags and (hit := view.flagged("split_pole") & view.rolling).any():
         cases = int(hit.sum())
-        text = f"In {count(cases)} rolling designs the stress of full sliding is singular: solve them with"
+        text = (
+            f"In {count(cases)} rolling case{'s' * (cases > 1)} the stress of full sliding is singular: solve them with"
+        )
         values = {"count": cases}
         said.append(Sentence("singular", f"{text} `contact_model: kalker`.", values, view.rolling))
     return said

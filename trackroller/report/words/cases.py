@@ -8,18 +8,18 @@ import numpy as np
 
 from trackroller.analysis.table import BODIES, MOST_LEVELS, OUTSIDE, StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.numbers import capital, count, listing, quantity, setting, shortened
+from trackroller.report.numbers import BEYOND, NO_FAILURE, capital, count, lasting, listing, setting, shortened
 from trackroller.report.words.flags import OF_BODY, of_body, words_of
 from trackroller.report.words.sentence import Sentence
 
 
-def valid_designs(view: StudyView) -> Sentence:
-    """Say how many designs roll, stay inside the model and meet the constraints, and why the others do not."""
+def valid_cases(view: StudyView) -> Sentence:
+    """Say how many cases roll, stay inside the model and meet the constraints, and why the others do not."""
     total, rolls, inside, valid = len(view.table), *(int(m.sum()) for m in (view.rolling, view.inside, view.valid))
     lost = {REGIME_LABELS[c]: int((view.regime == c).sum()) for c in (1, 2, 3)}
     lost["not converged"] = int(((view.regime == 0) & ~view.rolling).sum())
     why = ", ".join(f"{count(n)} {words}" for words, n in lost.items() if n)
-    text = f"{count(rolls)} of {count(total)} designs roll{f' (the others: {why})' if why else ''}"
+    text = f"{count(rolls)} of {count(total)} cases roll{f' (the others: {why})' if why else ''}"
     reasons = [(flag, body, int(hit.sum())) for flag, body, hit in _outside(view) if hit.any()]
     if not rolls:
         text += "."
@@ -35,7 +35,7 @@ def valid_designs(view: StudyView) -> Sentence:
         text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {told}.{_removed(view)}"
     if valid and valid < rolls:
         text += f" Statements on life and stress use the {count(valid)} unless they name another set"
-        text += "; sensitivity indices also count the designs outside the model." if inside < rolls else "."
+        text += "; sensitivity indices also count the cases outside the model." if inside < rolls else "."
     values = {"total": total, "rolling": rolls, "inside": inside, "valid": valid, "lost": lost, "reasons": reasons}
     return Sentence("valid", text, values, np.ones(total, dtype=bool))
 
@@ -74,16 +74,16 @@ def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> str:
 def extremes(view: StudyView, column: str, words: str, unit: str, shown: Sequence[str], rows: np.ndarray) -> Sentence:
     """Name the shortest and the longest life of the cases shown, and where they are."""
     values = view.column(column)
-    good = np.flatnonzero(rows & np.isfinite(values))
+    good, beyond = np.flatnonzero(rows & np.isfinite(values)), view.beyond_data(column)
     if not good.size:
-        return Sentence("none", "No valid design shown here has a finite life.", {}, rows)
+        return Sentence("none", "No valid case shown here has a finite life.", {}, rows)
     low, high = int(good[np.argmin(values[good])]), int(good[np.argmax(values[good])])
     at = [listing([setting(f, view.table[f].iloc[i]) for f in shown]) for i in (low, high)]
-    ends = [f"{quantity(values[i], unit)} at {place}" for i, place in zip((low, high), at, strict=True)]
-    text = f"The {words} of the valid designs shown lies between {' and '.join(ends)}."
+    ends = [f"{lasting(values[i], unit, beyond[i])} at {place}" for i, place in zip((low, high), at, strict=True)]
+    text = f"The {words} of the valid cases shown lies between {' and '.join(ends)}."
     if good.size == 1:
-        text = f"One valid design shown here has a finite {words}: {ends[0]}."
+        text = f"One valid case shown here has a finite {words}: {ends[0]}."
     endless = int((rows & np.isposinf(values)).sum())
-    text += f" {count(endless)} more designs have an unlimited life." if endless else ""
+    text += f" {count(endless)} more have {NO_FAILURE} ({BEYOND})." if endless else ""
     told = {"column": column, "low": low, "high": high, "unlimited": endless}
     return Sentence("extremes", text, told, rows)

@@ -18,9 +18,9 @@ from trackroller.report.words.levels import group_texts, span
 FRICTION = "friction_coefficient"
 DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # quantities that `pairs` computes from the inputs
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM", "kalker_table": "The table of the exact theory"}
-MOST = 0.9  # a level is good enough if this share of its designs is
-FLAT = 0.1  # a factor whose levels differ less in the share of good designs is not worth a sentence
-FEWEST = 3  # smallest number of designs, rolling in both models, for a sentence
+MOST = 0.9  # a level is good enough if this share of its cases is
+FLAT = 0.1  # a factor whose levels differ less in the share of good cases is not worth a sentence
+FEWEST = 3  # smallest number of cases, rolling in both models, for a sentence
 
 
 def sentences(paired: xr.Dataset) -> list[str]:
@@ -41,21 +41,21 @@ def overview(paired: xr.Dataset) -> str:
     left = f" {paired.attrs['left']} cases have no partner and are left out." if paired.attrs["left"] else ""
     if not number:
         return (
-            f"The contact models cannot be compared: no design was solved with {reference} and another model. "
+            f"The contact models cannot be compared: no case was solved with {reference} and another model. "
             "A grid, an inner/outer array or a table has such pairs; a sample that draws the model has none."
         )
     rolls = paired["regime"] == 0
     both = [(str(m), int((rolls.sel(contact_model=m) & rolls[-1]).sum())) for m in paired["contact_model"].values[:-1]]
     told = listing([f"{count} with {model}" for model, count in both])
     return (
-        f"Each cheaper model is compared with {_exact(reference)} in {_designs(number)} that differ in nothing but the "
+        f"Each cheaper model is compared with {_exact(reference)} in {_cases(number)} that differ in nothing but the "
         f"model. Errors count where both models roll: {told}. A model is good enough at a level of a factor if 9 of 10 "
-        f"designs there err by {percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
+        f"cases there err by {percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
     )
 
 
 def short(paired: xr.Dataset) -> list[str]:
-    """Say in one sentence a model which share of the designs is within 5 %."""
+    """Say in one sentence a model which share of the cases is within 5 %."""
     if not paired.sizes["design"]:
         return [overview(paired)]
     found, said = errors(paired), []
@@ -63,7 +63,7 @@ def short(paired: xr.Dataset) -> list[str]:
     for model in map(str, found["contact_model"].values):
         one = found.sel(contact_model=model)
         if _compared(one) < FEWEST:
-            rolls = f"{_compared(one) or 'no'} design{'s' * (_compared(one) != 1)} of {paired.sizes['design']}"
+            rolls = f"{_compared(one) or 'no'} case{'s' * (_compared(one) != 1)} of {paired.sizes['design']}"
             said.append(f"{NAMES[model]}: too little to compare, because both models roll in {rolls}.")
             continue
         parts = [
@@ -71,10 +71,10 @@ def short(paired: xr.Dataset) -> list[str]:
             for q in measured(one)
             if q.name in ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
         ]
-        told = f"{', '.join(parts)} of {_designs(_compared(one))}"
+        told = f"{', '.join(parts)} of {_cases(_compared(one))}"
         own = paired["regime"].sel(contact_model=model).values
         unlike = int(((own >= 0) & (exact >= 0) & (own != exact)).sum())
-        more = f" In {_designs(unlike)} the two are not in the same regime." if unlike else ""
+        more = f" In {_cases(unlike)} the two are not in the same regime." if unlike else ""
         said.append(f"{NAMES[model]} is within {percent(GOOD)} of {found.attrs['reference']}: {told}.{more}")
     return said
 
@@ -110,7 +110,7 @@ def report_section(view: StudyView) -> dict[str, Any]:
             if e.size:
                 cells = [percent(v) for v in (float(np.mean(e <= GOOD)), *_spread(e))]
                 rows.append([f"{model}: {q.words}", *cells, str(e.size)])
-    heads = ["Model, quantity", f"designs within {percent(GOOD)}", "median error", "90 % below", "largest", "designs"]
+    heads = ["Model, quantity", f"cases within {percent(GOOD)}", "median error", "90 % below", "largest", "cases"]
     table = Table("contact_models", "Errors of the cheaper models", heads, rows)
     said = [overview(paired), *details(paired)]
     return {"short": short(paired), "said": said, "tables": [table] if rows else []}
@@ -120,8 +120,8 @@ def _exact(reference: str) -> str:
     return {"kalker": "the exact theory (kalker)"}.get(reference, f"{reference}, the most exact model here,")
 
 
-def _designs(number: int) -> str:
-    return f"{number} design{'s' if number > 1 else ''}"
+def _cases(number: int) -> str:
+    return f"{number} case{'s' if number > 1 else ''}"
 
 
 def _rolling(error: xr.DataArray) -> np.ndarray:
@@ -144,7 +144,7 @@ def _sentence(one: xr.Dataset, along: Groups, who: str) -> str:
         told = f"{q.words} {where} ({_range(_rolling(one[q.name]))})".replace("  ", " ")
         clauses["good enough for" if where else "not good enough for"].append(told)
     said = "; ".join(f"{head} {', '.join(told)}" for head, told in clauses.items() if told)
-    return f"{who}: {said or 'nothing to compare, because no design rolls'}."
+    return f"{who}: {said or 'nothing to compare, because no case rolls'}."
 
 
 def _range(e: np.ndarray) -> str:
@@ -152,14 +152,14 @@ def _range(e: np.ndarray) -> str:
 
 
 def levels_kept(along: Groups, e: np.ndarray) -> str:
-    """Name the levels at which nine of ten designs keep the tolerance.
+    """Name the levels at which nine of ten cases keep the tolerance.
 
     The text is empty if there is no such level.
 
     Parameters
     ----------
-    along : groups of the designs
-    e : error of every design [1], shape (n,), NaN where none is
+    along : groups of the cases
+    e : error of every case [1], shape (n,), NaN where none is
     """
     shares = _shares_along(e, along)
     at = np.flatnonzero(~np.isnan(shares))
@@ -191,7 +191,7 @@ def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
 
 
 def telling_factors(one: xr.Dataset) -> list[str]:
-    """Name the factors over whose levels the share of good designs changes, most of all first."""
+    """Name the factors over whose levels the share of good cases changes, most of all first."""
     view, found = designs(one), []
     names = [n for n in view.factors if n not in (FRICTION, DRIVE)]
     names += ["lean"] if {FRICTION, "contact_angle"} <= set(view.factors) else []
@@ -206,12 +206,12 @@ def telling_factors(one: xr.Dataset) -> list[str]:
 
 
 def _shares_along(e: np.ndarray, along: Groups) -> np.ndarray:
-    """Return the share of good designs in every group, NaN for a group without rolling designs."""
+    """Return the share of good cases in every group, NaN for a group without rolling cases."""
     return np.array([_share(e[along.index == k]) for k in range(len(along))])
 
 
 def _share(e: np.ndarray) -> float:
-    """Return the share of good designs among the rolling ones, NaN without rolling designs."""
+    """Return the share of good cases among the rolling ones, NaN without rolling cases."""
     e = e[~np.isnan(e)]
     return float(np.mean(e <= GOOD)) if e.size else np.nan
 

@@ -6,12 +6,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.ranking import estimate
-from trackroller.report.numbers import (
-    chance,
-    quantity,
-    rounded,
-    setting,
-)
+from trackroller.report.numbers import Life, chance, lasting, rounded, setting
 from trackroller.report.words.sentence import Sentence
 
 
@@ -32,10 +27,11 @@ def best_point(table: xr.Dataset, output: str) -> Sentence:
     kind = "rolling cases that meet the constraints" if limited else "cases" if still else "rolling cases"
     text = (
         f"Best B10 of the {words}: at {point_words(table, best)} nine of ten {kind} "
-        f"reach {quantity(b10, unit)} (95 % interval {rounded(low)} to {rounded(high)})"
+        f"reach {lasting(b10, unit, life_at(part, best, b10).beyond)} (95 % interval {rounded(low)} to {rounded(high)})"
     )
     if not still and safe[best] > 0:
-        text += f"; with every other case counted as life 0 it is {quantity(float(safe[best]), unit)}"
+        whole = life_at(part, best, safe[best])
+        text += f"; with every other case counted as life 0 it is {lasting(whole, unit, whole.beyond)}"
     elif not still:
         missed = " or miss a constraint" if limited else ""
         text += (
@@ -48,6 +44,18 @@ def best_point(table: xr.Dataset, output: str) -> Sentence:
         text += f", at most in {chance(slip[worst] + lift[worst])} ({point_words(table, worst)})"
         values["worst"] = worst
     return Sentence("robust", f"{text}.", values)
+
+
+def life_at(part: xr.Dataset, point: int, value: float) -> Life:
+    """Return a life of a design point, marked if lives beyond the S-N data enter it.
+
+    With the material's own scatter B10 lies below the lives that it rests on: then the life that nine of ten conditions
+    reach decides.
+    """
+    least = float(part["percentile_value"].sel(percentile=10.0)[point]) if value > 0 else 0.0
+    value = float(value)
+    rests = max(value, least) if value == float(part["b10"][point]) else value
+    return Life(value, bool(rests >= float(part["beyond_data"][point])))
 
 
 def point_words(table: xr.Dataset, point: int) -> str:

@@ -13,6 +13,7 @@ from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.numbers import (
     BEYOND,
     GUIDE_UNKNOWN,
+    NO_FAILURE,
     capital,
     count,
     lasting,
@@ -46,9 +47,24 @@ def alone(designs: Designs) -> bool:
     return designs.rising and not designs.view.has("guide_life_hours")
 
 
-def subject(designs: Designs) -> str:
-    """Name what lasts: roller and guide, or the roller alone."""
-    return "the roller lasts" if alone(designs) else "roller and guide last"
+def _lasts(designs: Designs, life: str) -> str:
+    """Say how long roller and guide last, or the roller alone; `life` is written by `lasting`."""
+    if life.startswith(NO_FAILURE):
+        return life.replace(
+            NO_FAILURE, "the roller does not fail" if alone(designs) else "roller and guide do not fail"
+        )
+    return f"{'the roller lasts' if alone(designs) else 'roller and guide last'} {life}"
+
+
+def size_words(view: StudyView) -> str:
+    """State the size of a study: '162 cases: 9 designs in 18 conditions each'."""
+    cases, designs = len(view.table), Designs.of(view)
+    text = f"{count(cases)} case{'s' * (cases > 1)}"
+    if designs is None or not (designs.matched and designs.choices and designs.conditions):
+        return text
+    many, size = len(designs.size), int(designs.size[0])
+    each = f": {count(many)} design{'s' * (many > 1)} in {count(size)} conditions{' each' * (many > 1)}"
+    return text + each * (many * size == cases)
 
 
 def best_design(view: StudyView) -> list[Sentence]:
@@ -60,7 +76,9 @@ def best_design(view: StudyView) -> list[Sentence]:
     """
     designs = Designs.of(view)
     if designs is None:
-        return []
+        nothing = np.zeros(len(view.table), dtype=bool)
+        text = "Build none of these designs: not one case is valid."
+        return [] if view.valid.any() else [Sentence("none_valid", text, {}, nothing)]
     if not designs.comparable:
         return [_unanswered(designs)]
     table, rows = designs.table, designs.usable
@@ -109,7 +127,7 @@ def target_of_designs(view: StudyView, words: str) -> Sentence | None:
         text = f"{capital(words)}: met by {count(every)} of {many} designs"
     else:
         text = f"{capital(words)}: {count(every) if every else 'none'} of {many} designs "
-        text += f"{'meet' if every > 1 else 'meets'} it in all conditions"
+        text += f"{'meet' if every > 1 else 'meets'} {'them' if words.startswith('all ') else 'it'} in all conditions"
         if not met.any():
             text += ", and none in any"
         elif not every:
@@ -129,10 +147,12 @@ def _life(designs: Designs, row: pd.Series) -> str:
     unit = designs.goal[2]
     told, every = _lives(row, unit, "worst", "median", "best")
     if not designs.conditions:
-        return f"{subject(designs)} {lasting(row['worst'], unit, row['worst_beyond'])}{_alone(designs)}"
+        return f"{_lasts(designs, lasting(row['worst'], unit, row['worst_beyond']))}{_alone(designs)}"
     where = condition_words(designs, int(row["worst_case"]))
-    text = f"{subject(designs)} {told[0]} at its worst condition ({where}), {told[1]} in the median"
+    text = f"{_lasts(designs, told[0])} at its worst condition ({where}), {told[1]} in the median"
     text += f" and {told[2]} at best{every}"
+    if np.isinf(row["worst"]):
+        text = f"{_lasts(designs, told[0])} in any condition in which it is valid"
     if designs.drawn:
         low, high = rounded(row["b10_low"]), rounded(row["b10_high"])
         nine = f"nine of ten of its {count(int(row['cases']))} sampled conditions reach "
@@ -164,12 +184,10 @@ def _stress(designs: Designs, row: pd.Series) -> str:
 
 def _validity(designs: Designs, row: pd.Series) -> str:
     """Write in how many of its conditions a design is valid, and whether another design is valid in the others."""
-    valid, cases, rolls = (int(row[name]) for name in ("valid", "cases", "rolls"))
+    valid, cases = int(row["valid"]), int(row["cases"])
     if valid == cases:
         return f"it is valid in all {count(cases)} conditions"
-    text = f"it is valid in {count(valid)} of {count(cases)} conditions"
-    if rolls > valid:
-        text += f" and rolls in {count(rolls)}"
+    text = f"it is {_valid_in(row)}"
     if designs.matched and len(designs.size) > 1:
         more = designs.possible - valid
         none = cases - designs.possible
@@ -177,6 +195,12 @@ def _validity(designs: Designs, row: pd.Series) -> str:
         told += [f"other designs are valid in {count(more)} of the others"] if more else []
         text += f" ({'; '.join(told)})"
     return text
+
+
+def _valid_in(row: pd.Series) -> str:
+    valid, cases, rolls = (int(row[name]) for name in ("valid", "cases", "rolls"))
+    rolling = f", rolls in {count(rolls)}" if rolls > valid else ""
+    return f"valid in {count(valid)} of {count(cases)} conditions{rolling}"
 
 
 def _ties(designs: Designs, ties: int, rows: np.ndarray) -> Sentence:
@@ -216,7 +240,7 @@ def _margins(row: pd.Series, rows: np.ndarray, several: bool) -> Sentence | None
     """Say how far a design stays from slip and lift-off where it rolls."""
     told, slip, lift = [], float(row["slip_margin"]), float(row["lift_off_margin"])
     least = "at least " if several else ""
-    if np.isfinite(slip):
+    if slip < 1:  # without a drive nothing slips
         told.append(f"{least}{percent(slip)} of the transmissible force is left before it slips")
     if np.isfinite(lift):
         told.append(f"the lighter contact carries {least}{percent(lift)} of the load of the heavier one")
@@ -230,10 +254,11 @@ def _next(designs: Designs, row: pd.Series, rows: np.ndarray) -> Sentence:
     (worst, middle), every = _lives(row, unit, "worst", "median")
     if designs.drawn and designs.rising and row["b10"] > 0:
         text = f"nine of ten conditions reach {lasting(row['b10'], unit, row['b10_beyond'])}; {worst} at the worst"
+        text += f"; {_valid_in(row)}"
     elif not designs.conditions:
         text, every = lasting(row["worst"], unit, row["worst_beyond"]), ""
     else:
-        text = f"{worst} at its worst condition, {middle} in the median{every}; valid in {count(int(row['valid']))}"
+        text = f"{worst} at its worst condition, {middle} in the median{every}; {_valid_in(row)}"
     text += "; roller alone: give `guide_overrollings_per_hour`" if alone(designs) else ""
     told = {"design": {n: row[n] for n in designs.choices}, "worst": row["worst"], "median": row["median"]}
     return Sentence("next", f"Next: {design_words(designs, row)}: {text}.", told, rows)

@@ -19,7 +19,7 @@ from trackroller.analysis.effects import (
     strata,
 )
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import capital, count, level_text, listing, long_name, rounded, setting, times
+from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, rounded, setting, times
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence
 from trackroller.study.design.levels import NAMED
@@ -30,7 +30,7 @@ Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect wi
 def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.ndarray) -> Sentence | None:
     """Say how an output changes with a factor.
 
-    Between paired designs if there are any, else between classes.
+    Between paired cases if there are any, else between classes.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
 
     Returns
     -------
-    The sentence, or None where too few designs can be compared.
+    The sentence, or None where too few cases can be compared.
     """
     effect = paired_effect(view, column, factor, rows)
     paired = effect is not None
@@ -48,8 +48,12 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
     if effect is None or (not paired and not comparable(view, effect, column, rows)):
         return None
     parts = strata(view, column, effect, rows)
-    values = {"column": column, **vars(effect)}
+    beyond = int((rows & view.beyond_data(column)).sum())
+    values = {"column": column, **vars(effect), "beyond": beyond}
     said = (_of_pairs if paired else _of_classes)(view, effect, parts, words, values, rows)
+    if beyond:
+        own = f"{count(beyond)} of the {count(int(rows.sum()))} lives lie {BEYOND}"
+        said = replace(said, text=f"{said.text.removesuffix('.')}; {own}.")
     if paired:
         return said
     pairs = [pair for pair in view.study.get("rank_correlations", ()) if factor in pair[:2] and pair[2]]
@@ -83,9 +87,9 @@ def _verb(words: str, up: bool) -> str:
 def _of_pairs(
     view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
 ) -> Sentence:
-    """State the median change of designs that differ in one factor only."""
+    """State the median change of cases that differ in one factor only."""
     changed = [long_name(name) for name in also_changed(view, effect.factor, rows)]
-    pairs = f"{count(effect.size)} pairs of valid designs that differ in nothing else"
+    pairs = f"{count(effect.size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that follows from it" if changed else ""
     parts = [p for p in parts if p[2].size >= FEWEST_PAIRS]
     up = effect.ratio > 1
@@ -128,7 +132,9 @@ def _of_classes(
     view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
 ) -> Sentence:
     """State the change of the median between the lowest and the highest third of a factor, with its interval."""
-    low_class, high_class = at_most(effect.factor, effect.low), at_least(effect.factor, effect.high)
+    own = view.table[effect.factor].to_numpy(dtype=float)[rows]
+    low_class = at_most(effect.factor, effect.low, own.min())
+    high_class = at_least(effect.factor, effect.high, own.max())
     low, high = effect.interval
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in parts if p[2].interval[0] > 1 or p[2].interval[1] < 1]
@@ -136,13 +142,13 @@ def _of_classes(
     values["strata"] = [(c, v, e.ratio, e.interval) for c, v, e in parts]
     if len(ways) == 2:
         turns = [f"{_fold(e)} {_direction(words, e.ratio > 1)} with {setting(c, v)}" for c, v, e in opposed]
-        text = f"{capital(high_class)}, compared with {low_class}: the median {words} of the valid designs is "
+        text = f"{capital(high_class)}, compared with {low_class}: the median {words} of the valid cases is "
         return Sentence("classes_both", f"{text}{listing(turns)}.", values, rows)
     if low <= 1 <= high or against:
         kinds = f" common to every {listing(sorted({long_name(c) for c, _, _ in against}), 'and')}" if against else ""
         text = (
             f"No effect of {long_name(effect.factor)} on the {words}{kinds} is found: with {high_class} the median of "
-            f"the valid designs is {rounded(effect.ratio)} times that with {low_class} (95 % interval {rounded(low)} "
+            f"the valid cases is {rounded(effect.ratio)} times that with {low_class} (95 % interval {rounded(low)} "
             f"to {rounded(high)})."
         )
         return Sentence("classes_none", text, values, rows)
@@ -150,7 +156,7 @@ def _of_classes(
     bounds = (low, high) if up else (1 / high, 1 / low)
     text = (
         f"{capital(high_class)} instead of {low_class} {_verb(words, up)} the median {words} {_fold(effect)} (95 % "
-        f"interval {rounded(bounds[0])} to {rounded(bounds[1])}; the outer thirds of the valid designs, "
+        f"interval {rounded(bounds[0])} to {rounded(bounds[1])}; the outer thirds of the valid cases, "
         f"{count(effect.size)} or more in each)."
     )
     return Sentence("classes", text, values, rows)

@@ -11,8 +11,7 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital, count
 from trackroller.report.words import indices
 from trackroller.report.words.accuracy import accuracy, friction_error, friction_guess, full_sliding
-from trackroller.report.words.cases import valid_designs
-from trackroller.report.words.design_points import best_point
+from trackroller.report.words.cases import valid_cases
 from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.regimes import occurrence
@@ -34,13 +33,11 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     models : sentences of the comparison of contact models, if the study has one
     """
     sens = view.analysis
-    robust = sens is not None and robust_design(sens)
-    met = [_target(view)]
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
-        ("Valid designs", [valid_designs(view), stopped(view)]),
-        ("Best design point", [*decides(sens), *met]) if robust else ("What decides", decides(sens)),
-        ("Best", [*best_design(view), *([] if robust else met)]),
+        ("Best", [*best_design(view), _target(view)]),  # first, so that the first screen answers what to build
+        ("Valid cases", [valid_cases(view), stopped(view)]),
+        ("What decides", decides(sens)),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
         ("How sure", [friction_guess(view), friction_error(view), full_sliding(view), *accuracy(view), *compared]),
         ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),
@@ -68,13 +65,11 @@ def stopped(view: StudyView) -> Sentence | None:
 
 
 def decides(sens: xr.Dataset | None) -> list[Sentence | None]:
-    """Name the factors that decide life, or else the first output with an index; or name the best design point."""
-    if sens is None:
+    """Name the factors that decide life, or else the first output with an index; none for design points."""
+    if sens is None or robust_design(sens):
         return []
     names = [str(n) for n in sens["output"].values]
-    lives = sorted((n for n in names if "life" in n), key=lambda n: "roller" not in n)
-    if robust_design(sens):
-        return [best_point(sens, lives[0])] if lives else []
+    lives = sorted((n for n in names if "life" in n), key=lambda n: ("pair" not in n, "roller" not in n))
     ranked = [n for n in dict.fromkeys([*lives, *names]) if order(sens, n)]
     first = next((n for n in ranked if decisive(sens, n)), None)
     skipped = [indices.decides(sens, n) for n in ranked[:1] if n != first]  # why the life decides nothing

@@ -94,11 +94,11 @@ def decides(sens: xr.Dataset, output: str) -> Sentence:
         return Sentence("no_index", text, {"output": output})
     used = used_share(sens, output)
     if used < USABLE:
-        text = f"No factor is named as decisive for {what}: its indices use only {percent(used)} of the design."
+        text = f"No factor is named as decisive for {what}: its indices use only {percent(used)} of the cases."
         return Sentence("no_index", text, {"output": output, "used": used})
     text = _range_words(sens, output, ranks) if index in ("mu_star", "effect") else _share_words(ranks, what, index)
     if used < RELIABLE:
-        text = f"{text[:-1]}; the index uses {percent(used)} of the design."
+        text = f"{text[:-1]}; the index uses {percent(used)} of the cases."
     if tied := _correlated(sens):
         text = f"{text[:-1]}; {listing(tied)} are correlated, and the index of each holds influence of the others."
     values = {"output": output, "index": index, "ranks": [(r.factor, r.value, r.low, r.high) for r in ranks]}

@@ -67,7 +67,9 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
     if view is not None and kind == "design":
         outside = int((~view.valid[front["row"].values[best]]).sum())
         values["outside"] = outside
-        text += f" {count(outside)} of the set lie outside the model." if outside else ""
+        text += (
+            f" {count(outside)} of the set {'lies' if outside == 1 else 'lie'} outside the model." if outside else ""
+        )
     text += f" The set takes {front.attrs['judged']}." if front.attrs.get("judged") else ""
     if kind == "case":
         text += (
@@ -97,6 +99,6 @@ def goal_heading(front: xr.Dataset, name: str) -> str:
 def _goal_value(front: xr.Dataset, name: str, value: float) -> str:
     """Write a goal's value with its unit; a life beyond the S-N data says so."""
     unit = str(front[name].attrs.get("units", "1") or "1")
-    if "life" in name and "beyond" in front:
-        return lasting(value, unit, bool(front["beyond"].values[front[name].values == value].any()))
+    if f"beyond_{name}" in front:
+        return lasting(value, unit, bool(front[f"beyond_{name}"].values[front[name].values == value].any()))
     return quantity(value, unit)

@@ -31,29 +31,30 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
         return None
     values: dict[str, Any] = {"count": cases, "of": whole}
     if cases == whole:
-        return Sentence("everywhere", f"{what} occurs in all {count(whole)} designs.", values, among)
-    head = f"{what} occurs in {count(cases)} of {count(whole)} designs ({share(cases, whole)})"
+        return Sentence("everywhere", f"{what} occurs in all {count(whole)} cases.", values, among)
+    head = f"{what} occurs in {count(cases)} of {count(whole)} cases ({share(cases, whole)})"
     only = _confined(view, hit, among)
     inside = among.copy()
     for name, levels in only:
         inside &= meets(view, name, levels)
     met = int(inside.sum())
-    # few events may share levels by chance, unless all designs at these levels have the event
+    # few events may share levels by chance, unless all cases at these levels have the event
     common = met == cases and all(isinstance(levels, list) for _, levels in only)
     if only and (cases >= FEW or common):
-        places = listing([f"at {_levels_words(view, name, levels)}" for name, levels in only])
         there = "all" if met == cases else f"{count(cases)} of the {count(met)}"
-        text = f"{head}, only {places}: in {there} designs there."
+        text = f"{head}, only {_places(view, only)}: in {there} cases there."
         return Sentence("only", text, values | {"conditions": only, "inside": met}, among)
     if cases < FEW:
         named = [int(i) for i in np.flatnonzero(hit)]
-        text = f"{what} occurs in {cases} of {count(whole)} designs: case{'s' * (cases > 1)} "
-        return Sentence("cases", f"{text}{listing([str(i) for i in named])}.", values | {"cases": named}, among)
+        text = f"{what} occurs in {cases} of {count(whole)} cases ({listing([str(i) for i in named])})"
+        shared = [(n, own) for n, own in only if isinstance(own, list) and len(own) == 1] if cases > 1 else []
+        where = f", only {_places(view, shared)}" if shared else ""
+        return Sentence("cases", f"{text}{where}.", values | {"cases": named, "conditions": shared}, among)
     most = _most_frequent(view, hit, among)
     if most is None:
         return Sentence("share", f"{head}.", values, among)
     name, high, low = most
-    told = [f"{setting(name, level)} ({count(k)} of {count(n)} designs)" for level, k, n in (high, low)]
+    told = [f"{setting(name, level)} ({count(k)} of {count(n)} cases)" for level, k, n in (high, low)]
     text = f"{head}, most often at {told[0]} and least at {told[1]}."
     return Sentence("frequent", text, values | {"factor": name, "most": high, "least": low}, among)
 
@@ -92,14 +93,18 @@ def _outwards(value: float, way: int) -> float:
     return float(f"{turned:.3g}")
 
 
+def _places(view: StudyView, conditions: list[tuple[str, Any]]) -> str:
+    return listing([f"at {_levels_words(view, name, levels)}" for name, levels in conditions])
+
+
 def _levels_words(view: StudyView, name: str, levels: Any) -> str:
     if isinstance(levels, tuple):
         own = view.table[name]
         low, high = levels
         if low <= own.min():
-            return at_most(name, high)
+            return at_most(name, high, own.min())
         if high >= own.max():
-            return at_least(name, low)
+            return at_least(name, low, own.max())
         return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
     first = setting(name, levels[0])
     return listing([first, *(level_text(name, v) for v in levels[1:])], "or")
@@ -145,12 +150,11 @@ def _shared(view: StudyView, name: str, hit: np.ndarray, among: np.ndarray, ends
 
 
 def lift_off(view: StudyView) -> Sentence | None:
-    """Say how many designs lift off and from which axial force on."""
+    """Say how many cases lift off and from which axial force on."""
     lifted = view.regime == 2
     axial = np.abs(view.column("axial_force"))
     if not lifted.any() or np.isnan(axial[lifted]).any():
         return None
     cases, least = int(lifted.sum()), float(axial[lifted].min())
-    text = f"{count(cases)} of {count(len(lifted))} designs lift off; the smallest axial force among them is "
-    values = {"count": cases, "least": least}
-    return Sentence("lift_off", f"{text}{number(least)} N.", values, np.ones(len(lifted), dtype=bool))
+    text = f"The smallest axial force at which a case lifts off is {number(least)} N."
+    return Sentence("lift_off", text, {"count": cases, "least": least}, np.ones(len(lifted), dtype=bool))

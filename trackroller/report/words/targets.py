@@ -1,4 +1,4 @@
-"""Sentences and tables on the targets of a study: how probable it is that a design meets each of them."""
+"""Sentences on the targets of a study: how probable it is that a case meets each of them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from trackroller.report.words.sentence import Sentence
 
 SAME = 1e-6  # probabilities that differ by less are called the same
 INTERVAL = "95 % interval "
-WHOLE = {"grid": "designs of the grid", "table": "rows of the table"}  # designs without an interval
+WHOLE = {"grid": "cases of the grid", "table": "cases of the table"}  # designs of experiments without an interval
 
 
 def target_words(table: xr.Dataset, target: int) -> str:
