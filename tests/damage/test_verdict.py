@@ -8,7 +8,7 @@ import trackroller as tr
 from trackroller.cli.case import groups_of
 from trackroller.cli.main import app
 from trackroller.damage import LIMITS, asked
-from trackroller.damage.limit import Limit, Solved, Verdict
+from trackroller.damage.limit import Limit, SolvedRollers, Verdict
 from trackroller.damage.verdict import verdict
 from trackroller.errors import InputError
 
@@ -22,7 +22,7 @@ def limit(name, used, hours, **more):
 
 
 def judged(*limits):
-    solved = Solved({}, {}, {}, np.ones(1))
+    solved = SolvedRollers({}, {}, {}, np.ones(1))
     found = verdict(solved, limits, range(len(limits)), len(limits))
     return [found[name][0].tolist() for name in ("limiting_mechanism", "life_to_first_limit_hours")]
 

@@ -186,15 +186,16 @@ class SurfaceTractions:
         ndarray, shape (n, 2, ny, nx)
             x_C and y_C part of the share.
         """
-        # a heavy package, and only stresses under tractions on a grid need it
-        from scipy.ndimage import distance_transform_edt  # noqa: PLC0415
-
         bound = friction[:, None, None] * self.pressure
-        inside = self.pressure > 0
         safe = np.where(bound > 0, bound, 1.0)
         share = np.stack([self.shear_lateral / safe, self.shear_rolling / safe], axis=1)
-        if len(share):
-            # the ellipse fills the grid in the same way for every patch
-            _, (j, i) = distance_transform_edt(~inside[0], return_indices=True)
-            share = share[:, :, j, i]
-        return np.ascontiguousarray(share)
+        return np.ascontiguousarray(filled(share, self.pressure[0]) if len(share) else share)
+
+
+def filled(fields: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Return fields (n, 2, ny, nx) with the values of the nearest loaded element where `pressure` (ny, nx) is 0."""
+    # a heavy package, and only stresses under tractions on a grid need it
+    from scipy.ndimage import distance_transform_edt  # noqa: PLC0415
+
+    row, column = distance_transform_edt(pressure <= 0.0, return_distances=False, return_indices=True)
+    return fields[:, :, row, column]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.bearing import Loads
-from trackroller.damage.limit import Limit, Results, Solved, Verdict, optional, variables
+from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables
 from trackroller.damage.mapping import MappingField
 
 LAWS = ("dry", "lubricated", "cubic")
@@ -35,7 +35,7 @@ def catalogue_km(load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarra
     return np.asarray(basic_life * factors)
 
 
-def evaluate(solved: Solved) -> Results:
+def evaluate(solved: SolvedRollers) -> Results:
     """Return `catalogue_load_factor` [1] and `catalogue_life_km` [km], (n,)."""
     loads, c = Loads.of(solved), FIELD.columns(solved.cases["catalogue"])
     factor = loads.radial / c["radial"] + loads.axial / c["axial"] + loads.moment / c["moment"]
@@ -45,7 +45,7 @@ def evaluate(solved: Solved) -> Results:
     }
 
 
-def verdict(solved: Solved, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Results) -> Verdict:
     """Return load factor and hours of travel, (n, body); the guide has neither."""
     hours = results["catalogue_life_km"] * 1e3 / (solved.cases["velocity"] * 60.0)
     factor = results["catalogue_load_factor"]

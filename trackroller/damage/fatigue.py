@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.limit import SN_SCATTER, Limit, Results, Solved, Verdict, variables, worst
+from trackroller.damage.limit import SN_SCATTER, Limit, Results, SolvedRollers, Verdict, variables, worst
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import SNCurve
 
@@ -21,13 +21,13 @@ STRESS_OF = {
 AMPLITUDE = "peak von Mises stress taken as amplitude, one cycle an overrolling, 50 % failure probability"
 
 
-def curve_of(solved: Solved) -> SNCurve:
+def curve_of(solved: SolvedRollers) -> SNCurve:
     """Return the S-N curves of roller and guide at a failure probability of 50 %, values (n, 1, 2)."""
     materials = {name: value[:, None] for name, value in solved.materials.items()}
     return SNCurve.of(materials, solved.options["life_rule"])
 
 
-def amplitude(solved: Solved) -> np.ndarray:
+def amplitude(solved: SolvedRollers) -> np.ndarray:
     """Return the stress that enters the S-N curve by the option `life_criterion`, (n, contact, body) [MPa]."""
     criterion, values = solved.options["life_criterion"], solved.values
     if criterion not in STRESS_OF:
@@ -39,14 +39,14 @@ def amplitude(solved: Solved) -> np.ndarray:
     return np.asarray(values[name] * limit)
 
 
-def life(solved: Solved) -> Results:
+def life(solved: SolvedRollers) -> Results:
     """Return overrollings and hours to failure at 50 % failure probability, and the relative error of the life.
 
     The relative error of the life is the exponent of the S-N curve times the relative error of the stress.
 
     Parameters
     ----------
-    solved : Solved
+    solved : SolvedRollers
         With `peak_stress` [MPa] and `error_estimate` [1], (n, contact, body), and by the option `life_criterion` with
         the results of `multiaxial`.
 
@@ -79,7 +79,7 @@ def life(solved: Solved) -> Results:
     } | ({} if published else {"fatigue_stress": stress})
 
 
-def verdict(solved: Solved, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Results) -> Verdict:
     """Return the utilisation of the fatigue limit and the life at the failure probability, (n, body)."""
     p = solved.options["failure_probability"]
     curve, stress = curve_of(solved).changed(failure_probability=p), amplitude(solved)

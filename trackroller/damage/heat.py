@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import TRACTIONS, Limit, Results, Solved, Verdict, optional, variables, worst
+from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
 from trackroller.parameters import Parameter
 
 STEP, REACH = 0.01, 1e4  # step of the logarithm of the diffusion length, and its ends over the sides of grid and cell
@@ -122,7 +122,7 @@ def hysteresis_moments(force: np.ndarray, length: np.ndarray, loss: np.ndarray, 
     return np.asarray(3.0 / 16.0 * (force * length)[:, :, None] * (loss * share)[:, None, :])
 
 
-def evaluate(solved: Solved) -> Results:
+def evaluate(solved: SolvedRollers) -> Results:
     """Return temperature rises [K], (n, contact, body), partition, hysteresis and pressure-velocity, (n, contact)."""
     m, v, c, t = solved.materials, solved.values, solved.cases, solved.tractions()
     speed = c["velocity"] * 1e3 / 60.0

@@ -2,7 +2,7 @@
 
 A limit ends the life of a roller or of its guide. Its file holds the formulas and one object `LIMIT`. Output groups,
 result variables, fields of a case, values of a material, the JSON schema and the documentation follow from it.
-A life in hours is overrollings over `Solved.overrollings_per_hour`. A case gives its own value of a material as
+A life in hours is overrollings over `SolvedRollers.overrollings_per_hour`. A case gives its own value of a material as
 `roller_material={"like": "PA6", "permissible_pressure": 60.0}`.
 """
 
@@ -50,7 +50,7 @@ def _no_tractions() -> Tractions:
 
 
 @dataclass(frozen=True)
-class Solved:
+class SolvedRollers:
     """Solved rollers as a limit receives them; every array has the case as first axis.
 
     Parameters
@@ -111,9 +111,10 @@ class Limit:
     group : str
         Group of `outputs` that brings the results.
     evaluate : callable
-        Function of a `Solved` that returns the results by name.
+        Function of a `SolvedRollers` that returns the results by name.
     verdict : callable
-        Function of a `Solved` and of the results that returns a `Verdict`; None if the verdict leaves the limit out.
+        Function of `SolvedRollers` and of the results that returns a `Verdict`; None if the verdict leaves the limit
+        out.
     meaning : str
         Meaning of the group for the documentation. A group of the solver has its meaning there.
     needs : tuple of str
@@ -146,8 +147,8 @@ class Limit:
     name: str
     title: str
     group: str
-    evaluate: Callable[[Solved], Results]
-    verdict: Callable[[Solved, Results], Verdict] | None = None
+    evaluate: Callable[[SolvedRollers], Results]
+    verdict: Callable[[SolvedRollers, Results], Verdict] | None = None
     meaning: str = ""
     needs: tuple[str, ...] = ()
     results: tuple[Variable, ...] = ()
@@ -206,14 +207,14 @@ def _how_to_give(name: str) -> str:
     return f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} [{parameter.unit}]."
 
 
-def lacks(limit: Limit, solved: Solved, names: Mapping[str, np.ndarray]) -> list[str]:
+def lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) -> list[str]:
     """Return one sentence for each value that a limit requires and that a case or a material does not have.
 
     Parameters
     ----------
     limit : Limit
         The limit.
-    solved : Solved
+    solved : SolvedRollers
         The cases.
     names : mapping of str to numpy.ndarray
         Names of the materials by body, (n,) each.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.histories import Tractions, planes
-from trackroller.damage.limit import TRACTIONS, Limit, Results, Solved, optional, variables
+from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, optional, variables
 
 
 def findley_constants(bending: np.ndarray, torsion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -55,7 +55,7 @@ def stresses(t: Tractions, case: int, contact: int, constants: np.ndarray, poiss
     return out
 
 
-def evaluate(solved: Solved) -> Results:
+def evaluate(solved: SolvedRollers) -> Results:
     """Return stresses [MPa] and utilisations [1] of the criteria, (n, contact, body)."""
     m, t = solved.materials, solved.tractions()
     limits = m["fatigue_limit"], m["fatigue_limit_torsion"]

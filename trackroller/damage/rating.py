@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.damage.limit import Limit, Results, Solved, Verdict, optional, variables, worst
+from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables, worst
 
 RESISTANCE = 1.1  # partial factor of the material, on the force
 CONTACTS = 6.4e6  # contacts that the fatigue limit stands for
@@ -49,7 +49,7 @@ def contacts_to_limit(
         return np.asarray(CONTACTS * (limit / np.asarray(pressure, dtype=float)) ** EXPONENT)
 
 
-def evaluate(solved: Solved) -> Results:
+def evaluate(solved: SolvedRollers) -> Results:
     """Return `rating_utilisation_static` [1] and `rating_life_hours` [h], (n, contact, body)."""
     m = {name: solved.materials[name][:, None, :] for name in ("hardness", "yield_strength", "surface_hardened")}
     strength = m["hardness"], m["yield_strength"], m["surface_hardened"] == 1
@@ -60,7 +60,7 @@ def evaluate(solved: Solved) -> Results:
     }
 
 
-def verdict(solved: Solved, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Results) -> Verdict:
     """Return utilisation and hours of the worse contact, (n, body)."""
     return Verdict(worst(results["rating_utilisation_static"]), -worst(-results["rating_life_hours"]))
 

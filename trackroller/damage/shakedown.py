@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.histories import Tractions, planes
-from trackroller.damage.limit import TRACTIONS, Limit, Results, Solved, Verdict, variables, worst
+from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, variables, worst
 
 
 def relieved(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -69,7 +69,7 @@ def shears(tractions: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
     return tractions.spread(out)
 
 
-def evaluate(solved: Solved) -> Results:
+def evaluate(solved: SolvedRollers) -> Results:
     """Return utilisations, (n, contact, body), and surface fatigue indices, (n, contact) [1].
 
     The indices are mu_used - k/p_max of the weaker body, with mu_used as |F_T, F_A|/F_N of the whole patch and as the

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from trackroller.damage.limit import Limit, Results, Solved, Verdict, worst
+from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, worst
 
 
-def verdict(solved: Solved, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Results) -> Verdict:
     """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time."""
     return Verdict(worst(solved.values["peak_stress"]) / solved.materials["tensile_strength"], None)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from trackroller.damage.limit import BODIES, Limit, Results, Solved, variables
+from trackroller.damage.limit import BODIES, Limit, Results, SolvedRollers, variables
 
 GROUP = "limits"
 MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"
@@ -19,12 +19,12 @@ RESULTS = variables(
 )
 
 
-def verdict(solved: Solved, limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
+def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
     """Return utilisation and hours of each limit, the hours to the first limit, and its number.
 
     Parameters
     ----------
-    solved : Solved
+    solved : SolvedRollers
         Cases with the results that the limits need, and with the results of the limits themselves.
     limits : sequence of Limit
         The limits that count.

@@ -227,6 +227,4 @@ def tractions(
     ellipses, strips = _problem(ellipse, creep, friction, elastic, travel_speed, u)
     shear, moved = (np.zeros((len(strips.x), 2, points, points)) for _ in range(2))
     share_rows(partial(_all_fields, ellipses, strips, law, shear, moved), len(strips.x), 4)
-    root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - u[:, None] ** 2, 0.0))
-    pressure = np.broadcast_to(ellipse.max_pressure, len(strips.x))[:, None, None] * root
-    return surface(strips.x, ellipses.b[:, None] * u, pressure, shear, moved)
+    return surface(*ellipse.grid(points), shear, moved)

@@ -241,14 +241,14 @@ def _slip_of_law(solution: PatchSolution, height: np.ndarray) -> np.ndarray:
 
 def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTractions:
     """Return the fields of a solution at the element centres, with Hertz's pressure, which is 0 outside the ellipse."""
-    n, _, ny, nx = solution.traction.shape
+    n, _, _, elements = solution.traction.shape
     ellipse, friction, _ = _prepared(ellipse, friction, Elastic(np.ones(n), np.ones(n), np.ones(n)))
     if not ellipse.is_hertzian:
         return _grid_tractions(ellipse, friction, solution)
-    u, v = ((2.0 * np.arange(m) + 1.0) / m - 1.0 for m in (nx, ny))
-    root = np.sqrt(np.maximum(1.0 - u[None, :] ** 2 - v[:, None] ** 2, 0.0))
+    x, y, pressure = ellipse.grid(elements)
+    _, _, (root,) = Ellipse(*np.ones((3, 1))).grid(elements)
     inside = root > 0
-    height, _ = unit_cells(ny, nx)
+    height, _ = unit_cells(elements, elements)
     moved = _slip_of_law(solution, height)
     # The solution holds element means. The share of the traction bound at the centre is taken as that of the mean.
     share = np.where(inside, root / np.where(height > 0, height, 1.0), 0.0)
@@ -256,16 +256,7 @@ def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTrac
     shear = solution.traction * share * scale[:, None]
     slip = np.where(inside, moved, 0.0)
     stick = inside & solution.stick
-    return SurfaceTractions(
-        ellipse.semi_axis_lateral[:, None] * u,
-        ellipse.semi_axis_rolling[:, None] * v,
-        ellipse.max_pressure[:, None, None] * root,
-        shear[:, 0],
-        shear[:, 1],
-        slip[:, 0],
-        slip[:, 1],
-        stick,
-    )
+    return SurfaceTractions(x, y, pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], stick)
 
 
 def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> SurfaceTractions:

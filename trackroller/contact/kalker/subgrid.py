@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trackroller.contact.common import filled
 from trackroller.contact.kalker.cells import cells
 from trackroller.numerics.compiled import compiled
 
@@ -34,14 +35,8 @@ def _spline(n: int, parts: int) -> np.ndarray:
 def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Return fields z (n, 2, m, m) with the values of the nearest loaded element outside the patches."""
     if height.ndim == 2:
-        from scipy.ndimage import distance_transform_edt  # heavy
-
-        row, column = distance_transform_edt(height <= 0.0, return_distances=False, return_indices=True)
-        return z[:, :, row, column]
-    out = np.empty_like(z)
-    for i in range(len(z)):
-        out[i : i + 1] = _filled(z[i : i + 1], height[i])
-    return out
+        return filled(z, height)
+    return np.array([filled(z[i : i + 1], own)[0] for i, own in enumerate(height)]).reshape(z.shape)
 
 
 @compiled

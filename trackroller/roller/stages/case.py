@@ -10,7 +10,7 @@ import numpy as np
 from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, asked, computed, judged, of_patches, verdict
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import TRACTIONS, Solved, lacks
+from trackroller.damage.limit import TRACTIONS, SolvedRollers, lacks
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VALIDITY_BITS
@@ -37,10 +37,10 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
     validity(table, block)
 
 
-def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> Solved:
+def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> SolvedRollers:
     """Return cases, materials and results as the limits receive them."""
     names = [field.name for field in dataclasses.fields(table.roller) if field.name not in ("name", "guesses")]
-    return Solved(
+    return SolvedRollers(
         {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
         {name: np.stack([getattr(body, name) for body in (table.roller, table.guide)], axis=1) for name in names},
         values,
