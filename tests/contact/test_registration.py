@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import importlib.util
+import linecache
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.contact.models import CLASSES, register, unregister
+from trackroller.contact.models import CLASSES, _digest, register, unregister
 from trackroller.parameters import CONTACT_MODELS, EXACTNESS, OPTIONS, options_text
+from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import error_attributes
+from trackroller.roller.case import to_table
 from trackroller.roller.options import Options
 from trackroller.study.cost import rate
 from trackroller.study.file.load import parse_study
+from trackroller.study.store.identity import fingerprints
 
 RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 
@@ -80,3 +86,36 @@ def test_names_are_unique_and_built_in_models_stay():
         register(CLASSES["fastsim"])
     with pytest.raises(tr.InputError, match="registered from outside"):
         unregister("fastsim")
+
+
+def fingerprint_of_film(place: Path, steepness: float) -> bytes:
+    """Return the fingerprint of a case by a model whose module lies in `place`."""
+    code = re.search(r"## Add a contact model.*?```python\n(.*?)```", RECIPE.read_text(encoding="utf-8"), re.DOTALL)[1]
+    (place / "film_model.py").write_text(code.replace("1e-2", str(steepness)), encoding="utf-8")
+    linecache.clearcache()
+    spec = importlib.util.spec_from_file_location("film_model", place / "film_model.py")
+    sys.modules["film_model"] = module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+        return fingerprints(to_table(tr.Case(), tr.load_database()), {"contact_model": "film"})[0]
+    finally:
+        unregister("film")
+        del sys.modules["film_model"]
+
+
+def test_a_changed_model_has_other_fingerprints(tmp_path):
+    places = [tmp_path / name for name in "abc"]
+    for place in places:
+        place.mkdir()
+    first, same, changed = map(fingerprint_of_film, places, (0.01, 0.01, 0.02))
+    assert first == same != changed
+
+
+def test_a_model_without_a_file_is_identified_by_its_code(film):
+    class Other(CLASSES[film]):
+        def law(self, patch, slip, friction, rows, fine):
+            return super().law(patch, slip, 2.0 * friction, rows, fine)
+
+    assert _digest(CLASSES[film]) == _digest(CLASSES[film]) == DECLARED[film].source
+    Other.__module__ = "builtins"
+    assert _digest(Other) != DECLARED[film].source

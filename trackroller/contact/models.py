@@ -5,7 +5,11 @@ A model gives the contact law of the equilibrium, and the tractions of given pat
 
 from __future__ import annotations
 
+import hashlib
+import inspect
+import sys
 from collections.abc import Collection
+from dataclasses import replace
 
 import numpy as np
 
@@ -46,12 +50,23 @@ def register(model: type[ContactModel]) -> type[ContactModel]:
 
     Notes
     -----
-    The model exists in this process. The identity of stored cases holds its name, but not its source: give a changed
-    model a new name.
+    The model exists in this process. The identity of stored cases holds its name and the source of its module, so
+    that a changed model solves its cases anew. Other modules that it imports do not count.
     """
-    declare(model.declaration)
+    declare(replace(model.declaration, source=_digest(model)))
     CLASSES[model.declaration.name] = model
     return model
+
+
+def _digest(model: type[ContactModel]) -> str:
+    """Return a digest of the source of a model's module, or of the code of its methods if there is no source."""
+    try:
+        source = inspect.getsource(sys.modules[model.__module__])
+    except (OSError, TypeError):
+        codes = [part.__code__ for part in vars(model).values() if inspect.isfunction(part)]
+        constants = [[value for value in code.co_consts if not inspect.iscode(value)] for code in codes]
+        source = repr([(code.co_code, code.co_names, own) for code, own in zip(codes, constants, strict=True)])
+    return hashlib.sha256(source.encode()).hexdigest()
 
 
 def unregister(name: str) -> None:

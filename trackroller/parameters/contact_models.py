@@ -69,6 +69,8 @@ class ModelDeclaration:
         Model that stands in for this one at accuracy preview, and for forces within a tolerance that it keeps.
     cost : Cost
         Measured cost; orders of magnitude.
+    source : str
+        Digest of the source of a model from outside, which `register` adds for the identity of its cases.
     """
 
     name: str
@@ -86,6 +88,7 @@ class ModelDeclaration:
     rough_peaks: bool = False
     cheaper: str = ""
     cost: Cost = Cost()
+    source: str = ""
 
     def check(self, option: str, value: str) -> None:
         """Refuse a word of `normal` or `slip_terms` that the model does not serve."""

@@ -3,6 +3,7 @@
 A fingerprint is the SHA-256 (first 128 bits, as hexadecimal digits) of
 
 - the digest of the solver's source and data files (`trackroller.study.store.sources.solver_digest`),
+- the source of a contact model from outside,
 - the options of `solve` where they matter to the case (`trackroller.parameters.OPTIONS` says where),
 - the numeric parameters with the friction coefficient resolved, the friction law and the drawn profiles,
 - the values, not the names, of both materials.
@@ -27,6 +28,7 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.materials import MaterialDatabase
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
+from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.case import CaseTable, MaterialArrays, to_table
 from trackroller.roller.options import options_of_cases
 from trackroller.study.store.sources import solver_digest
@@ -46,7 +48,8 @@ def _prefix(options: Mapping[str, Any]) -> bytes:
         for option in OPTIONS.values()
         if option.identity and option.applies(given["contact_model"])
     }
-    return json.dumps(told | {"code": solver_digest()}, sort_keys=True).encode()
+    own = DECLARED[given["contact_model"]].source
+    return json.dumps(told | {"code": solver_digest()} | ({"model": own} if own else {}), sort_keys=True).encode()
 
 
 def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarray | None = None) -> np.ndarray:
