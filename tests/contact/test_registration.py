@@ -25,9 +25,15 @@ from trackroller.study.store.identity import fingerprints
 RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 
 
+def recipe(steepness: float = 0.01) -> str:
+    """Return the code of the example, with this creepage in place of 1e-2."""
+    code = re.search(r"## Add a contact model.*?```python\n(.*?)```", RECIPE.read_text(encoding="utf-8"), re.DOTALL)[1]
+    return code.replace("1e-2", str(steepness))
+
+
 @pytest.fixture
 def film():
-    code = re.search(r"## Add a contact model.*?```python\n(.*?)```", RECIPE.read_text(encoding="utf-8"), re.DOTALL)[1]
+    code = recipe()
     assert len(code.splitlines()) < 40
     exec(compile(code, str(RECIPE), "exec"), {})
     yield "film"
@@ -52,6 +58,22 @@ def test_the_example_of_the_recipe_solves(film):
     bare = tr.solve(tr.Case(friction_coefficient=0.0), ("contact", "peak_stress"), contact_model="sliding")
     ratios = [found.peak_stress / found.max_pressure for found in (ds.isel(case=0), bare)]
     np.testing.assert_allclose(*ratios, rtol=1e-3)
+
+
+@pytest.mark.parametrize("steepness", [1e-3, 1e-5, 1e-8])
+def test_a_law_that_is_steep_at_zero_creepage_rolls_freely(steepness):
+    exec(compile(recipe(steepness), str(RECIPE), "exec"), {})
+    try:
+        cases = [tr.Case(motor_force=force, axial_force=axial) for force in (0.0, -20.0) for axial in (0.0, 30.0)]
+        ds = tr.solve(cases, "forces", contact_model="film")
+    finally:
+        unregister("film")
+    assert ds.converged.all()
+    np.testing.assert_allclose(ds.transmitted_force, [0.0, 0.0, 20.0, 20.0], atol=1e-6)
+    capacity = 0.3 * ds.normal_force.sum("contact").values
+    np.testing.assert_allclose(
+        ds.slip, -steepness * np.arctanh([0.0, 0.0, 20.0, 20.0] / capacity), atol=1e-9 * steepness
+    )
 
 
 def test_everything_else_follows_from_the_declaration(film):
@@ -90,8 +112,7 @@ def test_names_are_unique_and_built_in_models_stay():
 
 def fingerprint_of_film(place: Path, steepness: float) -> bytes:
     """Return the fingerprint of a case by a model whose module lies in `place`."""
-    code = re.search(r"## Add a contact model.*?```python\n(.*?)```", RECIPE.read_text(encoding="utf-8"), re.DOTALL)[1]
-    (place / "film_model.py").write_text(code.replace("1e-2", str(steepness)), encoding="utf-8")
+    (place / "film_model.py").write_text(recipe(steepness), encoding="utf-8")
     linecache.clearcache()
     spec = importlib.util.spec_from_file_location("film_model", place / "film_model.py")
     sys.modules["film_model"] = module = importlib.util.module_from_spec(spec)

@@ -102,6 +102,7 @@ def bracketed(
         with np.errstate(divide="ignore", invalid="ignore"):
             new = (lo * th - hi * tl) / (th - tl)
         new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
+        new = np.where(t == 0.0, w[active], new)  # a root, beside which a steep law would lead Newton's method away
         moved = np.abs(new - w[active])
         w[active] = new
         # Newton's method refines rollers whose torque is balanced already
