@@ -159,7 +159,7 @@ def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
     found = contents(view_of(sampled_study(60)))
     values, spec = next(row[2:4] for row in found["factors"].rows if row[0].startswith("Friction coefficient"))
     assert spec == "uniform 0.02, 0.4" and "…" in values
-    assert "design lhs" in found["facts"] and "60 cases" in found["facts"]
+    assert "design of experiments lhs" in found["facts"] and "60 cases" in found["facts"]
 
 
 OVERFLOW = """(() => {

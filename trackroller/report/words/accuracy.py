@@ -68,9 +68,8 @@ def accuracy(view: StudyView) -> list[Sentence]:
             break
     if "split_pole" in view.flags and (hit := view.flagged("split_pole") & view.rolling).any():
         cases = int(hit.sum())
-        text = (
-            f"In {count(cases)} rolling case{'s' * (cases > 1)} the stress of full sliding is singular: solve them with"
-        )
+        many = ("s", "them") if cases > 1 else ("", "it")
+        text = f"In {count(cases)} rolling case{many[0]} the stress of full sliding is singular: solve {many[1]} with"
         values = {"count": cases}
         said.append(Sentence("singular", f"{text} `contact_model: kalker`.", values, view.rolling))
     return said
