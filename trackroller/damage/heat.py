@@ -162,7 +162,7 @@ LIMIT = Limit(
     group="heat",
     meaning="flash and bulk temperature of roller and guide, hysteresis, pressure times velocity",
     evaluate=evaluate,
-    verdict=lambda solved, found: Verdict(worst(found["heat_utilisation"]), None),
+    verdict=lambda solved, results: Verdict(worst(results["heat_utilisation"]), None),
     needs=(TRACTIONS,),
     results=variables(
         "heat",

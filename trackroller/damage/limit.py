@@ -190,13 +190,13 @@ def declarations(limits: Iterable[Limit], groups: Mapping[str, str]) -> str:
         Meanings of further groups of outputs.
     """
     limits = tuple(limits)
-    told = {
+    declared = {
         "groups": {limit.group: limit.meaning for limit in limits if limit.meaning} | dict(groups),
         "mappings": {own.name: own.meaning for limit in limits for own in limit.mappings},
         "parameters": [asdict(parameter) for limit in limits for parameter in limit.parameters],
         "materials": [asdict(value) for limit in limits for value in limit.materials],
     }
-    return json.dumps(told, indent=1) + "\n"
+    return json.dumps(declared, indent=1) + "\n"
 
 
 def _how_to_give(name: str) -> str:

@@ -60,19 +60,19 @@ def evaluate(solved: SolvedRollers) -> Results:
     m, t = solved.materials, solved.tractions()
     limits = m["fatigue_limit"], m["fatigue_limit_torsion"]
     (k, findley_limit), (a, dang_van_limit) = findley_constants(*limits), dang_van_constants(*limits)
-    found = np.full((*t.x.shape[:2], 2, 4), np.nan)
+    criteria = np.full((*t.x.shape[:2], 2, 4), np.nan)
     for case, contact in t.patches():
         constants = np.stack([k[case], a[case]], axis=1)
-        found[case, contact] = stresses(t, case, contact, constants, m["poisson_ratio"][case])
-    found = t.spread(found)
+        criteria[case, contact] = stresses(t, case, contact, constants, m["poisson_ratio"][case])
+    criteria = t.spread(criteria)
     return {
-        "von_mises_amplitude": found[..., 0],
-        "findley_stress": found[..., 1],
-        "dang_van_stress": found[..., 2],
-        "dang_van_stress_without_pressure": found[..., 3],
-        "findley_utilisation": found[..., 1] / findley_limit[:, None, :],
-        "dang_van_utilisation": found[..., 2] / dang_van_limit[:, None, :],
-        "dang_van_utilisation_without_pressure": found[..., 3] / dang_van_limit[:, None, :],
+        "von_mises_amplitude": criteria[..., 0],
+        "findley_stress": criteria[..., 1],
+        "dang_van_stress": criteria[..., 2],
+        "dang_van_stress_without_pressure": criteria[..., 3],
+        "findley_utilisation": criteria[..., 1] / findley_limit[:, None, :],
+        "dang_van_utilisation": criteria[..., 2] / dang_van_limit[:, None, :],
+        "dang_van_utilisation_without_pressure": criteria[..., 3] / dang_van_limit[:, None, :],
     }
 
 

@@ -201,9 +201,9 @@ def findley(path, k):  # pragma: no cover (compiled)
             for i in range(6):
                 tried = at + step * (math.cos(i * math.pi / 3) * first + math.sin(i * math.pi / 3) * second)
                 tried /= np.linalg.norm(tried)
-                found = on_plane(path, tried, k, 1)
-                if found > value:
-                    value, normal = found, tried
+                turned = on_plane(path, tried, k, 1)
+                if turned > value:
+                    value, normal = turned, tried
             step *= 0.5
         best = max(best, value)
     return best

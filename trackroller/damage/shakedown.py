@@ -97,7 +97,7 @@ LIMIT = Limit(
     group="shakedown",
     meaning="elastic limit, elastic shakedown by Melan's theorem, and surface fatigue index",
     evaluate=evaluate,
-    verdict=lambda solved, found: Verdict(worst(found["shakedown_utilisation"]), None),
+    verdict=lambda solved, results: Verdict(worst(results["shakedown_utilisation"]), None),
     needs=("peak_stress", TRACTIONS),
     results=variables(
         "shakedown",

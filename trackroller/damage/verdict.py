@@ -50,14 +50,14 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
     concerned = np.array([[body in limit.bodies for body in BODIES] for limit in limits]).reshape(-1, 2)
     for i, limit in enumerate(limits):
         assert limit.verdict is not None
-        found = limit.verdict(solved, dict(solved.values))
-        if found.utilisation is not None:
-            used[:, i] = found.utilisation
+        own = limit.verdict(solved, dict(solved.values))
+        if own.utilisation is not None:
+            used[:, i] = own.utilisation
         over = used[:, i] >= 1.0
-        if found.life_hours is None:
+        if own.life_hours is None:
             reached[:, i] = np.where(np.isnan(used[:, i]), np.nan, np.where(over, 0.0, np.inf))
         else:
-            hours[:, i] = found.life_hours
+            hours[:, i] = own.life_hours
             reached[:, i] = np.where(over & limit.ends_at_once, 0.0, hours[:, i])
     for values in (used, hours, reached):
         values[:, ~concerned] = np.nan

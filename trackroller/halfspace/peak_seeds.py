@@ -155,7 +155,7 @@ def along_turn(patch: np.ndarray, u: np.ndarray) -> np.ndarray:
 def best_seeds(points: np.ndarray, values: np.ndarray, count: int, apart: float) -> np.ndarray:
     """Return the indices (n, count) of scan points (n, m, 3) with the largest values; -1 if there are no more.
 
-    The points are `apart` from each other.     `values` (n, m) are the stresses at the points.
+    The points are `apart` from each other; `values` (n, m) are the stresses at the points.
     """
     left, every = values.copy(), np.arange(len(values))
     enough = 0.85 * values.max(axis=1)

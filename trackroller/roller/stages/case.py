@@ -78,12 +78,12 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
     solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
     names = {body: own.name for body, own in bodies.items()}
-    pairs = {str(name): told for own in bodies.values() for name, told in zip(own.name, own.guesses, strict=True)}
+    guesses = {str(name): own for body in bodies.values() for name, own in zip(body.name, body.guesses, strict=True)}
     out = []
     for limit in computed(options.outputs, options.life_criterion):
         out += lacks(limit, solved, names)
-        for material, told in pairs.items():
-            guessed = [f"{name} ({words})" for name, words in told.items() if name in limit.requires]
+        for material, placeholders in guesses.items():
+            guessed = [f"{name} ({words})" for name, words in placeholders.items() if name in limit.requires]
             if guessed:
                 out.append(f"{limit.name}: placeholders of material '{material}': {', '.join(guessed)}.")
     return out
