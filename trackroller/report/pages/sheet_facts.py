@@ -15,7 +15,7 @@ from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, OF_LIMITS, OPT
 from trackroller.parameters.example import not_given_text
 from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, unit_text
 from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source
-from trackroller.report.tables.limits import Margin, first_limits, margins, not_checked, placeholders
+from trackroller.report.tables.limits import GUESSED, Margin, first_limits, margins, not_checked, placeholders
 from trackroller.report.tables.lives import life_rows
 from trackroller.report.words.assumptions import (
     assumptions,
@@ -217,8 +217,11 @@ def _verdict(
         parts.append("Skids: the motor force exceeds what friction transmits.")
     elif not over:
         parts.append("Rolls.")
-        passed = [margin.words for margin in own if margin.reached == 0.0]
-        parts += [f"Exceeded: {listing(passed)}."] if passed else []
+        passed: dict[str, list[str]] = {}
+        for margin in (m for m in own if m.reached == 0.0):
+            passed.setdefault(f"{margin.title}{GUESSED * margin.guessed}", []).append(margin.body)
+        words = [f"{title} ({listing(bodies)})" for title, bodies in passed.items()]
+        parts += [f"Exceeded: {listing(words)}."] if words else []
     told = [row for row in lives if row.words.startswith(("roller, until", "roller, median"))]
     if told and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"])):
         parts.append(f"The roller lasts {', '.join(map(_hours, told[:2]))}; contact {_weakest(ds)} decides.")

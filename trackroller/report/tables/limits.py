@@ -24,6 +24,9 @@ BOTH = "roller and guide"
 GUESSES = ": placeholders of material"  # in a note on a limit that rests on values without a source
 
 
+GUESSED = " (rests on placeholders)"
+
+
 @dataclass(frozen=True)
 class Margin:
     """A limit of the roller, of the guide, of both, or of the pair.
@@ -61,7 +64,7 @@ class Margin:
     def words(self) -> str:
         """Return the limit with the body that it concerns, for running text."""
         of = {BOTH: f" of {BOTH}", "pair": ""}.get(self.body, f" of the {self.body}")
-        return f"{self.title}{of}{' (rests on placeholders)' * self.guessed}"
+        return f"{self.title}{of}{GUESSED * self.guessed}"
 
     @property
     def reached(self) -> float:
@@ -200,8 +203,7 @@ def first_limits(found: list[Margin]) -> list[str]:
     out = []
     for body, further in (("roller", "pair"), ("guide", "")):
         own = [margin for margin in found if margin.body in (body, further, BOTH)]
-        told = " (rests on placeholders)" if own and own[0].guessed else ""
-        out += [f"First limit of the {body}: {own[0].title}{told}, {own[0].when}."] if own else []
+        out += [f"First limit of the {body}: {m.title}{GUESSED * m.guessed}, {m.when}." for m in own[:1]]
     if found:
         unknown = any(m.timed and math.isnan(m.hours) and m.body == "guide" for m in found) and found[0].reached > 0
         remark = "; the guide's hours are not known" if unknown else ""
