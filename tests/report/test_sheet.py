@@ -268,6 +268,17 @@ def test_what_must_not_be_exceeded_is_the_value_over_its_share(complete):
         assert own.required.startswith(bound)
 
 
+def test_a_limit_that_is_not_used_at_all_and_one_of_a_users_own_have_margins(monkeypatch):
+    """Without friction the guide stays cold; a user's own limit need not say what it compares."""
+    monkeypatch.setitem(LIMITS, "static", dataclasses.replace(LIMITS["static"], compares=("", "")))
+    case = tr.Case(friction_coefficient=0, motor_force=0, axial_force=0, cooled_area=500, heat_transfer_coefficient=20)
+    margins = collect(tr.solve(case, ("forces", "contact", "heat", "peak_stress", "limits"))).margins
+    cold = [m for m in margins if m.title == LIMITS["heat"].title and m.body in ("guide", "roller and guide")]
+    assert [(m.used, m.required.startswith("–")) for m in cold] == [(0.0, True)]
+    static = next(m for m in margins if m.title == LIMITS["static"].title)
+    assert float(static.now) == pytest.approx(static.used, rel=5e-3) and static.required == "1"
+
+
 def test_lives_stand_in_hours_kilometres_and_turns(solved, facts):
     """1 h at 60 m/min is 3.6 km; a turn of the roller is 2 pi r_A."""
     radius, ds = 21.75 - 6 * np.cos(np.pi / 6), solved["example"]

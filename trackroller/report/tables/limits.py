@@ -139,8 +139,8 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str,
     out = []
     for name in ds["limit"].values.tolist() if "utilisation" in ds else ():
         limit, life = LIMITS[name], ds["life_hours_by_limit"].sel(limit=name)
-        words = limit.compares[1]
-        variable = next(one for one in limit.compares[0].split() if one in ds)
+        variable = next((one for one in limit.compares[0].split() if one in ds), "utilisation")
+        words = f": {limit.compares[1]}" if limit.compares[1] else ""
         unit = unit_text(ds[variable].attrs["units"]).replace("–", "")
         for body in limit.bodies:
             own = ds.sel(limit=name, body=body)
@@ -150,7 +150,8 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str,
             if lifeless[body]:
                 hours = math.nan
             value = float(own[variable].max())
-            texts = f"{rounded(value)} {unit}".strip(), f"{rounded(value / used)} {unit}".strip() + f": {words}"
+            bound = rounded(value / used if used > 0 else math.nan)
+            texts = f"{rounded(value)} {unit}".strip(), f"{bound} {unit}".strip() + words
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or cycles > DATA_END)
             timed = bool(life.notnull().any()) and not lifeless[body]
