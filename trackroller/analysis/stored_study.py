@@ -5,6 +5,7 @@ This is the only place that reads a study file from the attribute of a data set.
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,19 +17,23 @@ import xarray as xr
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
 from trackroller.study.design.entries import CASE_FIELDS
-from trackroller.study.design.stored import FACTOR, restored
+from trackroller.study.design.stored import FACTOR, restored, solved_part
 from trackroller.study.file.load import checked_keys
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
+from trackroller.study.store.gather import collect
+from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.labels import labelled
+from trackroller.study.store.plan import locate
 from trackroller.study.store.seal import read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 _REMEDY = "Run the study again."
 NOTICE = "notice"  # attribute with a sentence that every page of the study shows at its top
+MISSING = "missing_cases"  # attribute with the number of cases that are not solved yet
 _EARLIER = "Another version of the solver made these results. `trackroller run` with the study file solves them anew."
 
 
@@ -44,7 +49,8 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
     Returns
     -------
     StudyResults
-        The study with the same meaning as before it was written.
+        The study with the same meaning as before it was written. For the folder of a study that is not gathered yet,
+        the cases that are solved: the attribute `missing_cases` of the data counts the others, and `notice` says so.
 
     Raises
     ------
@@ -54,7 +60,9 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
     WorkError
         If the file was altered after it was written.
     """
-    data = source if isinstance(source, xr.Dataset) else read_result(_file(Path(source)))
+    data = source if isinstance(source, xr.Dataset) else _gathered(Path(source))
+    if data is None:
+        return _read_unfinished(StudyFolder(Path(str(source))))
     data = data.assign_attrs(_checked_version(data))
     study = _study(data)
     design = restored(data, study.parsed, case_dims(data, study.factors))
@@ -69,13 +77,36 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
     return StudyResults(study, design, data)
 
 
-def _file(path: Path) -> Path:
-    """Return the path of `study.nc`."""
+def _gathered(path: Path) -> xr.Dataset | None:
+    """Return the results in `study.nc`; None for the folder of a study whose plan is not gathered yet."""
     file = StudyFolder(path).gathered if path.is_dir() else path
-    if not file.is_file():
+    planned = StudyFolder(path).record().get("study") if path.is_dir() else None
+    if not file.is_file() and planned is None:
         allowed = "a folder results/NAME with study.nc, or such a file"
         raise InputError("study", str(path), allowed, "Run the study to its end first.")
-    return file
+    data = read_result(file) if file.is_file() else None
+    return data if data is not None and planned in (None, data.attrs.get("study")) else None
+
+
+def _read_unfinished(folder: StudyFolder) -> StudyResults:
+    """Return the solved cases of a study that is not gathered yet."""
+    study = study_of_folder(folder)
+    design, found, place = locate(study, folder)
+    rows = np.flatnonzero(place >= 0)
+    if len(rows) in (0, len(place)):
+        state = "every case is solved, but study.nc is missing" if len(rows) else "no case is solved yet"
+        raise InputError("study", str(folder.root), f"a study with results; {state}", "Run the study to its end first.")
+    drawn, cases = solved_part(study.drawn, rows), design.isel(case=rows)
+    data = labelled(study, drawn, cases, *collect(found, place[rows], folder.root)).assign_coords(case=rows)
+    lacking = [n for n in study.drawn.factors if n not in drawn.factors]
+    only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
+    notice = (
+        f"Unfinished study: {len(rows)} of {len(place)} cases are solved, and all numbers are those of these.{only}"
+    )
+    warnings.warn(notice, stacklevel=4)
+    if study.config.design == "inner_outer":  # its goals are statistics of whole design points
+        study = dataclasses.replace(study, config=study.config.model_copy(update={"pareto": {}}))
+    return StudyResults(study, drawn, data.assign_attrs({NOTICE: notice, MISSING: len(place) - len(rows)}))
 
 
 def _checked_version(data: xr.Dataset) -> dict[str, str]:

@@ -67,6 +67,11 @@ class StudyResults:
         """Return the cases that meet the constraints of the study, shape (n,); None without constraints."""
         return allowed_cases(self.data, self.dims, self.config, self.design.columns)
 
+    @property
+    def unfinished(self) -> bool:
+        """Return whether some cases of the study are not solved yet."""
+        return "missing_cases" in self.data.attrs
+
     @cached_property
     def view(self) -> StudyView:
         """Return the table of cases, from which figures, sentences and the explorer are made."""

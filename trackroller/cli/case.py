@@ -185,13 +185,11 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
         folder = out or Path(f"{path.stem}-figures")
         drawn = plot_case(dataset, folder)
     else:
-        from trackroller.report.build import draw_study
+        from trackroller.report.build import draw_solved
         from trackroller.study.status import find_study
         from trackroller.study.store.plan import study_folder
 
-        place = study_folder(find_study(target, results).name, results)
-        folder = out or place.root / "figures"
-        drawn = draw_study(place.gathered, place.root / "sensitivity.nc", folder, place)
+        folder, drawn = draw_solved(study_folder(find_study(target, results).name, results), out)
     print(f"{len(drawn)} figures in {folder}")
 
 

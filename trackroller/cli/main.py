@@ -128,19 +128,26 @@ def explore(
     ] = None,
 ) -> None:
     """Write the explorer of a study that was run as one page (HTML) that works without a network."""
+    from trackroller.report.build import place_of_pages
     from trackroller.solved import open_study
+    from trackroller.study.store.folder import StudyFolder
 
     path = Path(study) if Path(study).exists() else results / study
-    page = (path if path.is_dir() else path.parent) / "explorer.html"
-    print(open_study(path).explore(out or page))
+    solved = open_study(path)
+    folder = StudyFolder(path if path.is_dir() else path.parent)
+    print(solved.explore(out or place_of_pages(solved, folder) / "explorer.html"))
 
 
 @app.command()
-def status(study: AnyStudy, results: Results = Path("results")) -> None:
+def status(
+    study: AnyStudy,
+    results: Results = Path("results"),
+    figures: Annotated[bool, typer.Option("--figures", help="draw the figures of the solved cases as well")] = False,
+) -> None:
     """Print how many cases are solved, missing and failed, the causes of failures, and the time left."""
     from trackroller.cli.study import print_status
 
-    raise typer.Exit(print_status(study, results))
+    raise typer.Exit(print_status(study, results, figures))
 
 
 @app.command()

@@ -78,7 +78,7 @@ def _report(folder: StudyFolder) -> Path:
     return build_report(folder, lambda line: print(line, file=sys.stderr))
 
 
-def print_status(name: str, results: Path) -> int:
+def print_status(name: str, results: Path, figures: bool) -> int:
     """Print how many cases of a study are done, missing and failed, and the failures by cause.
 
     Returns
@@ -94,6 +94,8 @@ def print_status(name: str, results: Path) -> int:
     )
     if status.missing:
         print(f"time left {duration(status.seconds_left)} on one core")
+        if status.done:
+            print("look      `trackroller report` and `explore` work on the solved cases")
     else:
         print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
     if status.outdated:
@@ -108,6 +110,11 @@ def print_status(name: str, results: Path) -> int:
         print(f"corrupt   {line} (the next run makes it again)")
     if status.failed:
         print("          `trackroller run STUDY --rerun-failed` solves just these again")
+    if figures:
+        from trackroller.report.build import draw_solved  # heavy: matplotlib
+
+        folder, drawn = draw_solved(study_folder(study.name, results))
+        print(f"figures   {len(drawn)} in {folder}")
     return int(bool(status.corrupt))
 
 
@@ -174,6 +181,8 @@ def _print_study(path: Path, results: Path) -> None:
     told = "measured" if status.measured else "estimated"
     print(f"study     {study.name} ({study.config.design})")
     print(f"cases     {status.total}, {status.done} of them solved already")
+    if status.unused:
+        print(f"unused    {status.unused}")
     print(f"chunks    {chunks} of up to {chunk} cases")
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     print(f"time      {times} ({told} cases/s: {status.speed:.3g})")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -22,18 +23,20 @@ from trackroller.study.store.folder import StudyFolder, locked
 from trackroller.study.store.seal import check_sealed, read_result, sealing
 
 log = logging.getLogger("trackroller")
+UNFINISHED = "unfinished"  # folder in the folder of a study
 
 
 @interrupts_wait_for_files()
 def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) -> Path:
     """Write `sensitivity.nc`, `figures/`, `report.html` and the crate beside the gathered results of a study.
 
-    Two processes that report on the same study do so one after the other.
+    Two processes that report on the same study do so one after the other. A study that is not gathered yet gets
+    analysis, figures and report of its solved cases in the folder `unfinished/`, without digests and crate.
 
     Parameters
     ----------
     folder : StudyFolder
-        The study's folder; it must hold `study.nc`.
+        The study's folder.
     tell : callable
         Called with one line before each step.
 
@@ -45,23 +48,39 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     Raises
     ------
     InputError
-        If the study is not gathered yet.
+        If no case is solved yet.
     WorkError
         If a result was altered after it was written, or the folder cannot be written.
     """
-    if not folder.gathered.is_file():
-        raise InputError("study", str(folder.root), "a study with study.nc", "Run the study to its end first.")
     with _alone(folder, tell):
+        results = read_results(folder.root)
+        place = place_of_pages(results, folder)
         tell("analyse the results")
-        results = read_results(folder.gathered)
-        view = results.view.analysed(_analysed(results, folder.root / "sensitivity.nc"))
+        view = results.view.analysed(_analysed(results, place / "sensitivity.nc"))
         tell("draw the figures")
-        _draw(view, folder.root / "figures")
+        _draw(view, place / "figures")
         tell("write the report")
-        report = _report(view, folder.root / "figures", folder.root / "report.html")
-        if folder.plan_file.exists():  # results that were solved in Python have no plan, and no crate
+        report = _report(view, place / "figures", place / "report.html")
+        if folder.plan_file.exists() and not results.unfinished:  # results solved in Python have no plan, and no crate
             write_crate(folder.root)
+            shutil.rmtree(folder.root / UNFINISHED, ignore_errors=True)
     return report
+
+
+def place_of_pages(results: StudyResults, folder: StudyFolder) -> Path:
+    """Return the folder for figures and pages of a study: its own, or `unfinished/` in it, which is never sealed."""
+    place = folder.root / UNFINISHED if results.unfinished else folder.root
+    place.mkdir(exist_ok=True)
+    return place
+
+
+def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path, list[Any]]:
+    """Draw the figures of a study, of its solved cases if it is unfinished; return their folder and the figures."""
+    with _alone(folder):
+        results = read_results(folder.root)
+        out, stored = out_dir or place_of_pages(results, folder) / "figures", folder.root / "sensitivity.nc"
+        analysis = read_result(stored) if stored.is_file() and not results.unfinished else None
+        return out, _draw(results.view.analysed(analysis), out)
 
 
 def report_text(results: StudyResults) -> str:
@@ -85,7 +104,7 @@ def _analysis(results: StudyResults) -> xr.Dataset:
 
 def _analysed(results: StudyResults, out: Path) -> xr.Dataset:
     analysis = _analysis(results)
-    with sealing(out):
+    with _sealed(out):
         write_whole(out, lambda beside: analysis.to_netcdf(beside))
     return analysis
 
@@ -100,38 +119,27 @@ def _read(study_nc: str | Path, sensitivity_nc: str | Path) -> StudyView:
     return read_results(study_nc).view.analysed(analysis)
 
 
-def draw_study(
-    study_nc: str | Path, sensitivity_nc: str | Path, out_dir: str | Path, folder: StudyFolder | None = None
-) -> list[Any]:
-    """Draw all figures of a study and return them; the folder appears whole or not at all.
+def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> list[Any]:
+    """Draw all figures of gathered results and return them; the folder appears whole or not at all."""
+    return _draw(_read(study_nc, sensitivity_nc), Path(out_dir))
 
-    Parameters
-    ----------
-    study_nc, sensitivity_nc : path
-        Gathered results and their analysis.
-    out_dir : path
-        Folder of the figures.
-    folder : StudyFolder, optional
-        Its lock is held, so that no report is made meanwhile. The workflow's main process holds it already.
-    """
-    with contextlib.nullcontext() if folder is None else _alone(folder):
-        return _draw(_read(study_nc, sensitivity_nc), Path(out_dir))
+
+def _sealed(out: Path) -> contextlib.AbstractContextManager[None]:
+    """Record the digests of a result in the folder of a study; any other folder has no records."""
+    return sealing(out) if (out.parent / "plan").is_dir() else contextlib.nullcontext()
 
 
 @contextlib.contextmanager
 def _alone(folder: StudyFolder, tell: Callable[[str], None] | None = None) -> Iterator[None]:
     """Keep other reports from being made, and the plan from being changed."""
-    file = folder.create().lock.with_name(".report")
-    file.touch()
-    with locked(folder.lock, shared=True), locked(file, tell=tell):
+    with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
         yield
 
 
 def _draw(view: StudyView, out: Path) -> list[Any]:
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    seal = sealing(out) if (out.parent / "plan").is_dir() else contextlib.nullcontext()
-    with seal, whole_folder(out) as beside:
+    with _sealed(out), whole_folder(out) as beside:
         return draw_all(view, beside)
 
 
@@ -141,5 +149,5 @@ def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> 
 
 
 def _report(view: StudyView, figures: Path, out: Path) -> Path:
-    with sealing(out), sealing(out.with_name("tables")):
+    with _sealed(out), _sealed(out.with_name("tables")):
         return write_report(view, figures, out)

@@ -140,7 +140,7 @@ def solve_chunk(
         If the chunk is no longer planned, the materials have changed, or a file cannot be written.
     """
     try:
-        with locked(folder.lock, shared=True), locked(folder.case_list(name), tell=tell):
+        with locked(folder.lock, shared=True), locked(folder.chunk_lock(name), tell=tell):
             if folder.chunk(name).is_file():
                 folder.mark(name).touch()
                 return f"chunk {name}: already solved"
@@ -156,7 +156,7 @@ def solve_chunk(
             chunk = chunks.join(blocks).sel(case=cases["case"].values)
             chunks.write(folder.chunk(name), chunk, packed=True)
             folder.mark(name).touch()
-            return _summary(chunk, name, spent)
+            return _summary(chunk, cases.attrs.get("words", f"chunk {name}"), spent)
     except FileNotFoundError:
         why = "is missing: the study was edited and planned anew by another process"
         raise WorkError(f"{folder.case_list(name)} {why}. Start again: every finished case is kept.") from None
@@ -164,11 +164,9 @@ def solve_chunk(
         raise WorkError(f"corrupt case list: {exc}. Start again: its cases are planned anew.") from None
 
 
-def _summary(chunk: xr.Dataset, name: str, spent: float) -> str:
+def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
     count, failed = chunk.sizes["case"], int((chunk["regime"] == chunks.FAILED).sum())
-    return (
-        f"chunk {name}: {count} cases solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
-    )
+    return f"{words}: {count} cases solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
 
 
 def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:

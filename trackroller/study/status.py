@@ -18,7 +18,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
-from trackroller.study.store.plan import locate, study_folder
+from trackroller.study.store.plan import locate, study_folder, unused_cases
 from trackroller.study.store.seal import altered
 
 if TYPE_CHECKING:
@@ -45,6 +45,8 @@ class Status:
         Whether `speed` was measured on solved cases of this study.
     gathered, outdated : bool
         Whether `study.nc` exists, and whether another version of the solver made the files.
+    unused : str
+        How many solved cases of an earlier design this design does not hold, and why; '' if it holds all.
     corrupt : list of str
         Damaged or altered files, and what is wrong with each.
     """
@@ -58,6 +60,7 @@ class Status:
     measured: bool
     gathered: bool
     outdated: bool
+    unused: str = ""
     by_level: dict[tuple[str, str], int] = field(default_factory=dict)
     corrupt: list[str] = field(default_factory=list)
 
@@ -125,6 +128,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         measured=seconds > 0,
         gathered=folder.gathered.is_file(),
         outdated=folder.of_another_solver,
+        unused=unused_cases(study, folder, found, place),
         corrupt=[
             *found.corrupt.values(),
             *(f"{path}: it is gone" for path in folder.lost_files()),

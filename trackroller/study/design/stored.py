@@ -93,6 +93,23 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
     return design
 
 
+def solved_part(design: SampledDesign, rows: np.ndarray) -> SampledDesign:
+    """Return the design of some rows: a smaller random sample, otherwise a table, which needs no structure.
+
+    Parameters
+    ----------
+    design : SampledDesign
+        The whole design.
+    rows : numpy.ndarray of int, shape (n,)
+        Rows to keep.
+    """
+    columns = {name: values[rows] for name, values in design.columns.items()}
+    if design.method in ("lhs", "sobol"):
+        return SampledDesign(columns, design.factors, design.method, design.unit[rows], design.meta)
+    free, unit = of_columns({name: columns[name] for name in design.factors})
+    return SampledDesign(columns, free, "table", unit, {"rank_correlations": ()})
+
+
 def _column(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     """Return a column of a design: numbers as floats, texts as objects."""
     if name not in ds.variables:

@@ -52,6 +52,10 @@ class StudyFolder:
         """Return the cases of a chunk."""
         return self.root / "plan" / f"{chunk}.nc"
 
+    def chunk_lock(self, chunk: str) -> Path:
+        """Return the empty file that a process locks while it solves a chunk."""
+        return self.root / "plan" / f"{chunk}.lock"
+
     def mark(self, chunk: str) -> Path:
         """Return the empty file by which the workflow knows that a chunk is solved. It may be deleted at any time."""
         return self.root / "plan" / f"{chunk}.solved"
@@ -155,8 +159,11 @@ def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Tell | None = N
 
 @contextlib.contextmanager
 def locked(path: Path, shared: bool = False, tell: Tell | None = None) -> Iterator[None]:
-    """Hold the lock of an existing file; the system releases the lock when the process ends, however it ends."""
-    with open(path, "rb+") as stream:
+    """Hold the lock of an empty file; the system releases the lock when the process ends, however it ends.
+
+    A file with content is never locked: on Windows a lock keeps every reader out, even the process that holds it.
+    """
+    with open(path, "ab") as stream:
         wait_for_lock(stream, shared, tell)
         yield
 

@@ -6,7 +6,7 @@ import math
 import tempfile
 from collections.abc import Hashable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,9 +20,6 @@ from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan
 from trackroller.study.store.seal import is_sealed, sealing
-
-if TYPE_CHECKING:
-    pass
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
@@ -73,7 +70,7 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
     def save(beside: Path) -> None:
-        labelled(study, study.drawn, design, *_collect(found, place, folder.root)).to_netcdf(beside, engine="netcdf4")
+        labelled(study, study.drawn, design, *collect(found, place, folder.root)).to_netcdf(beside, engine="netcdf4")
 
     with sealing(folder.gathered):
         write_whole(folder.gathered, save)
@@ -82,10 +79,20 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
     return folder.gathered
 
 
-def _collect(
+def collect(
     found: Inventory, place: np.ndarray, scratch: Path
 ) -> tuple[dict[Hashable, xr.Variable], dict[Hashable, xr.Variable], dict[str, Any]]:
-    """Return the results of the cases (n, ...), the coordinates of their other axes, and the solver's attributes."""
+    """Return results of solved cases, (n, ...) each, the coordinates of their other axes, and the solver's attributes.
+
+    Parameters
+    ----------
+    found : Inventory
+        Solved cases of the study.
+    place : numpy.ndarray of int, shape (n,)
+        Index of each wanted case in `found.states`.
+    scratch : pathlib.Path
+        Folder for temporary files.
+    """
     results: dict[Hashable, xr.Variable] = {}
     coords: dict[Hashable, xr.Variable] = {}
     attrs: dict[str, Any] = {}

@@ -23,6 +23,7 @@ from trackroller.numerics.numbers import all_equal
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import with_history
+from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import StudyFolder
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
 SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: long beside the start of a job (1-2 s), short to lose
 LARGEST_CHUNK = 20_000
+MOST_LEVELS = 3  # that the words for a chunk list
 
 
 @dataclass(frozen=True)
@@ -151,18 +153,66 @@ def new_plan(study: Study, folder: StudyFolder, found: Inventory) -> Plan:
     fields = xr.Dataset({n: ((), shared[n]) if n in shared else ("case", v) for n, v in columns.items()})
     sizes: dict[str, int] = {}
     identity = solver_and_materials(study.materials)
-    for number, chosen in enumerate(options):
-        attrs = {"options": json.dumps(chosen), "identity": identity}
-        rows = missing[group[missing] == number]
-        for part in np.array_split(rows, max(1, math.ceil(len(rows) / size))):
-            if len(part):
-                name = chunk_name(names[part])
-                # an index of all names would take 70 bytes a case
-                block = fields.isel(case=part, missing_dims="ignore").assign_coords(case=names[part])
-                chunks.write(folder.case_list(name), block.assign_attrs(attrs))
-                sizes[name] = len(part)
+    parts = [part for number in range(len(options)) for part in _split(missing[group[missing] == number], size)]
+    for count, part in enumerate(parts, 1):
+        name = chunk_name(names[part])
+        # an index of all names would take 70 bytes a case
+        block = fields.isel(case=part, missing_dims="ignore").assign_coords(case=names[part])
+        words = ", ".join([f"chunk {count} of {len(parts)}", *_levels_of(study, part)])
+        attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
+        chunks.write(folder.case_list(name), block.assign_attrs(attrs))
+        sizes[name] = len(part)
     uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
     return Plan(study, folder, sizes, len(names), len(wanted), tuple(uses), cases)
+
+
+def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.ndarray) -> str:
+    """Say how many solved cases the design of a study does not hold, and why; '' if it holds all of them.
+
+    Parameters
+    ----------
+    study : Study
+        The study, whose design may differ from the one that was solved.
+    folder : StudyFolder
+        Its folder.
+    found : Inventory
+        Its solved cases.
+    place : numpy.ndarray of int, shape (n,)
+        Index of each case of the design in `found.states`; -1 for a case that is not solved.
+    """
+    unused = found.states.sizes["case"] - len(np.unique(place[place >= 0]))
+    if not unused or folder.of_another_solver:
+        return ""
+    earlier, remedy = folder.earlier().get("factors", {}), "They stay in chunks/."
+    added = [name for name in study.config.factors if name not in earlier]
+    why = f": {' and '.join(added)} became a factor" if earlier and added else ""
+    if why and study.config.design != "grid":
+        remedy = (
+            f"A {study.config.design} design with another factor is drawn anew. To keep both, give it another name."
+        )
+    elif why:
+        remedy = "The old value of a new factor must be one of its levels to keep them."
+    return f"{unused} solved cases of the earlier design are not in this one{why}. {remedy}"
+
+
+def _split(rows: np.ndarray, size: int) -> list[np.ndarray]:
+    """Return the rows in parts of at most `size` rows."""
+    return np.array_split(rows, math.ceil(len(rows) / size)) if len(rows) else []
+
+
+def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
+    """Return the levels of the cases of a chunk for each listed factor of which the chunk holds some levels only."""
+    words = []
+    for name, factor in study.drawn.factors.items():
+        levels = list(dict.fromkeys(study.drawn.columns[name][rows].tolist())) if factor.discrete else []
+        if not 0 < len(levels) < len(factor.levels):
+            continue
+        if factor.numeric and len(levels) > 1:
+            words.append(f"{name} {in_words(name, min(levels))} to {in_words(name, max(levels))}")
+        else:
+            shown = ", ".join(in_words(name, level) for level in levels[:MOST_LEVELS])
+            words.append(f"{name} {shown}" + ", ..." * (len(levels) > MOST_LEVELS))
+    return words
 
 
 def record_of(plan: Plan, inputs: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from trackroller.study.design.growth import with_history
 from trackroller.study.store.folder import StudyFolder, Tell, sweep, try_lock, wait_for_lock
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
-from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder
+from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder, unused_cases
 from trackroller.study.store.seal import altered
 
 if TYPE_CHECKING:
@@ -85,6 +85,8 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
         if study.config.grown_from:
             tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
         plan = new_plan(study, folder, found)
+        if unused := unused_cases(study, folder, found, found.find(plan.cases.fingerprints)):
+            tell(unused)
         folder.design.unlink(missing_ok=True)
     _keep(plan)
     return plan
@@ -117,7 +119,7 @@ def _keep(plan: Plan) -> None:
     if record != folder.record():
         folder.write_record(record)
     for path in folder.lock.parent.iterdir():
-        if path.suffix in (".nc", ".solved") and path.stem not in plan.chunks:
+        if path.suffix in (".nc", ".solved", ".lock") and path.stem not in plan.chunks:
             path.unlink(missing_ok=True)
     for name in plan.chunks:
         if not folder.chunk(name).is_file():
