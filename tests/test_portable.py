@@ -119,3 +119,58 @@ def test_text_files_have_the_newlines_of_every_system(tmp_path):
 
     write_text(tmp_path / "a.txt", "one\ntwo\n")
     assert (tmp_path / "a.txt").read_bytes() == b"one\ntwo\n"
+
+
+@pytest.mark.parametrize("name", ["con", "NUL", "aux.v2", "com1", "lpt9.x.y"])
+def test_a_study_with_the_name_of_a_device_of_windows_is_refused(name):
+    from trackroller.errors import InputError
+    from trackroller.study.file.config import check_name
+
+    with pytest.raises(InputError, match="Windows has a device"):
+        check_name(name)
+    assert check_name(f"{name[0]}-console") == f"{name[0]}-console"
+
+
+def test_files_with_windows_newlines_and_a_byte_order_mark_give_the_same_cases(tmp_path):
+    """Study, table of cases and measured profile as editors on Windows save them have the same fingerprints."""
+    from trackroller.study.file.load import load_study
+    from trackroller.study.store.identity import Cases
+
+    profile = "x,z\n" + "".join(f"{x / 2},{x * x / 52}\n" for x in range(-8, 9))
+    files = {
+        "study.yaml": "name: small\ndesign: table\ntable: tables/cases.csv\ncontact_model: sliding\nnormal: halfspace\n"
+        "outputs: [forces]\nbase:\n  guide_profile: {file: points.csv}\n",
+        "tables/cases.csv": "axial_force,friction_coefficient\n20,0.1\n30,0.2\n",
+        "points.csv": profile,
+    }
+    prints = []
+    for place, mark, newline in (("linux", "", "\n"), ("windows", "\ufeff", "\r\n")):
+        for name, text in files.items():
+            path = tmp_path / place / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes((mark + text.replace("\n", newline)).encode())
+        prints.append(Cases(load_study(tmp_path / place / "study.yaml")).fingerprints.tolist())
+    assert prints[0] == prints[1] and len(set(prints[0])) == 2
+
+
+def test_only_empty_files_are_locked(tmp_path, monkeypatch):
+    """On Windows a lock keeps every reader out, even the process that holds it."""
+    import os
+
+    import fake_solver
+    import portalocker
+
+    from trackroller.study.file.load import parse_study
+    from trackroller.study.run import run_study
+
+    plain, sizes = portalocker.lock, []
+
+    def lock(stream, flags):
+        sizes.append(os.fstat(stream.fileno()).st_size)
+        plain(stream, flags)
+
+    monkeypatch.setattr(portalocker, "lock", lock)
+    factors = {"axial_force": {"values": [20.0, 30.0]}, "friction_coefficient": {"values": [0.1, 0.2]}}
+    study = {"name": "small", "factors": factors, "contact_model": "sliding", "outputs": ["forces"]}
+    run_study(parse_study(study), tmp_path, solver=fake_solver.solve)
+    assert len(sizes) >= 5 and set(sizes) == {0}

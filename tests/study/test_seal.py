@@ -57,7 +57,8 @@ def test_an_input_that_is_edited_during_a_run_stops_it_before_the_next_chunk(hom
     victim, used = home / name, (home / name).read_bytes()
 
     def solver(design, database=None, **options):
-        victim.write_bytes(used.replace(b"20,0.1", b"21,0.1") + b"\n# edited\n" * (not name.endswith("cases.csv")))
+        edited = used.replace(b"20,0.1", b"21,0.1").replace(b"chunk_size: 4", b"chunk_size: 5")
+        victim.write_bytes(edited + b"\n# edited\n" * (name in ("points.csv", "config/materials.yaml")))
         return fake_solver.solve(design)
 
     with pytest.raises(WorkError, match=rf"{victim.name} was edited.*SHA-256 was [0-9a-f]{{64}} and is [0-9a-f]{{64}}"):
@@ -68,6 +69,15 @@ def test_an_input_that_is_edited_during_a_run_stops_it_before_the_next_chunk(hom
     victim.write_bytes(used)
     run_study(load_study("study.yaml"), solver=fake_solver.solve)
     assert sum(solved().values()) == 12 and set(solved().values()) == {1}
+
+
+def test_a_comment_in_the_study_file_may_be_edited_during_a_run(home, solved):
+    def solver(design, database=None, **options):
+        (home / "study.yaml").write_text("# a thought\n" + STUDY)
+        return fake_solver.solve(design)
+
+    run_study(load_study("study.yaml"), solver=solver)
+    assert sum(solved().values()) == 12
 
 
 @pytest.mark.parametrize("name", ["study.yaml", "cases.csv", "config/materials.yaml"])

@@ -7,6 +7,7 @@ inner/outer array design gets distributions of life (`robustness`).
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -36,6 +37,7 @@ from trackroller.roller.dataset import file_attributes
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output, outputs, regimes
 
+log = logging.getLogger("trackroller")
 NEEDS = {
     "grid": "a full grid, every level weighing the same",
     "saltelli": "whole blocks of the Saltelli design and independent factors",
@@ -177,9 +179,11 @@ def analyse(results: StudyResults) -> xr.Dataset:
     columns = outputs(ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed)
     if not columns or not design.factors:
         raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
-    by_output = [_METHODS[design.method](column.values, design, how) for column in columns]
-    for one in by_output:
-        one.estimates.pop("rows_used", None)
+    by_output = []
+    for number, column in enumerate(columns, 1):
+        log.info("analyse output %d of %d: %s", number, len(columns), column.name)
+        by_output.append(_METHODS[design.method](column.values, design, how))
+        by_output[-1].estimates.pop("rows_used", None)
     result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
     result = result.merge(parts_of(design, columns, given, how.seed, how.resamples))
     result = result.assign(_quality(result, design, columns, by_output))

@@ -20,7 +20,7 @@ from trackroller.roller.options import Options, options_of_cases
 from trackroller.study.cost import bytes_a_case, duration
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.load import load_study
-from trackroller.study.progress import progress_bar
+from trackroller.study.progress import progress_bar, shown_steps
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import find_study, status_of
@@ -75,7 +75,8 @@ def make_report(name: str, results: Path, out: Path | None) -> None:
 def _report(folder: StudyFolder) -> Path:
     from trackroller.report.build import build_report  # heavy: SALib
 
-    return build_report(folder, lambda line: print(line, file=sys.stderr))
+    with shown_steps() as tell:
+        return build_report(folder, tell)
 
 
 def print_status(name: str, results: Path, figures: bool) -> int:

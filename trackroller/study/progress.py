@@ -1,14 +1,16 @@
-"""Show on a terminal how many cases of a study are solved, how fast, and the time left."""
+"""Show on a terminal how many cases of a study are solved, how fast, the time left, and the steps of a report."""
 
 from __future__ import annotations
 
 import contextlib
+import logging
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.status import Status
 
 _COLUMNS = (
     TextColumn("{task.description}"),
@@ -54,3 +56,36 @@ def progress_bar(name: str, shown: bool = True) -> Iterator[Bar]:
     console = Console(file=sys.stderr, soft_wrap=True)
     with Progress(*_COLUMNS, console=console, disable=not shown, speed_estimate_period=120) as progress:
         yield Bar(progress, progress.add_task(name, total=None, rate="-"))
+
+
+class _Last(logging.Handler):
+    """Shows the newest log line in the last line of a terminal."""
+
+    def __init__(self, shown: Status) -> None:
+        super().__init__(logging.INFO)
+        self.shown = shown
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.shown.update(record.getMessage())
+
+
+@contextlib.contextmanager
+def shown_steps() -> Iterator[Callable[[str], None]]:
+    """Show what an analysis or report works on in the last line of a terminal, until the context ends.
+
+    Yields
+    ------
+    callable
+        Prints a line on standard error, also without a terminal.
+    """
+    console, log = Console(file=sys.stderr, soft_wrap=True), logging.getLogger("trackroller")
+    level = log.level
+    with console.status("") as shown:
+        handler = _Last(shown)
+        log.addHandler(handler)
+        log.setLevel(logging.INFO)
+        try:
+            yield lambda line: console.print(line, highlight=False, markup=False)
+        finally:
+            log.setLevel(level)
+            log.removeHandler(handler)

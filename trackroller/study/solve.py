@@ -171,7 +171,7 @@ def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
 
 def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:
     """Raise `WorkError` unless the inputs, the materials and the solver are those of the plan."""
-    check_inputs(folder.record().get("inputs", {}))
+    check_inputs(folder)
     if cases.attrs["identity"] != solver_and_materials(load_database() if database is None else database):
         raise WorkError(
             f"{folder.root}: the materials or the solver changed after the study was planned. Start the run again: it "

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import logging
 import math
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -26,6 +27,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from trackroller.files import write_text, write_whole
 from trackroller.report.numbers import number
 
+log = logging.getLogger("trackroller")
 COLUMN_MM = 85.0  # a column of a two-column page
 WIDE_MM = 170.0  # the one wide column of the report
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*")
@@ -178,10 +180,11 @@ def draw_all(jobs: Iterable[Callable[[], Drawn]], out_dir: Path) -> list[FigureI
     WorkError
         If the folder cannot be written.
     """
-    infos = []
+    infos: list[FigureInfo] = []
     with look(), warnings.catch_warnings():
         warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
-        for draw in jobs:
+        for number, draw in enumerate(jobs, 1):
+            log.info("draw figure %d", number)
             if (drawn := draw()) is not None:
                 save(drawn[0], out_dir, drawn[1].name)
                 infos.append(drawn[1])

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import functools
 import hashlib
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-from trackroller.errors import WorkError
+from trackroller.errors import InputError, WorkError
 from trackroller.files import noted_reads, sha256, write_whole
 from trackroller.materials import builtin_database, load_database
+from trackroller.study.design.growth import with_history
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder
@@ -65,18 +64,30 @@ def _write(path: Path, digest: str, content: bytes) -> None:
         write_whole(path, functools.partial(Path.write_bytes, data=content))
 
 
-def check_inputs(inputs: Mapping[str, Mapping[str, Any]]) -> None:
+def check_inputs(folder: StudyFolder) -> None:
     """Compare the files that a study was made from with the digests in its record.
+
+    An edited study file that says the same, as after an edit of a comment, counts as unchanged.
 
     Raises
     ------
     WorkError
         If a file was edited or removed; the message has both digests.
     """
-    for stored in inputs.values():
-        if stored["path"]:
-            path = Path(stored["path"])
-            _compare(path, stored["sha256"], sha256(path) if path.is_file() else "no file")
+    record = folder.record()
+    for stored in record.get("inputs", {}).values():
+        path = Path(stored["path"])
+        now = sha256(path) if path.is_file() else "no file"
+        if stored["path"] and now != stored["sha256"] and not _says_the_same(path, folder, record["study"]):
+            _compare(path, stored["sha256"], now)
+
+
+def _says_the_same(path: Path, folder: StudyFolder, study: str) -> bool:
+    """Return whether a file is a study file that means the study of a plan."""
+    try:
+        return with_history(load_study(path, planned=True), folder).merged() == study
+    except InputError:
+        return False
 
 
 def _compare(path: Path, before: str, now: str) -> None:
