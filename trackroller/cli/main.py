@@ -128,14 +128,9 @@ def explore(
     ] = None,
 ) -> None:
     """Write the explorer of a study that was run as one page (HTML) that works without a network."""
-    from trackroller.report.build import place_of_pages
-    from trackroller.solved import open_study
-    from trackroller.study.store.folder import StudyFolder
+    from trackroller.cli.study import print_explorer
 
-    path = Path(study) if Path(study).exists() else results / study
-    solved = open_study(path)
-    folder = StudyFolder(path if path.is_dir() else path.parent)
-    print(solved.explore(out or place_of_pages(solved, folder) / "explorer.html"))
+    print_explorer(Path(study) if Path(study).exists() else results / study, out)
 
 
 @app.command()

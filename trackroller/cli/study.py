@@ -79,6 +79,15 @@ def _report(folder: StudyFolder) -> Path:
         return build_report(folder, tell)
 
 
+def print_explorer(path: Path, out: Path | None) -> None:
+    """Write the explorer of a study from its folder or its `study.nc`, and print where it is."""
+    from trackroller.report.build import place_of_pages  # heavy: SALib
+    from trackroller.solved import open_study
+
+    solved, folder = open_study(path), StudyFolder(path if path.is_dir() else path.parent)
+    print(solved.explore(out or place_of_pages(solved, folder) / "explorer.html"))
+
+
 def print_status(name: str, results: Path, figures: bool) -> int:
     """Print how many cases of a study are done, missing and failed, and the failures by cause.
 
