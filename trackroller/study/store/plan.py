@@ -180,8 +180,8 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
     place : numpy.ndarray of int, shape (n,)
         Index of each case of the design in `found.states`; -1 for a case that is not solved.
     """
-    unused = found.states.sizes["case"] - len(np.unique(place[place >= 0]))
-    if not unused or folder.of_another_solver:
+    solved = found.states.sizes["case"]
+    if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
         return ""
     earlier, remedy = folder.earlier().get("factors", {}), "They stay in chunks/."
     added = [name for name in study.config.factors if name not in earlier]

@@ -85,7 +85,7 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
         if study.config.grown_from:
             tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
         plan = new_plan(study, folder, found)
-        if unused := unused_cases(study, folder, found, found.find(plan.cases.fingerprints)):
+        if found.paths and (unused := unused_cases(study, folder, found, found.find(plan.cases.fingerprints))):
             tell(unused)
         folder.design.unlink(missing_ok=True)
     _keep(plan)
