@@ -104,6 +104,8 @@ def print_status(name: str, results: Path, figures: bool) -> int:
     )
     if status.missing:
         print(f"time left {duration(status.seconds_left)} on one core")
+        if status.upcoming:
+            print(f"next      {status.upcoming}")
         if status.done:
             print("look      `trackroller report` and `explore` work on the solved cases")
     else:
