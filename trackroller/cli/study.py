@@ -23,7 +23,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.progress import progress_bar, shown_steps
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
-from trackroller.study.status import find_study, status_of
+from trackroller.study.status import Status, find_study, status_of
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.plan import chunk_size, study_folder
@@ -102,14 +102,7 @@ def print_status(name: str, results: Path, figures: bool) -> int:
         f"study     {study.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
         f"{status.failed} failed"
     )
-    if status.missing:
-        print(f"time left {duration(status.seconds_left)} on one core")
-        if status.upcoming:
-            print(f"next      {status.upcoming}")
-        if status.done:
-            print("look      `trackroller report` and `explore` work on the solved cases")
-    else:
-        print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
+    _print_left(status)
     if status.outdated:
         print("outdated  another version of the solver made the results: the next run solves every case anew")
     if regimes := [f"{count} {name}" for name, count in status.regimes.items() if count]:
@@ -128,6 +121,18 @@ def print_status(name: str, results: Path, figures: bool) -> int:
         folder, drawn = draw_solved(study_folder(study.name, results))
         print(f"figures   {len(drawn)} in {folder}")
     return int(bool(status.corrupt))
+
+
+def _print_left(status: Status) -> None:
+    """Print the time left, the next chunk, and what can be looked at."""
+    if status.missing:
+        print(f"time left {duration(status.seconds_left)} on one core")
+        if status.upcoming:
+            print(f"next      {status.upcoming}")
+        if status.done:
+            print("look      `trackroller report` and `explore` work on the solved cases")
+    else:
+        print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
 
 
 def print_repeat(name: str, case: int, results: Path) -> int:
