@@ -17,7 +17,7 @@ from trackroller.report.terminal import print_table
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options, options_of_cases
-from trackroller.study.cost import bytes_a_case, duration
+from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_report
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.load import load_study
 from trackroller.study.progress import progress_bar, shown_steps
@@ -194,7 +194,7 @@ def _print_study(path: Path, results: Path) -> None:
     status = status_of(study, results)
     chunk = chunk_size(study, status.missing)
     chunks = -(-status.missing // chunk)
-    seconds = status.seconds_left
+    seconds = status.seconds_left + START
     told = "measured" if status.measured else "estimated"
     print(f"study     {study.name} ({study.config.design})")
     print(f"cases     {status.total}, {status.done} of them solved already")
@@ -203,6 +203,8 @@ def _print_study(path: Path, results: Path) -> None:
     print(f"chunks    {chunks} of up to {chunk} cases")
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     print(f"time      {times} ({told} cases/s: {status.speed:.3g})")
+    pages = seconds_of_report(study.config.design, status.total)
+    print(f"report    {duration(pages)} more on one core, for analysis, figures and page")
     print(f"disk      about {decimal(status.total * bytes_a_case(study.config.outputs))}")
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
 

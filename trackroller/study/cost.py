@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING, Any
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.contact_models import DECLARED, SOLVED_PATCHES
 from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.sampling import ARRAYS
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
 _LEVELS = ("preview", "standard", "reference")
 _TRACTIONS, _SUBSURFACE = 1e-3, 0.1
+START = 4.0  # seconds of one core: to import, plan and load the compiled solver
+PAGES_OF_ARRAY, PAGES_OF_SAMPLE = 5.0, 10.0  # seconds: figures and page; a random sample has given-data measures
+PAGES_A_CASE = 3.5e-4  # seconds: gathering, analysis, figures and page of a large study
 _BYTES = {
     "forces": 200,
     "contact": 120,
@@ -51,6 +55,11 @@ def study_rate(study: Study) -> float:
     varied = {name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS}
     several = [rate(study.options | dict(zip(varied, values, strict=True))) for values in product(*varied.values())]
     return len(several) / sum(1.0 / each for each in several)
+
+
+def seconds_of_report(design: str, cases: int) -> float:
+    """Return the expected time on one core [s] to gather and analyse a study, draw its figures and write its page."""
+    return (PAGES_OF_ARRAY if design in ARRAYS else PAGES_OF_SAMPLE) + cases * PAGES_A_CASE
 
 
 def bytes_a_case(outputs: tuple[str, ...]) -> int:
