@@ -76,7 +76,7 @@ STUDIES = {
     "lhs": SAMPLE | {"design": "lhs", "pareto": {"pair_life_hours": "max", "max_pressure": "min"}},
     "sobol": SAMPLE | {"design": "sobol"},
     "saltelli": SAMPLE | {"design": "saltelli", "samples": 16},
-    "morris": SAMPLE | {"design": "morris", "samples": 16},
+    "morris": SAMPLE | {"design": "morris", "samples": 16, "analysis": {}},
 }
 SAMPLES = ("lhs", "sobol", "saltelli", "morris")
 

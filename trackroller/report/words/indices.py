@@ -166,7 +166,7 @@ def morris(sens: xr.Dataset, output: str) -> Sentence:
     if bent:
         acts = "acts" if len(bent) == 1 else "act"
         said.append(f"{listing(bent)} {acts} differently from place to place (curved, or through other factors)")
-    text = f"On {of_output(sens, output)}, {'; '.join(said)}. {caveat(sens, output)}".strip()
+    text = f"On {of_output(sens, output)}, {'; '.join(said)}."
     return Sentence("morris", text, {"output": output, "bent": bent, "straight": straight})
 
 
