@@ -107,8 +107,8 @@ def _fall(speed: object, lowest: object) -> dict[str, float]:
     least, most = np.nextafter(0.0, 1.0), np.finfo(float).max
     share = "the share of friction left at high speed, in [0, 1]"
     return {
-        "speed": number_in(speed, "friction_law.speed", "a slip speed > 0 in mm/s", least, most),
-        "lowest": number_in(lowest, "friction_law.lowest", share, 0.0, 1.0),
+        "speed": number_in(speed, "friction_law.speed", "a slip speed > 0 in mm/s", least, most, "mm/s"),
+        "lowest": number_in(lowest, "friction_law.lowest", share, 0.0, 1.0, "-"),
     }
 
 
@@ -199,7 +199,8 @@ def _list(part: str, values: object, words: str) -> np.ndarray:
     allowed = f"a list of numbers, {words}"
     if not isinstance(values, (list, tuple, np.ndarray)) or len(values) == 0:
         _refuse(part, values, allowed)
-    return np.array([number_in(value, f"friction_law.{part}", allowed) for value in values])  # type: ignore[attr-defined]
+    unit = "mm/s" if part == "speed" else "-"
+    return np.array([number_in(value, f"friction_law.{part}", allowed, unit=unit) for value in values])  # type: ignore[attr-defined]
 
 
 def at_rest(law: Any) -> float | None:

@@ -32,6 +32,7 @@ FORMS = ("arc", "parabola", "arcs", "points", "file")
 KEYS = (*FORMS, "frame", "smooth", "edge", "width")
 EDGE_KEYS = ("inner", "outer", "chamfer")
 FRAMES = ("section", "contact")
+FARTHEST = 1e300  # mm; largest finite length
 FEWEST, MOST = 5, 20_000  # smallest and largest number of points of a drawn cross-section
 
 PointReader = Callable[[Any, str], list[list[float]]]  # (name of a file, field) -> rows [x, z]
@@ -96,7 +97,7 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
 
 def _number(value: Any, field: str, positive: bool = False, finite: bool = True) -> float:
     words = ("a number > 0" if positive else "a number other than 0") + (" [mm]" if finite else " or inf [mm]")
-    number = number_in(value, field, words, 0.0 if positive else -math.inf)
+    number = number_in(value, field, words, 0.0 if positive else -math.inf, unit="mm")
     if number == 0.0 or (finite and math.isinf(number)):
         raise InputError(field, value, words)
     return number
@@ -121,15 +122,12 @@ def _shape(form: str, value: Mapping[str, Any], field: str, read: PointReader | 
         allowed = "points on both sides of the nominal contact x = 0"
         raise InputError(f"{field}.{form}", [x[0], x[-1]], allowed, remedy)
     smooth = value.get("smooth", 0.0)
-    if smooth != "auto" and not (_is_number(smooth) and 0.0 <= float(smooth) < math.inf):
-        raise InputError(f"{field}.smooth", smooth, "the standard deviation of the noise >= 0 [mm], or 'auto'")
+    if smooth != "auto":
+        allowed = "the standard deviation of the noise >= 0 [mm], or 'auto'"
+        smooth = number_in(smooth, f"{field}.smooth", allowed, 0.0, FARTHEST, unit="mm")
     if smooth:
-        out["smooth"] = smooth if smooth == "auto" else float(smooth)
+        out["smooth"] = smooth
     return out
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
 
 
 def _arcs(rows: Any, field: str) -> list[dict[str, float]]:
@@ -144,9 +142,9 @@ def _arcs(rows: Any, field: str) -> list[dict[str, float]]:
             raise InputError(here, dict(row), "a radius, and where the arc ends (`to`) for all but the last")
         arc = {"radius": _number(row["radius"], f"{here}.radius", finite=False)}
         if not last:
-            if not (_is_number(row["to"]) and math.isfinite(row["to"])) or (out and row["to"] <= out[-1]["to"]):
-                raise InputError(f"{here}.to", row["to"], "a finite place [mm] beyond the end of the arc before")
-            arc["to"] = float(row["to"])
+            allowed = "a finite place [mm] beyond the end of the arc before"
+            start = math.nextafter(out[-1]["to"], math.inf) if out else -FARTHEST
+            arc["to"] = number_in(row["to"], f"{here}.to", allowed, start, FARTHEST, unit="mm")
         out.append(arc)
     return out
 

@@ -56,7 +56,7 @@ class MappingField:
             if value.get(number.name) is None:
                 continue
             where = f"{self.name}.{number.name}"
-            given[number.name] = number_in(value[number.name], where, number.allowed())
+            given[number.name] = number_in(value[number.name], where, number.allowed(), unit=number.unit)
             if not math.isfinite(given[number.name]) or not number.accepts(given[number.name]):
                 raise InputError(where, value[number.name], number.allowed())
         if self.check is not None:

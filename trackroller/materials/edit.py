@@ -22,6 +22,7 @@ from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.numbers import read_number
+from trackroller.numerics.units import split_quantity
 from trackroller.yaml_file import needs_quotes
 
 HEADER = """\
@@ -87,6 +88,8 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
         if key not in values:
             continue
         given = values[key] if isinstance(values[key], Mapping) else {"value": values[key]}
+        if parts := split_quantity(given.get("value")):
+            given = {**given, "value": _plain(key, read_number(parts[0])), "unit": parts[1]}
         record = {"unit": prop.unit} | common | note | dict(given)
         known = [part for part in VALUE_KEYS if part in record]
         entry[key] = {part: record[part] for part in (*known, *(set(record) - set(known)))}

@@ -9,15 +9,12 @@ from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.materials.material import Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import complete_curve
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters import FRICTION_LEVELS, PARAMETERS, Parameter
 
 TEXTS = ("family", "description", "like", "note")
 VALUE_KEYS = ("value", "unit", "source", "placeholder", "note", "range")
 NUMBERS = PROPERTIES | ALTERNATIVES
-UNITS = {
-    "MPa": {"MPa": 1.0, "N/mm2": 1.0, "N/mm^2": 1.0, "N/mm²": 1.0, "GPa": 1e3, "kN/mm2": 1e3, "Pa": 1e-6},
-    "-": {"-": 1.0, "1": 1.0, "": 1.0},
-}
 
 
 class EntryParser:
@@ -76,22 +73,18 @@ class EntryParser:
             remedy = f"Write {{value: ..., unit: {prop.unit}}}."
             raise InputError(field, dict(entry), "it must hold a `value`", remedy)
         unit = str(entry.get("unit", prop.unit))
-        units = UNITS.get(prop.unit, {prop.unit: 1.0})
-        if unit not in units:
-            known = ", ".join(filter(None, units))
-            raise InputError(f"{field}.unit", unit, f"the unit must be one of {known}")
+        if "unit" in entry and split_quantity(entry["value"]):
+            raise InputError(f"{field}.unit", unit, f"one unit; the value {entry['value']} has its own", "Remove one.")
         placeholder = entry.get("placeholder", False)
         if not isinstance(placeholder, bool):
             raise InputError(f"{field}.placeholder", placeholder, "it must be true or false")
-        number = check_number(prop, entry["value"], where, units[unit])
+        number = check_number(prop, entry["value"], where, unit)
         source = self.source(str(entry["source"])) if entry.get("source") else "not given"
         note = str(entry.get("note") or "")
-        span = self.range(prop, entry.get("range"), where, number, units[unit])
+        span = self.range(prop, entry.get("range"), where, number, unit)
         return Value(number, prop.unit, source, placeholder, note, self.origin, span)
 
-    def range(
-        self, prop: Parameter, given: Any, where: str, number: float, factor: float
-    ) -> tuple[float, float] | None:
+    def range(self, prop: Parameter, given: Any, where: str, number: float, unit: str) -> tuple[float, float] | None:
         """Return the checked range of a value in the unit of its property; None if it is not given."""
         if given is None:
             return None
@@ -99,7 +92,7 @@ class EntryParser:
             raise InputError(
                 f"{where}.{prop.name}.range", given, "it must be [lowest, highest] in the unit of the value"
             )
-        low, high = (check_number(prop, end, where, factor) for end in given)
+        low, high = (check_number(prop, end, where, unit) for end in given)
         if not low <= number <= high:
             allowed = f"a range that holds the value {number:g}"
             raise InputError(f"{where}.{prop.name}.range", given, allowed, "Correct the range or the value.")

@@ -8,6 +8,7 @@ from typing import Any
 
 from trackroller.errors import InputError
 from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.units import in_unit
 from trackroller.parameters import Parameter
 from trackroller.parameters.declared import declared
 
@@ -77,7 +78,7 @@ class Value:
     range: tuple[float, float] | None = None
 
 
-def check_number(prop: Parameter, value: Any, where: str, factor: float = 1.0) -> float:
+def check_number(prop: Parameter, value: Any, where: str, unit: str = "") -> float:
     """Return a value in the unit of its property if it lies within the bounds.
 
     Parameters
@@ -88,8 +89,8 @@ def check_number(prop: Parameter, value: Any, where: str, factor: float = 1.0) -
         The value as given.
     where : str
         Place of the value, for messages.
-    factor : float
-        Unit of the value over that of the property [1].
+    unit : str
+        Unit of the value, if it is not that of the property.
 
     Returns
     -------
@@ -104,7 +105,9 @@ def check_number(prop: Parameter, value: Any, where: str, factor: float = 1.0) -
     remedy = f"Give {prop.name} in {prop.unit}." if prop.unit != "-" else "Correct the value."
     if prop.name.startswith("scatter"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."
-    number = number_or_nan(value) * factor
+    field = f"{where}.{prop.name}"
+    number = number_or_nan(value, prop.unit, field)
+    number = in_unit(number, unit or prop.unit, prop.unit, f"{field}.unit")
     if math.isnan(number) or not prop.accepts(number):
-        raise InputError(f"{where}.{prop.name}", value, prop.allowed(), remedy)
+        raise InputError(field, value, prop.allowed(), remedy)
     return number

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError
+from trackroller.numerics.units import in_unit, split_quantity
 
 _TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)
 MAX_LENGTH = 400  # characters of a number
@@ -51,26 +52,46 @@ def read_number(value: Any) -> float:
         raise ValueError(str(exc)) from None
 
 
-def number_or_nan(value: Any) -> float:
+def number_or_nan(value: Any, unit: str | None = None, field: str = "", difference: bool = False) -> float:
     """Return a number as `read_number` does, or NaN for a value that is no number; all bounds refuse NaN.
 
     Parameters
     ----------
     value : int, float or str
         What the user wrote.
+    unit : str, optional
+        Unit of the number, '-' for none; a text may then have a unit that can be converted to it, such as '70 GPa'.
+    field : str
+        Name of the field, for messages on the unit.
+    difference : bool
+        Whether the number is the difference of two values, see `in_unit`.
 
     Returns
     -------
     float
-        The number, or NaN.
+        The number in `unit`, or NaN.
+
+    Raises
+    ------
+    InputError
+        If the text has a unit that is unknown or measures something else.
     """
+    if unit is not None and (parts := split_quantity(value)):
+        return in_unit(read_number(parts[0]), parts[1], unit, field, difference)
     try:
         return read_number(value)
     except ValueError:
         return math.nan
 
 
-def number_in(value: Any, field: str, allowed: str, lower: float = -math.inf, upper: float = math.inf) -> float:
+def number_in(
+    value: Any,
+    field: str,
+    allowed: str,
+    lower: float = -math.inf,
+    upper: float = math.inf,
+    unit: str | None = None,
+) -> float:
     """Return a number between two bounds, which are allowed values themselves.
 
     Parameters
@@ -81,6 +102,8 @@ def number_in(value: Any, field: str, allowed: str, lower: float = -math.inf, up
         Name of the field, and what is allowed, for the message.
     lower, upper : float
         Bounds.
+    unit : str, optional
+        See `number_or_nan`.
 
     Returns
     -------
@@ -92,7 +115,7 @@ def number_in(value: Any, field: str, allowed: str, lower: float = -math.inf, up
     InputError
         If the value is no number or lies outside the bounds.
     """
-    number = number_or_nan(value)
+    number = number_or_nan(value, unit, field)
     if not lower <= number <= upper:
         raise InputError(field, value, allowed)
     return number

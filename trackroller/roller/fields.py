@@ -80,7 +80,7 @@ def number(name: str, value: Any) -> float:
         return math.nan
     if isinstance(value, float) and math.isnan(value):  # the caller checks whether the parameter may be left out
         return math.nan
-    return number_in(value, name, parameter.allowed())
+    return number_in(value, name, parameter.allowed(), unit=parameter.unit)
 
 
 def own_friction(law: Any) -> float:

@@ -17,7 +17,8 @@ import numpy as np
 
 from trackroller.errors import InputError, check_names
 from trackroller.files import read_text
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_or_nan, read_number
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design import correlation, saltelli
 from trackroller.study.design.factors import TAIL, Factor, column
@@ -201,7 +202,9 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
     for j, name in enumerate(names):
         cells = [line[j] for line in lines.values()]
         try:
-            columns[name] = column([read_number(cell) for cell in cells], numeric=True)
+            columns[name] = column([_table_number(name, cell) for cell in cells], numeric=True)
+        except InputError:
+            raise
         except ValueError as exc:
             if name in PARAMETERS:
                 raise InputError("table", f"column {name} ({exc})", PARAMETERS[name].allowed()) from None
@@ -209,6 +212,13 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
         if columns[name].dtype == float and np.isnan(columns[name]).any():
             raise InputError("table", f"column {name}: nan", "a number in each cell")
     return columns, *of_columns(columns), {}
+
+
+def _table_number(name: str, cell: str) -> float:
+    """Return the number of a cell; raise `ValueError` if it is none, `InputError` for a wrong unit."""
+    if name in PARAMETERS and split_quantity(cell):
+        return number_or_nan(cell, PARAMETERS[name].unit, f"table column {name}")
+    return read_number(cell)
 
 
 def of_columns(columns: Mapping[str, np.ndarray]) -> tuple[dict[str, Factor], np.ndarray]:

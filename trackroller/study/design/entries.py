@@ -8,7 +8,7 @@ from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, check_names, nearest, unknown_name
-from trackroller.numerics.numbers import number_or_nan, read_number
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
@@ -140,7 +140,7 @@ def _number(name: str, value: Any, where: str) -> Any:
         return None
     if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
         return value
-    number = number_or_nan(value)
+    number = number_or_nan(value, parameter.unit, where)
     if math.isnan(number) or not parameter.accepts(number):
         remedy = parameter.remedy(number)
         if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
@@ -193,15 +193,15 @@ def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
         return value
     if kind == "values":
         return value if key not in FACTOR_NAMES else [_value(key, entry, where) for entry in value]
-    numbers = [_to_float(entry) for entry in value]
+    unit = PARAMETERS[key].unit if key in PARAMETERS else None
+    spread = 1 if kind in ("normal", "truncnormal") else None
+    numbers = [_to_float(entry, unit, where, place == spread) for place, entry in enumerate(value)]
     if kind in LISTS and len(numbers) == 3 and isinstance(numbers[2], (int, float)) and not numbers[2] <= MAX_LEVELS:
         # a mistyped number of levels would fill the memory
         raise InputError(where, numbers[2], f"at most {MAX_LEVELS} levels of a factor")
     return numbers
 
 
-def _to_float(value: Any) -> Any:
-    try:
-        return read_number(value) if isinstance(value, str) else value
-    except ValueError:
-        return value
+def _to_float(value: Any, unit: str | None, where: str, difference: bool) -> Any:
+    number = number_or_nan(value, unit, where, difference) if isinstance(value, str) else math.nan
+    return value if math.isnan(number) else number

@@ -200,14 +200,14 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     return Block(
         name,
         case,
-        _number(f"{where}.distance", entry["distance"]),
+        _number(f"{where}.distance", entry["distance"], unit="m"),
         None if overrollings is None else _number(f"{where}.guide_overrollings", overrollings),
     )
 
 
-def _number(name: str, value: Any, open_lower: bool = False) -> float:
+def _number(name: str, value: Any, open_lower: bool = False, unit: str = "-") -> float:
     lower = math.nextafter(0.0, 1.0) if open_lower else 0.0
-    return number_in(value, name, f"a finite number {'>' if open_lower else '>='} 0", lower, sys.float_info.max)
+    return number_in(value, name, f"a finite number {'>' if open_lower else '>='} 0", lower, sys.float_info.max, unit)
 
 
 def _probabilities(values: Any) -> tuple[float, ...]:

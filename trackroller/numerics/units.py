@@ -1,0 +1,84 @@
+"""Convert a quantity that a user wrote with its unit, such as '70 GPa', to the unit of a parameter, with pint."""
+
+from __future__ import annotations
+
+import functools
+import re
+from typing import Any
+
+from trackroller.errors import InputError
+
+_NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?inf)"
+_FACTOR = r"[A-Za-z°µμ%]{1,20}(?:\^?-?\d|[²³])?"
+_UNIT = rf"(?:1/)?{_FACTOR}(?:[ *·/()]{{1,3}}{_FACTOR}){{0,5}}\)?"  # no powers of numbers, which could fill the memory
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})\s*", re.ASCII)
+
+
+def split_quantity(value: Any) -> tuple[str, str] | None:
+    """Return the number and the unit of a text such as '70 GPa', or None for anything else."""
+    parts = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    return (parts[1], parts[2]) if parts else None
+
+
+def in_unit(number: float, unit: str, wanted: str, field: str, difference: bool = False) -> float:
+    """Return a number in another unit.
+
+    Parameters
+    ----------
+    number : float
+        The number in `unit`.
+    unit, wanted : str
+        The two units as a user writes them, such as 'N/mm2', 'kN*mm' or 'deg'; '-' and '' for none.
+    field : str
+        Name of the field, for messages.
+    difference : bool
+        Whether the number is the difference of two values, such as a standard deviation; it matters to temperatures.
+
+    Returns
+    -------
+    float
+        The number in `wanted`, with 15 significant digits, so that 70 GPa equals 70000 MPa.
+
+    Raises
+    ------
+    InputError
+        If the unit is unknown or measures something else.
+    """
+    if unit == wanted:
+        return number
+    factor, offset = _factor_and_offset(unit, wanted, field)
+    return float(f"{number * factor + (0.0 if difference else offset):.15g}")
+
+
+@functools.cache
+def _registry() -> Any:
+    import pint  # noqa: PLC0415 - takes half a second, and only a quantity in another unit needs it
+
+    registry: Any = pint.UnitRegistry(cache_folder=None)
+    registry.define("HB = [brinell_hardness]")
+    return registry
+
+
+@functools.lru_cache(maxsize=256)
+def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float]:
+    own = wanted.replace("-", "") if wanted == "-" else wanted
+    remedy = f"Write a number in {own}, or with a unit such as '5 {own}'." if own else "Write a number without unit."
+    try:
+        if not re.fullmatch(_UNIT, unit.strip(), re.ASCII):
+            raise ValueError(unit)
+        zero, one = (_registry().Quantity(number, _spelt(unit)) for number in (0.0, 1.0))
+    except Exception:  # pint's parser raises a dozen kinds, also AssertionError
+        raise InputError(field, unit, "a unit that is known", remedy) from None
+    target = _registry().Unit(_spelt(own))
+    # radians are no dimension to pint, but an angle is no friction coefficient and 600 rpm are not 600/min
+    if one.to_base_units().units != _registry().Quantity(1.0, target).to_base_units().units:
+        kind = f"a unit that can be converted to {own}" if own else "no unit, because the value is a plain number"
+        raise InputError(field, unit, kind, remedy)
+    offset = zero.to(target).magnitude
+    return one.to(target).magnitude - offset, offset
+
+
+def _spelt(unit: str) -> str:
+    """Return a unit as pint reads it: 'N/mm2' as 'N/mm^2', 'Nmm' as 'N*mm'."""
+    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", "" if unit == "-" else unit.replace("·", "*"))
+    return re.sub(r"\b([kM]?)N(mm|cm|m)\b", r"\1N*\2", unit)
