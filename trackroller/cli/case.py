@@ -11,6 +11,7 @@ from trackroller.errors import InputError, WorkError, check_names, unknown_name
 from trackroller.files import files_beside, write_whole
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
+from trackroller.roller.duty import checked_duty, with_duty
 from trackroller.yaml_file import parse_yaml, read_mapping
 
 if TYPE_CHECKING:
@@ -34,9 +35,10 @@ def settings_of(words: list[str]) -> dict[str, Any]:
     return found
 
 
-def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
-    """Return the case and the options of a case file and of --set words."""
+def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
+    """Return the case, the options and the duty of a case file and of --set words."""
     values = (read_mapping(path, "case file") if path is not None else {}) | settings_of(words)
+    duty = checked_duty(values.pop("duty")) if "duty" in values else None
     for key in values:
         if key not in (*FIELDS, *OPTIONS):
             raise unknown_name("case field", key, (*FIELDS, *OPTIONS))
@@ -45,7 +47,7 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any]]:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]
     with files_beside(path):
-        return Case.from_dict(values), options
+        return Case.from_dict(values), options, duty
 
 
 def groups_of(words: str) -> tuple[str, ...]:
@@ -60,13 +62,13 @@ def groups_of(words: str) -> tuple[str, ...]:
 
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
     """Solve the case of a case file and --set words; `more` are further options of `solve`."""
-    case, options = case_of(path, words)
+    case, options, duty = case_of(path, words)
     from trackroller.roller.options import Options  # heavy: numba
 
     Options(**options)  # refuses wrong options before the solver is imported
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
-    return solve(case, **(options | more))
+    return with_duty(solve(case, **(options | more)), duty)
 
 
 def writable(out: Path) -> Path:

@@ -216,7 +216,7 @@ def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO
 
 
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
-    case, told = case_of(path, words)
+    case, told, _ = case_of(path, words)
     values = case.as_dict()
     _print_not_given({name: values[name] for name in case.not_given}, values.keys() - set(case.not_given))
     if no_shortcuts:

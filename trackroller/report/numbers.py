@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.roller.duty import duty_of, years
 from trackroller.study.design.levels import NAMED, short
 
 UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°"}
@@ -70,10 +74,41 @@ def life(value: float) -> str:
     return "unlimited" if value == math.inf else rounded(value)
 
 
+_duty: ContextVar[Mapping[str, float] | None] = ContextVar("duty", default=None)
+
+
+@contextmanager
+def on_duty(duty: Mapping[str, float] | None) -> Iterator[None]:
+    """Write lives in hours with their years on a duty, see `trackroller.roller.duty`, while this context lasts."""
+    token = _duty.set(duty)
+    try:
+        yield
+    finally:
+        _duty.reset(token)
+
+
+def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Let a function of a `StudyView` or of the result of one case write lives with their years, if a duty is known."""
+
+    @functools.wraps(function)
+    def on_its_duty(result: Any, *args: Any) -> Any:
+        with on_duty(duty_of(result) if hasattr(result, "data_vars") else result.study.get("duty")):
+            return function(result, *args)
+
+    return on_its_duty
+
+
+def hour_unit(hours: float) -> str:
+    """Return the unit behind a life: 'h', or with its years if the duty of the roller is known: 'h (4.2 years)'."""
+    duty = _duty.get()
+    return f"h ({rounded(years(hours, duty), 2)} years)" if duty and math.isfinite(hours) else "h"
+
+
 def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
     """Write a life, with the remark that it lies beyond the S-N data; an unlimited life is no number of hours."""
     if value == math.inf:
         return f"{NO_FAILURE} ({BEYOND})"
+    unit = hour_unit(value) if unit == "h" else unit
     return f"{rounded(value)} {unit}".strip() + (f" ({BEYOND})" if beyond else "")
 
 
@@ -179,7 +214,7 @@ def with_unit(text: str, units: str) -> str:
 
 def quantity(value: float, units: str) -> str:
     """Write a number with its unit, for running text; pure numbers stand alone."""
-    unit = unit_text(units)
+    unit = hour_unit(value) if units == "h" else unit_text(units)
     return f"{rounded(value)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
 
 

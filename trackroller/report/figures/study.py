@@ -28,6 +28,7 @@ from trackroller.report.figures.sensitivity import (
     tornado,
 )
 from trackroller.report.figures.sn_diagram import sn_diagram
+from trackroller.report.numbers import lives_in_years
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
 
 Draw = Callable[[], style.Drawn]
@@ -36,6 +37,7 @@ FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
 
 
+@lives_in_years
 def draw_all(view: StudyView, out_dir: Path) -> list[style.FigureInfo]:
     """Draw the figures of a study as SVG and PNG and write their captions to `index.json`.
 

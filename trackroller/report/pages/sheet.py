@@ -12,6 +12,7 @@ import numpy as np
 
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
+from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet_facts import collect, side_by_side
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "") -> Path:
     return html.write_page(Path(path), render(ds, name))
 
 
+@lives_in_years
 def render(ds: xr.Dataset, name: str = "") -> str:
     """Return the sheet as HTML text; see `write_sheet`."""
     drawn = {}

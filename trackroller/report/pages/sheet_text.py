@@ -9,6 +9,7 @@ import numpy as np
 
 from trackroller.analysis.table import BODIES
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
+from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
 from trackroller.report.pages.spectrum import block_table, life_rows, warnings
 from trackroller.report.tables.limits import BOTH
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+@lives_in_years
 def print_facts(ds: xr.Dataset) -> None:
     """Print the facts of a solved roller: verdict, inputs, contacts, life and warnings, and its margins at the end."""
     facts = collect(ds)

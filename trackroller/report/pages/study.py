@@ -18,7 +18,7 @@ from trackroller.files import write_text
 from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.numbers import capital, count, long_name, percent, rounded
+from trackroller.report.numbers import capital, count, lives_in_years, long_name, percent, rounded
 from trackroller.report.tables.cases import reason_table, regime_table, validity_table
 from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.designs import best_table
@@ -87,6 +87,7 @@ def page_text(view: StudyView, content: dict[str, Any], figures_dir: Path) -> st
     return secured(render("report.html.j2", shown, cell=cell))
 
 
+@lives_in_years
 def contents(view: StudyView) -> dict[str, Any]:
     """Return everything the template needs from the study and its analysis, except figures and explorer."""
     settings, attrs = view.study, dict(view.attrs)

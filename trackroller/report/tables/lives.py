@@ -12,7 +12,7 @@ from trackroller.analysis.table import BODIES, DATA_END
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.parameters import FIRST_TO_FAIL
-from trackroller.report.numbers import lasting, number, rounded
+from trackroller.report.numbers import hour_unit, lasting, number, rounded
 from trackroller.report.tables.inputs import Row
 from trackroller.roller.geometry import rolling_radius
 
@@ -87,7 +87,11 @@ def _life(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Materi
 def _text(hours: float, inputs: Mapping[str, Any], beyond: bool, further: str = "") -> str:
     if math.isinf(hours):
         return lasting(hours)
-    told = [f"{rounded(hours)} h", f"{rounded(hours * inputs['velocity'] * 60.0 / 1e3)} km", *filter(None, [further])]
+    told = [
+        f"{rounded(hours)} {hour_unit(hours)}",
+        f"{rounded(hours * inputs['velocity'] * 60.0 / 1e3)} km",
+        *filter(None, [further]),
+    ]
     return lasting(1.0, beyond=beyond).replace("1", "; ".join(told), 1)
 
 

@@ -10,6 +10,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model
 
 from trackroller.errors import InputError
 from trackroller.parameters import OPTIONS
+from trackroller.roller.duty import checked_duty
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design.correlation import check_entries
 from trackroller.study.design.entries import base_value, choice, factor
@@ -40,6 +41,7 @@ Name = Annotated[str, BeforeValidator(check_name)]
 Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(check_entries)]
 Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
 Goals = Annotated[dict[str, str], BeforeValidator(directions)]
+Duty = Annotated[dict[str, float] | None, BeforeValidator(checked_duty)]
 Comparisons = Annotated[tuple[str, ...], BeforeValidator(comparisons)]
 
 
@@ -103,6 +105,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     analysis: Analysis = Field(
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
     )
+    duty: Duty = Field(None, description="hours_per_day and days_per_year of travel: lives in years beside hours")
     roles: Roles = Field({}, description="who sets a factor: choice (the designer) or condition (the use)")
     pareto: Goals = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
     constraints: Comparisons = Field((), description="comparisons that an allowed design must meet")

@@ -1,0 +1,61 @@
+"""The duty of a roller, hours a day and days a year, which turns lives in hours into years."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from trackroller.errors import InputError, check_names
+from trackroller.numerics.numbers import number_in
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MOST = {"hours_per_day": 24.0, "days_per_year": 366.0}
+EXAMPLE = "Write duty: {hours_per_day: 16, days_per_year: 250}."
+ATTRIBUTE = "duty"  # of the result of one case: JSON
+
+
+def checked_duty(value: Any) -> dict[str, float]:
+    """Return a duty with both numbers; raise `InputError` if a number is missing or impossible."""
+    if not isinstance(value, Mapping):
+        raise InputError("duty", value, "hours_per_day and days_per_year", EXAMPLE)
+    check_names("duty", value, MOST)
+    for name in MOST:
+        if name not in value:
+            raise InputError(f"duty.{name}", None, "a number for each of hours_per_day and days_per_year", EXAMPLE)
+    least = math.nextafter(0.0, 1.0)
+    return {
+        name: number_in(value[name], f"duty.{name}", f"a number > 0 and <= {most:g}", least, most)
+        for name, most in MOST.items()
+    }
+
+
+def years(hours: float, duty: Mapping[str, float]) -> float:
+    """Return a life in years of a duty.
+
+    Parameters
+    ----------
+    hours : float
+        Hours of travel [h].
+    duty : mapping
+        `hours_per_day` and `days_per_year` [1].
+
+    Examples
+    --------
+    >>> years(8000, {"hours_per_day": 16, "days_per_year": 250})
+    2.0
+    """
+    return hours / (duty["hours_per_day"] * duty["days_per_year"])
+
+
+def with_duty(ds: xr.Dataset, duty: Mapping[str, float] | None) -> xr.Dataset:
+    """Return the result of one case with its duty as attribute; without a duty as it is."""
+    return ds if duty is None else ds.assign_attrs({ATTRIBUTE: json.dumps(duty)})
+
+
+def duty_of(ds: xr.Dataset) -> dict[str, float] | None:
+    """Return the duty that the result of one case was solved with, None if it has none."""
+    return json.loads(ds.attrs[ATTRIBUTE]) if ATTRIBUTE in ds.attrs else None
