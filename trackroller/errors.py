@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
 
 class InputError(ValueError):
@@ -31,11 +32,70 @@ class InputError(ValueError):
         self.value = value
         self.allowed = allowed
         self.remedy = remedy
+        self.line: int | None = None  # of the file, the first line being 1
         text = f"{field} = {value!r} is not usable: {allowed}"
         super().__init__(f"{text}. {remedy}" if remedy else text)
 
+    @property
+    def errors(self) -> tuple[InputError, ...]:
+        """Return the single errors, of which `InputErrors` has several."""
+        return (self,)
+
+    def __str__(self) -> str:
+        return super().__str__() if self.line is None else f"line {self.line}: {super().__str__()}"
+
     def __reduce__(self):  # another process rebuilds the error from its four parts
-        return type(self), (self.field, self.value, self.allowed, self.remedy)
+        return type(self), (self.field, self.value, self.allowed, self.remedy), {"line": self.line}
+
+
+class InputErrors(InputError):
+    """All errors of one file or mapping; field, value, what is allowed and remedy are those of the first."""
+
+    def __init__(self, errors: Iterable[InputError]) -> None:
+        self._errors = tuple(errors)
+        first = self._errors[0]
+        super().__init__(first.field, first.value, first.allowed, first.remedy)
+
+    @property
+    def errors(self) -> tuple[InputError, ...]:
+        """Return the single errors in the order of the file."""
+        return self._errors
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self._errors))
+
+    def __reduce__(self):
+        return type(self), (self._errors,)
+
+
+class Collector:
+    """Collect the errors of the parts of a file, and raise them together.
+
+    Examples
+    --------
+    >>> wrong = Collector()
+    >>> for value in (-1, -2):
+    ...     with wrong.part():
+    ...         raise InputError("slip", value, "a number >= 0")
+    >>> len(wrong.errors)
+    2
+    """
+
+    def __init__(self) -> None:
+        self.errors: list[InputError] = []
+
+    @contextmanager
+    def part(self) -> Iterator[None]:
+        """Keep the input errors of one part instead of raising them."""
+        try:
+            yield
+        except InputError as error:
+            self.errors += error.errors
+
+    def check(self) -> None:
+        """Raise the errors that were collected, if there are any; a single one as it is."""
+        if self.errors:
+            raise self.errors[0] if len(self.errors) == 1 else InputErrors(self.errors)
 
 
 class ShapeError(InputError):
@@ -49,7 +109,24 @@ class WorkError(RuntimeError):
     """Report that the work failed for a reason outside the input, and what to do about it."""
 
 
-CLOSE, CLOSE_SHORT = 0.7, 0.6  # similarity from which on a name, or one of at most four letters, counts as misspelt
+CLOSE, CLOSE_SHORT = 0.8, 0.6  # similarity from which on a name, or one of at most four letters, counts as misspelt
+MEANS = {  # names that a word of a designer stands for, the likeliest first
+    "outer diameter": "outer_radius axis_distance guide_profile_radius roller_profile_radius",
+    "groove": "roller_profile_radius groove_depth",
+    "rail track": "guide_profile_radius guide_curve_radius guide_material",
+    "speed rpm": "velocity guide_overrollings_per_hour",
+    "drive driving torque traction braking": "motor_force",
+    "load weight preload": "radial_force axial_force permissible_radial_force",
+    "thrust lateral side": "axial_force",
+    "mu": "friction_coefficient",
+    "reliability survival confidence b10": "failure_probability failure_probabilities",
+    "life lifetime": "pair_life_hours roller_life_hours guide_life_hours life_rule",
+    "steel": "roller_material guide_material material_pair",
+    "pressure hertzian": "max_pressure hertz",
+    "stress": "peak_stress roller_peak_stress guide_peak_stress stress_bodies",
+    "hours days years shift": "duty guide_overrollings_per_hour",
+}
+_MEANS = {word: names.split() for words, names in MEANS.items() for word in words.split()}
 
 
 def nearest(name: str, options: Iterable[str]) -> str | None:
@@ -69,18 +146,26 @@ def _words(name: object) -> set[str]:
     return set(str(name).lower().split("_"))
 
 
+def likeliest(name: str, options: Iterable[str]) -> list[str]:
+    """Return at most three options that a name stands for by the meaning of its words, the likeliest first."""
+    options, words = list(options), str(name).lower().split("_")
+    meant = [option for word in words for option in _MEANS.get(word, ()) if option in options]
+    akin = [o for o in options if any(difflib.get_close_matches(word, _words(o), cutoff=CLOSE) for word in words)]
+    return list(dict.fromkeys([*meant, *akin]))[:3]
+
+
 def unknown_name(kind: str, name: str, options: Iterable[str]) -> InputError:
     """Return the error for a name that is not among `options`; it proposes the names that are meant most likely."""
     options = list(options)
     close = nearest(name, options)
-    akin = [option for option in options if _words(name) & _words(option)][:3]
+    akin = likeliest(name, options)
     remedy = f"Names with a similar meaning: {', '.join(akin)}." if akin else "Use one of these names."
     remedy = f"Did you mean '{close}'?" if close else remedy
     return InputError(kind, name, "known names are " + ", ".join(map(str, options)), remedy)
 
 
 def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> None:
-    """Raise the error `unknown_name` for the first of `names` that is not among `options`.
+    """Raise the errors `unknown_name` for those of `names` that are not among `options`.
 
     Parameters
     ----------
@@ -96,7 +181,9 @@ def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> N
     InputError
         If a name is unknown.
     """
-    known = tuple(options)
+    known, wrong = tuple(options), Collector()
     for name in names:
-        if name not in known:
-            raise unknown_name(kind, str(name), known)
+        with wrong.part():
+            if name not in known:
+                raise unknown_name(kind, str(name), known)
+    wrong.check()

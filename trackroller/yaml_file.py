@@ -11,7 +11,8 @@ from __future__ import annotations
 import io
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -19,11 +20,11 @@ from ruamel.yaml import YAML
 from ruamel.yaml.constructor import DuplicateKeyError, SafeConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, ScalarEvent
-from ruamel.yaml.nodes import ScalarNode
+from ruamel.yaml.nodes import MappingNode, ScalarNode, SequenceNode
 from ruamel.yaml.representer import SafeRepresenter
 from ruamel.yaml.resolver import BaseResolver
 
-from trackroller.errors import InputError
+from trackroller.errors import Collector, InputError
 from trackroller.files import read_text
 
 MAX_VALUES = 200_000  # with aliases counted in full
@@ -163,6 +164,51 @@ def parse_yaml(text: str, what: str) -> Any:
     except (YAMLError, ValueError, RecursionError) as exc:
         reason = " ".join(str(exc).split())[:200]
         raise InputError(what, "the file", f"YAML: {reason}", "Save it as plain UTF-8 text.") from None
+
+
+def lines_of(text: str) -> dict[tuple[str, ...], int]:
+    """Return the line of each key of a YAML text by its path, the first line being 1; entries of lists have numbers."""
+    lines: dict[tuple[str, ...], int] = {}
+
+    def visit(node: Any, path: tuple[str, ...]) -> None:
+        lines.setdefault(path, node.start_mark.line + 1)
+        if isinstance(node, MappingNode):
+            for key, value in node.value:
+                lines[*path, str(key.value)] = key.start_mark.line + 1
+                visit(value, (*path, str(key.value)))
+        elif isinstance(node, SequenceNode):
+            for i, value in enumerate(node.value):
+                visit(value, (*path, str(i)))
+
+    root = YAML(typ="safe", pure=True).compose(io.StringIO(text))
+    if root is not None:
+        visit(root, ())
+    return lines
+
+
+@contextmanager
+def errors_by_line(text: str, elsewhere: Collection[str] = ()) -> Iterator[None]:
+    """Give the input errors of a file their lines in the text, and raise them in this order.
+
+    Parameters
+    ----------
+    text : str
+        Text of the file.
+    elsewhere : collection of str
+        Keys whose values come from elsewhere, such as the command line.
+    """
+    try:
+        yield
+    except InputError as error:
+        lines = lines_of(text)
+        for one in error.errors:
+            parts = [part for part in re.split(r"[.\[\]\s:]+", one.field) if part]
+            paths = [(*parts[:n], *own) for n in range(len(parts), -1, -1) for own in ((str(one.value),), ())]
+            own = (path for path in paths if path in lines and path and path[0] not in elsewhere)
+            one.line = next((lines[path] for path in own), None)
+        wrong = Collector()
+        wrong.errors = sorted(error.errors, key=lambda one: one.line or 0)
+        wrong.check()
 
 
 def parse_mapping(text: str, what: str) -> dict[str, Any]:

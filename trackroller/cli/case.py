@@ -7,12 +7,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import InputError, WorkError, check_names, unknown_name
-from trackroller.files import files_beside, write_whole
+from trackroller.errors import Collector, InputError, WorkError, check_names
+from trackroller.files import files_beside, read_text, write_whole
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty, with_duty
-from trackroller.yaml_file import parse_yaml, read_mapping
+from trackroller.yaml_file import errors_by_line, parse_mapping, parse_yaml, read_mapping
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,17 +37,25 @@ def settings_of(words: list[str]) -> dict[str, Any]:
 
 def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
     """Return the case, the options and the duty of a case file and of --set words."""
-    values = (read_mapping(path, "case file") if path is not None else {}) | settings_of(words)
+    text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
+    values = ({} if path is None else parse_mapping(text, "case file")) | given
+    with errors_by_line(text, given), files_beside(path):
+        return _checked_case(values)
+
+
+def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
+    """Return the case, the options and the duty among these values."""
     duty = checked_duty(values.pop("duty")) if "duty" in values else None
-    for key in values:
-        if key not in (*FIELDS, *OPTIONS):
-            raise unknown_name("case field", key, (*FIELDS, *OPTIONS))
-    options = {key: values.pop(key) for key in OPTIONS if key in values}
+    wrong, options = Collector(), {key: values.pop(key) for key in OPTIONS if key in values}
+    with wrong.part():
+        check_names("case field", values, (*FIELDS, *OPTIONS, "duty"))
     for key in options:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]
-    with files_beside(path):
-        return Case.from_dict(values), options, duty
+    with wrong.part():
+        case = Case.from_dict({key: value for key, value in values.items() if key in FIELDS})
+    wrong.check()
+    return case, options, duty
 
 
 def groups_of(words: str) -> tuple[str, ...]:

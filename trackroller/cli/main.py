@@ -280,7 +280,7 @@ def run_app(command: Callable[[], object]) -> int:
         code = exc.code if isinstance(exc.code, int) else int(exc.code is not None)
         return _tell(STOPPED, code) if code == INTERRUPTED else code
     except InputError as exc:
-        return _tell(str(exc), 2)
+        return max(_tell(str(error), 2) for error in exc.errors)
     except WorkError as exc:
         return _tell(str(exc), 1)
     except KeyboardInterrupt:

@@ -79,7 +79,7 @@ class Parameter:
         """Return what to write instead of a value that only has the wrong sign; '' for any other value."""
         if not math.isfinite(value) or not self.accepts(-value):
             return ""
-        return f"Write {-value:g}. The sign means: {self.meaning}."
+        return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
 
     def accepts(self, value: np.ndarray | float) -> np.ndarray:
         """Return which values are allowed, elementwise, a bool array of the shape of `value`."""

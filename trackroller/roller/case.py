@@ -6,12 +6,13 @@ import functools
 import json
 import math
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, fields, make_dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
-from trackroller.errors import InputError, check_names
+from trackroller.errors import Collector, InputError, check_names
 from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.numerics.rows import once_each
 from trackroller.parameters import (
@@ -130,33 +131,35 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
 
     def __post_init__(self) -> None:
         columns: dict[str, np.ndarray] = {}
+        wrong = Collector()
         if isinstance(self.friction_coefficient, Default):
-            object.__setattr__(self, "friction_coefficient", own_friction(self.friction_law))
+            with suppress(InputError):  # a wrong law is refused below
+                object.__setattr__(self, "friction_coefficient", own_friction(self.friction_law))
         missing = tuple(name for name, value in vars(self).items() if isinstance(value, (Default, DefaultName)))
         object.__setattr__(self, "not_given", missing)
-        for name, parameter in PARAMETERS.items():
-            value = getattr(self, name)
-            if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
-                columns[name] = np.array([math.nan])
-                continue
-            if value is not None and isinstance(value, float) and math.isnan(value):
-                raise InputError(name, value, parameter.allowed())
-            given = number(name, value)
-            if not parameter.accepts(given):
-                raise InputError(name, value, parameter.allowed(), parameter.remedy(given))
-            object.__setattr__(self, name, None if math.isnan(given) else given)
-            columns[name] = np.array([given])
-        for name in MATERIAL_FIELDS:
-            if not isinstance(value := getattr(self, name), (str, Mapping, Material)) or value == "":
-                allowed = "a material is a name of the database or a mapping with its values"
-                raise InputError(name, value, allowed, "`trackroller materials list` shows the names.")
-            object.__setattr__(self, name, str(value) if isinstance(value, DefaultName) else value)
-        for name in MAPPING_FIELDS:
-            text = mapping_text(name, getattr(self, name))
-            object.__setattr__(self, name, json.loads(text) if text else None)
+        for name in PARAMETERS:
+            with wrong.part():
+                columns[name] = np.array([self._checked_number(name)])
+        for name in (*MATERIAL_FIELDS, *MAPPING_FIELDS):
+            with wrong.part():
+                object.__setattr__(self, name, _checked_word(name, getattr(self, name)))
+        wrong.check()
         problem = geometry_problem(columns)
         if problem is not None:
             raise problem
+
+    def _checked_number(self, name: str) -> float:
+        """Return a number of this case, which then stands as a float or None in its field; NaN if it is not given."""
+        value, parameter = getattr(self, name), PARAMETERS[name]
+        if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
+            return math.nan
+        if value is not None and isinstance(value, float) and math.isnan(value):
+            raise InputError(name, value, parameter.allowed())
+        given = number(name, value)
+        if not parameter.accepts(given):
+            raise InputError(name, value, parameter.allowed(), parameter.remedy(given))
+        object.__setattr__(self, name, None if math.isnan(given) else given)
+        return given
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Case:
@@ -169,12 +172,28 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
         """
         if not isinstance(values, Mapping):
             raise InputError("case", values, "a case is a mapping of parameter names to values")
-        check_names("case field", map(str, values), FIELDS)
-        return cls(**{str(k): v for k, v in values.items()})
+        wrong = Collector()
+        with wrong.part():
+            check_names("case field", map(str, values), FIELDS)
+        with wrong.part():
+            case = cls(**{str(k): v for k, v in values.items() if str(k) in FIELDS})
+        wrong.check()
+        return case
 
     def as_dict(self) -> dict[str, Any]:
         """Return the case as a plain mapping, one entry for each field."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def _checked_word(name: str, value: Any) -> Any:
+    """Return a material, or a mapping with the values that it may leave out."""
+    if name in MAPPING_FIELDS:
+        text = mapping_text(name, value)
+        return json.loads(text) if text else None
+    if not isinstance(value, (str, Mapping, Material)) or value == "":
+        allowed = "a material is a name of the database or a mapping with its values"
+        raise InputError(name, value, allowed, "`trackroller materials list` shows the names.")
+    return str(value) if isinstance(value, DefaultName) else value
 
 
 def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import Collector, InputError, unknown_name
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.options import check_pairs, check_spin_model
@@ -71,13 +71,19 @@ def cross_check(study: Study) -> None:
         check_listed(study.parsed)
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
-    check(config, study.parsed)
+    wrong = Collector()
+    with wrong.part():
+        check(config, study.parsed)
+    for checked in (_check_roles, _check_parts, _check_options, _check_correlations, _check_materials):
+        with wrong.part():
+            checked(study)
+    wrong.check()
+
+
+def _check_roles(study: Study) -> None:
+    config = study.config
     if config.roles:
         check_roles(config.roles, study.parsed if config.design != "table" else study.drawn.columns, config.design)
-    _check_parts(study)
-    _check_options(study)
-    _check_correlations(study)
-    _check_materials(study)
 
 
 def _check_parts(study: Study) -> None:

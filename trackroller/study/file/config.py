@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
 
-from trackroller.errors import InputError
+from trackroller.errors import Collector, InputError
 from trackroller.parameters import OPTIONS
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.stop import parse_condition
@@ -35,6 +35,16 @@ def check_name(name: Any) -> str:
             "It names the results folder: no path parts.",
         )
     return name
+
+
+def collected(entries: Mapping[Any, Any], checked: Callable[[Any, Any], Any]) -> dict[Any, Any]:
+    """Return the checked value of each entry; raise the errors of all of them together."""
+    out, wrong = {}, Collector()
+    for key, entry in entries.items():
+        with wrong.part():
+            out[key] = checked(key, entry)
+    wrong.check()
+    return out
 
 
 Name = Annotated[str, BeforeValidator(check_name)]
@@ -144,11 +154,11 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     def _base(cls, value: Any, info: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError(info.field_name, value, "a mapping of parameters to values")
-        return {key: base_value(key, entry, info.field_name) for key, entry in value.items()}
+        return collected(value, lambda key, entry: base_value(key, entry, info.field_name))
 
     @field_validator("factors", mode="before")
     @classmethod
     def _factors(cls, value: Any) -> Any:
         if not isinstance(value, Mapping):
             raise InputError("factors", value, "a mapping of factors to their values")
-        return {key: factor(key, spec, value) for key, spec in value.items()}
+        return collected(value, lambda key, spec: factor(key, spec, value))

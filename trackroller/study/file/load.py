@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from trackroller.contact.friction_laws import at_rest
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.parameters.example import not_given
 from trackroller.study.file.checks import check_geometry, cross_check
@@ -19,14 +19,11 @@ from trackroller.study.file.config import StudyFile
 from trackroller.study.file.csv import csv_names
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.study import Study
-from trackroller.yaml_file import parse_mapping
+from trackroller.yaml_file import errors_by_line, parse_mapping
 
 
-def _translate(error: ValidationError) -> InputError:
-    """Return the first error of pydantic as an `InputError` with a remedy."""
-    # A misspelt key often causes the other errors, so it is reported first.
-    found = sorted(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    detail = found[0]
+def _translated(detail: Mapping[str, Any]) -> InputError:
+    """Return an error of pydantic as an `InputError` with a remedy."""
     context = detail.get("ctx", {}).get("error")
     if isinstance(context, InputError):
         return context
@@ -44,7 +41,13 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     try:
         config: StudyFile = StudyFile.model_validate(dict(data))
     except ValidationError as error:
-        raise _translate(error) from None
+        wrong, found = Collector(), error.errors()
+        unknown = [str(one["loc"][-1]) for one in found if one["type"] == "extra_forbidden"]
+        for one in found:
+            if one["type"] != "missing" or not any(nearest(name, one["loc"][-1:]) for name in unknown):
+                wrong.errors += _translated(one).errors
+        wrong.check()
+        raise
     return config
 
 
@@ -107,7 +110,9 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
         return parse_study(path, None, database, planned)
     path = Path(path)
     with files_beside(path), noted_reads():
-        data = parse_mapping(read_text(path, "study file"), "study file")
-        if data.get("table") is not None:
-            find_beside(data["table"], "table")
-        return parse_study(data, path, database, planned)
+        text = read_text(path, "study file")
+        data = parse_mapping(text, "study file")
+        with errors_by_line(text):
+            if data.get("table") is not None:
+                find_beside(data["table"], "table")
+            return parse_study(data, path, database, planned)
