@@ -7,10 +7,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from trackroller.cli.usage import print_line
 from trackroller.errors import Collector, InputError, WorkError, check_names
 from trackroller.files import files_beside, read_text, write_whole
+from trackroller.materials import load_database
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.roller.case import FIELDS, Case
+from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.duty import checked_duty, with_duty
 from trackroller.yaml_file import errors_by_line, parse_mapping, parse_yaml, read_mapping
 
@@ -40,7 +43,10 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], 
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
     values = ({} if path is None else parse_mapping(text, "case file")) | given
     with errors_by_line(text, given), files_beside(path):
-        return _checked_case(values)
+        case, options, duty = _checked_case(values)
+        for text in doubts_of_case(case, load_database()):
+            print_line(f"doubtful: {text}")
+        return case, options, duty
 
 
 def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:

@@ -11,6 +11,7 @@ import numpy as np
 from rich.filesize import decimal
 
 from trackroller.cli.case import case_of, is_study, writable, writable_page
+from trackroller.cli.usage import print_line
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report.terminal import print_table
@@ -20,6 +21,7 @@ from trackroller.roller.options import Options, options_of_cases
 from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_report
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.load import load_study
+from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar, shown_steps
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
@@ -37,6 +39,7 @@ def run_with_progress(
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
     study = load_study(path)
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors}, sys.stderr)
+    _print_doubts(study)
     with progress_bar(study.name, not quiet) as bar:
         plan = run_study(
             study,
@@ -207,6 +210,12 @@ def _print_study(path: Path, results: Path) -> None:
     print(f"report    {duration(pages)} more on one core, for analysis, figures and page")
     print(f"disk      about {decimal(status.total * bytes_a_case(study.config.outputs))}")
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
+    _print_doubts(study)
+
+
+def _print_doubts(study: Study) -> None:
+    for text in study.doubts():
+        print_line(f"doubtful: {text}")
 
 
 def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO | None = None) -> None:

@@ -25,12 +25,14 @@ from trackroller.report.tables.designs import best_table
 from trackroller.report.tables.indices import index_table, measure_table, part_tables
 from trackroller.report.tables.inputs import (
     Row,
+    as_material,
     base_rows,
     correlation_row,
     factor_table,
     friction_table,
     materials_table,
     record_rows,
+    stored_materials,
 )
 from trackroller.report.tables.pareto import pareto_table
 from trackroller.report.tables.table import Table, cell
@@ -42,6 +44,7 @@ from trackroller.report.words.designs import size_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.workbook import export
+from trackroller.roller.doubts import doubts
 from trackroller.study.design.sampling import ARRAYS
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
@@ -103,6 +106,7 @@ def contents(view: StudyView) -> dict[str, Any]:
         "models_said": models.get("said", []),
         "factors": factor_table(view),
         "base": base_rows(view),
+        "doubts": _doubts(view),
         "not_given": not_given_text(settings.get("not_given", {})),
         "options": options + models_used(view.data) + correlation_row(view),
         "materials": [t for t in (materials_table(attrs), friction_table(attrs)) if t],
@@ -112,6 +116,12 @@ def contents(view: StudyView) -> dict[str, Any]:
         "record": record_rows(attrs, _NO_RECORD),
         "study_text": str(attrs.get("study", "")),
     }
+
+
+def _doubts(view: StudyView) -> list[str]:
+    """Return a sentence for each unusual value of the cases."""
+    varied = {name: view.table[name].to_numpy() for name in view.table if name in parameters.PARAMETERS}
+    return doubts(view.base | varied, map(as_material, stored_materials(view.attrs).values()))
 
 
 def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:

@@ -8,8 +8,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from trackroller.files import Reads
 from trackroller.materials import MaterialDatabase, load_database
+from trackroller.parameters import MATERIAL_FIELDS
+from trackroller.roller.doubts import doubts
 from trackroller.study.design import build
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import Factor, parse
@@ -89,6 +93,14 @@ class Study:
     def drawn(self) -> SampledDesign:
         """Return the drawn design; it is kept, because reading a CSV of a million cases takes seconds."""
         return build.draw(self.config, self.factors, self.table_path)
+
+    def doubts(self) -> list[str]:
+        """Return a sentence for each value that is unusual, see `trackroller.roller.doubts`."""
+        values = {**self.config.values, **self.drawn.columns}
+        pair = np.ravel(np.array(values.get("material_pair", ()), dtype=object)).tolist()
+        names = [name for entry in pair for name in (entry if isinstance(entry, tuple) else str(entry).split(" / "))]
+        names += [name for field in MATERIAL_FIELDS for name in set(np.ravel(values.get(field, ())).tolist())]
+        return doubts(values, map(self.materials.material, dict.fromkeys(names)))
 
     def design(self) -> xr.Dataset:
         """Return the cases of the study.

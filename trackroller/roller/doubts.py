@@ -1,0 +1,119 @@
+"""Ask about values that are allowed but unusual: a wrong unit, measured points that are not smoothed."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.contact.cross_sections import noise_of
+from trackroller.materials.properties import PROPERTIES
+from trackroller.numerics.units import in_unit
+from trackroller.parameters import PARAMETERS
+from trackroller.roller.case import Case
+
+if TYPE_CHECKING:
+    from trackroller.materials import Material, MaterialDatabase
+
+# ASSUME: sizes between which the values of rollers lie that are built; the sign does not count.
+USUAL: dict[str, tuple[float, float]] = {
+    "axis_distance": (3.0, 2000.0),
+    "guide_profile_radius": (0.3, 500.0),
+    "roller_profile_radius": (0.3, 1000.0),
+    "guide_curve_radius": (10.0, 1e6),
+    "contact_angle": (5.0, 85.0),
+    "radial_force": (1.0, 1e6),
+    "velocity": (0.3, 2000.0),
+    "friction_coefficient": (0.0, 1.0),
+}
+# ASSUME: magnesium to tungsten, and unfilled polyethylene to polymers with carbon fibres.
+METAL = {"youngs_modulus": (4e4, 4.5e5), "tensile_strength": (50.0, 4000.0), "density": (1500.0, 20000.0)}
+POLYMER = {"youngs_modulus": (200.0, 4e4), "tensile_strength": (10.0, 500.0), "density": (850.0, 2300.0)}
+OF_FAMILY = {"metal": METAL, "PA6": POLYMER, "POM": POLYMER}
+OTHER_UNITS = {
+    "MPa": ("GPa", "Pa", "kPa"),
+    "mm": ("m", "cm", "um"),
+    "N": ("kN", "mN"),
+    "deg": ("rad",),
+    "m/min": ("m/s", "mm/s", "km/h"),
+    "kg/m3": ("g/cm3",),
+    "-": ("%",),
+}
+ROUGH = 0.05  # scatter of the curvature of measured points over that of an arc as wide as the points
+
+
+def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> list[str]:
+    """Return a sentence for each value that is unusual, with the unit that may have been meant.
+
+    Parameters
+    ----------
+    values : mapping
+        Numbers of cases by parameter, each a number or an array, in the units of `PARAMETERS`; `guide_profile` and
+        `roller_profile` as mappings, JSON texts or arrays of such texts.
+    materials : iterable of Material
+        Materials of the cases; a family of `OF_FAMILY` has usual values.
+
+    Returns
+    -------
+    list of str
+        Sentences; empty if nothing is unusual.
+    """
+    told = []
+    for name, usual in USUAL.items():
+        given = np.ravel(values.get(name, math.nan)).tolist()  # a friction coefficient may be a word
+        found = np.array([v for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0])
+        ends = {float(found[np.argmin(np.abs(found))]), float(found[np.argmax(np.abs(found))])} if found.size else ()
+        told += [text for number in ends if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))]
+    for material in {m.name: m for m in materials}.values():
+        for name, usual in OF_FAMILY.get(material.family, {}).items():
+            number = getattr(material, name)
+            kind = f" for the family {material.family} (material '{material.name}')"
+            told += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
+    for name in ("guide_profile", "roller_profile"):
+        told += [_rough(name, profile) for profile in _profiles(values.get(name))]
+    return [text for text in told if text]
+
+
+def doubts_of_case(case: Case, database: MaterialDatabase) -> list[str]:
+    """Return the doubts about a case, see `doubts`."""
+    return doubts(case.as_dict(), map(database.material, (case.roller_material, case.guide_material)))
+
+
+def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], kind: str) -> str:
+    """Return the sentence about an unusual number, '' for a usual one."""
+    low, high = usual
+    size, shown = abs(number), "" if unit == "-" else f" {unit}"
+    if low <= size <= high:
+        return ""
+    off = f"{low / size:.3g} times below" if size < low else f"{size / high:.3g} times above"
+    meant = [(in_unit(number, other, unit, name), other) for other in OTHER_UNITS.get(unit, ())]
+    likely = [f"write '{number:g} {other}' or {value:g}" for value, other in meant if low <= abs(value) <= high]
+    ask = f"; if {likely[0].split(chr(39))[1]} is meant, {likely[0]}" if likely else ""
+    return f"{name} = {number:g}{shown} is {off} the usual {low:g} to {high:g}{shown}{kind}{ask}."
+
+
+def _profiles(value: Any) -> list[dict[str, Any]]:
+    """Return the distinct cross-sections of a value of `doubts`."""
+    if isinstance(value, Mapping):
+        return [dict(value)]
+    return [json.loads(text) for text in dict.fromkeys(np.ravel(value).tolist()) if isinstance(text, str) and text]
+
+
+def _rough(name: str, profile: Mapping[str, Any]) -> str:
+    """Return the sentence about measured points whose scatter counts as shape, '' if there is none."""
+    if "points" not in profile or profile.get("smooth"):
+        return ""
+    x, z = np.asarray(profile["points"], dtype=float).T
+    noise = noise_of(x, z)
+    scatter = math.sqrt(6.0) * noise / float(np.median(np.diff(x))) ** 2  # of the second difference
+    signs = np.sign(np.diff(z, 4))
+    random = np.mean(signs[1:] != signs[:-1]) > 0.5 if signs.size > 1 else False  # 0.8 of noise, 0 of a coarse arc
+    if scatter < ROUGH / (0.5 * float(x[-1] - x[0])) or not random:
+        return ""
+    return (
+        f"{name}: its points scatter by {1e3 * noise:.2g} µm and are not smoothed, so that the scatter counts as shape "
+        f"and pressures are far too high; add smooth: auto, or the measured noise, smooth: {1e3 * noise:.1g} um."
+    )
