@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from command_line import trackroller
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -578,3 +579,32 @@ def test_a_range_holds_its_value(user):
     for wrong in ("[51, 60]", "[40]", "50", "[60, 40]"):
         with pytest.raises(InputError, match="range"):
             load_database(user(f"materials: {{PA6: {{yield_strength: {{value: 50, range: {wrong}}}}}}}"))
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("42CrMo4", ("1.7225-normalised", "1.7225-quenched-tempered")),
+        ("42crmo4 + QT", ("1.7225-quenched-tempered",)),
+        ("1.7225", ("1.7225-normalised", "1.7225-quenched-tempered")),
+        ("en-aw 7075", ("EN AW-7075",)),
+        ("nylon", ("PA6",)),
+        ("acetal", ("POM",)),
+        ("bronze", ()),
+        (" ", ()),
+    ],
+)
+def test_materials_are_found_by_the_words_of_a_designer(text, names):
+    database = builtin_database()
+    assert database.search(text) == names
+    with pytest.raises(InputError) as error:
+        database.material(text)
+    assert all(name in str(error.value) for name in names)
+
+
+def test_the_list_of_materials_can_be_searched(tmp_path):
+    told = trackroller("materials", "list", "42CrMo4", cwd=tmp_path).stdout
+    assert "1.7225-normalised" in told and "POM" not in told
+    assert "POM" in trackroller("materials", "list", cwd=tmp_path).stdout
+    told = trackroller("materials", "list", "unobtainium", cwd=tmp_path, code=2).stderr
+    assert "unobtainium" in told and "EN AW-7075" in told

@@ -12,6 +12,7 @@ from trackroller.errors import Collector, InputError, WorkError, check_names
 from trackroller.files import files_beside, read_text, write_whole
 from trackroller.materials import load_database
 from trackroller.parameters import OPTIONS, REGIMES
+from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.duty import checked_duty, with_duty
@@ -54,12 +55,12 @@ def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[st
     duty = checked_duty(values.pop("duty")) if "duty" in values else None
     wrong, options = Collector(), {key: values.pop(key) for key in OPTIONS if key in values}
     with wrong.part():
-        check_names("case field", values, (*FIELDS, *OPTIONS, "duty"))
+        check_names("case field", values, (*FIELDS, *ALIASES, *RADII, *OPTIONS, "duty"))
     for key in options:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]
     with wrong.part():
-        case = Case.from_dict({key: value for key, value in values.items() if key in FIELDS})
+        case = Case.from_dict({key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)})
     wrong.check()
     return case, options, duty
 

@@ -205,11 +205,13 @@ def plot(
 
 
 @materials.command("list")
-def materials_list() -> None:
-    """Print the names and values of all materials."""
+def materials_list(
+    search: Annotated[str, typer.Argument(help="words of a name or description, such as 42CrMo4")] = "",
+) -> None:
+    """Print the names and values of all materials, or of those that a word describes."""
     from trackroller.materials.tables import material_rows
 
-    _print_rows(material_rows)
+    _print_rows(material_rows, search)
 
 
 @materials.command("show")

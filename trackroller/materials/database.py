@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,6 +14,10 @@ from trackroller.materials.properties import Value
 from trackroller.parameters import FRICTION_LEVELS
 
 FRICTION = "friction"  # attribute of a result: the coefficients that were taken from the database (JSON)
+
+
+def _letters(text: str) -> str:
+    return re.sub(r"[^a-z0-9]", "", text.lower())
 
 
 @dataclass(frozen=True)
@@ -65,7 +70,7 @@ class MaterialDatabase:
         Raises
         ------
         InputError
-            For an unknown name, a missing value or an impossible value.
+            For an unknown name, with the materials that it describes; for a missing or an impossible value.
         """
         if isinstance(material, Material):
             return material
@@ -74,9 +79,21 @@ class MaterialDatabase:
         if not isinstance(material, str):
             remedy = "Put a name that looks like a number in quotes."
             raise InputError("material", material, "a name of the database or a mapping with its values", remedy)
-        if material not in self.materials:
-            raise unknown_name("material", material, self.materials)
-        return self.materials[material]
+        if material in self.materials:
+            return self.materials[material]
+        if akin := self.search(material):
+            remedy = f"Write the name of the material that is meant: {' or '.join(akin)}."
+            raise InputError("material", material, "the name of a material of the database", remedy)
+        raise unknown_name("material", material, self.materials)
+
+    def search(self, text: str) -> tuple[str, ...]:
+        """Return the names of the materials whose name, family or description holds every word of a text.
+
+        Spaces, signs and upper or lower case do not count, so that '42CrMo4+QT' and 'en aw 7075' are found.
+        """
+        words = [_letters(word) for word in re.split(r"[\s+,]+", str(text)) if _letters(word)]
+        texts = {name: _letters(f"{name} {m.family} {m.description}") for name, m in self.materials.items()}
+        return tuple(name for name, own in texts.items() if words and all(word in own for word in words))
 
     def friction(self, first: str | Material, second: str | Material, level: str = "typical") -> Value:
         """Return the friction coefficient of two bodies, in either order.

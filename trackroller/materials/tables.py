@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from trackroller.errors import unknown_name
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
 
 
-def material_rows(database: MaterialDatabase) -> list[dict[str, str]]:
-    """Return one row for each material: name, family, values, number of placeholders, origin, description."""
-    rows = []
-    for material in database.materials.values():
+def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str, str]]:
+    """Return one row for each material: name, family, values, number of placeholders, origin, description.
+
+    With `search`, only the materials whose name, family or description holds its words.
+    """
+    rows, names = [], database.search(search) if search else database.names()
+    if not names:
+        raise unknown_name("material", search, database.names())
+    for material in map(database.material, names):
         row = {"name": material.name, "family": material.family or "-"}
         for name in REQUIRED:
             prop = PROPERTIES[name]

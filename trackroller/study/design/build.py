@@ -16,6 +16,7 @@ from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.materials.database import FRICTION
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, expressions
 from trackroller.parameters.example import EXAMPLE
+from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.roller.fields import own_frictions
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import readable
@@ -82,6 +83,9 @@ def _check_columns(factors: Mapping[str, Any], design: SampledDesign) -> None:
     own = [name for name in design.columns if name not in known and name not in used]
     for name in own:
         check_own_name(name, f"table column {name}")
+        if name in RADII:
+            remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
+            raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
         if nearest(name, known) or len(own) == len(design.columns):
             raise unknown_name("table column", name, known)
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from trackroller.errors import InputError
 from trackroller.parameters import PARAMETERS
+from trackroller.roller.aliases import ALIASES
 
 _DECIMAL_COMMA = re.compile(r"([-+]?\d*),(\d+(?:[eE][-+]?\d+)?)")
 _HEAD = re.compile(r"([^\[\]]*?)\s*\[([^\[\]]*)\]")
@@ -79,6 +80,7 @@ def _heads(cells: list[str]) -> tuple[list[str], list[str]]:
     """Return the names of the columns and their units; '' for a column whose cells have no unit."""
     parts = [_HEAD.fullmatch(cell) for cell in cells]
     names = [cell if part is None else part[1] for cell, part in zip(cells, parts, strict=True)]
+    names = [ALIASES.get(name, name) for name in names]
     pairs = zip(names, parts, strict=True)
     return names, [part[2].strip(" -") if part and name in WITH_UNIT else "" for name, part in pairs]
 

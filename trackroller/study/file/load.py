@@ -14,6 +14,7 @@ from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.parameters.example import not_given
+from trackroller.roller.aliases import study_with_radii
 from trackroller.study.file.checks import check_geometry, cross_check
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.csv import csv_names
@@ -39,7 +40,7 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     try:
-        config: StudyFile = StudyFile.model_validate(dict(data))
+        config: StudyFile = StudyFile.model_validate(study_with_radii(data))
     except ValidationError as error:
         wrong, found = Collector(), error.errors()
         unknown = [str(one["loc"][-1]) for one in found if one["type"] == "extra_forbidden"]

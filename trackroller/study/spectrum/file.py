@@ -30,6 +30,7 @@ from trackroller.errors import InputError, check_names
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
+from trackroller.roller.aliases import renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
@@ -135,6 +136,7 @@ class Spectrum:
         base = values.get("base") or {}
         if not isinstance(base, Mapping):
             raise InputError("base", base, "a mapping of case fields to values")
+        base = renamed(base)
         made = tuple(_block(block, base, i) for i, block in enumerate(blocks, start=1))
         if len({block.name for block in made}) < len(made):
             twice = Counter(block.name for block in made).most_common(1)[0][0]
@@ -182,6 +184,7 @@ def load_spectrum(path: Path | str) -> Spectrum:
 def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     if not isinstance(entry, Mapping):
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
+    entry = renamed(entry)
     name = str(entry.get("name") or f"block {number}")
     where = f"block '{name}'"
     for key in (key for key in entry if key in FIELDS and key not in BLOCK_FIELDS):

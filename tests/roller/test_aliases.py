@@ -1,0 +1,98 @@
+"""Outer radius and depth of the groove give the axis distance, and a parameter may have another name."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from command_line import trackroller
+
+import trackroller as tr
+from trackroller.parameters.expressions import evaluate
+from trackroller.roller.aliases import AXIS_DISTANCE, renamed
+
+
+def bottom_of_groove(axis, groove, guide, degrees):
+    """Return the radius where the two arcs of a groove meet, from points on the arc."""
+    alpha = math.radians(degrees)
+    contact = np.array([guide * math.sin(alpha), axis - guide * math.cos(alpha)])
+    normal = np.array([math.sin(alpha), -math.cos(alpha)])  # from the middle of the guide to the contact
+    centre = contact - groove * normal
+    turned = np.linspace(0, math.pi, 2_000_001)
+    x, r = centre[0] + groove * np.cos(turned), centre[1] - groove * np.sin(turned)
+    return float(np.interp(0.0, x[::-1], r[::-1]))
+
+
+@pytest.mark.parametrize(
+    ("axis", "groove", "guide", "degrees"), [(21.75, 7.0, 6.0, 30.0), (40.0, 12.5, 9.0, 45.0), (18.0, 5.2, 5.0, 38.0)]
+)
+def test_the_axis_distance_is_that_of_the_drawn_groove(axis, groove, guide, degrees):
+    bottom = bottom_of_groove(axis, groove, guide, degrees)
+    case = tr.Case.from_dict(
+        {"outer_radius": bottom + 3.5, "groove_depth": "3.5 mm", "roller_profile_radius": -groove}
+        | {"guide_profile_radius": guide, "contact_angle": degrees}
+    )
+    assert case.axis_distance == pytest.approx(axis, abs=1e-8)
+    assert "axis_distance" not in case.not_given
+
+
+def test_a_groove_as_wide_as_the_guide_has_the_guide_in_its_bottom():
+    known = {"outer_radius": 25.0, "groove_depth": 4.0, "roller_profile_radius": -6.0, "guide_profile_radius": 6.0}
+    assert evaluate(AXIS_DISTANCE, known | {"contact_angle": 33.0}) == pytest.approx(21.0 + 6.0, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"outer_radius": 20}, "together with groove_depth"),
+        ({"groove_depth": 4}, "together with groove_depth"),
+        ({"outer_radius": 20, "groove_depth": 4, "axis_distance": 22}, "one description"),
+        ({"outer_radius": 20, "groove_depth": 4, "roller_profile_radius": 30}, "a roller with a groove"),
+        ({"outer_radius": 20, "groove_depth": 0.1}, "lies below the outer radius"),
+        ({"outer_radius": "20 N", "groove_depth": 4}, "converted to mm"),
+        ({"outer_radius": -20, "groove_depth": 4}, "a length > 0"),
+        ({"mu": 0.1, "friction_coefficient": 0.1}, "another name of friction_coefficient"),
+    ],
+)
+def test_ambiguous_radii_and_names_are_refused(values, words):
+    with pytest.raises(tr.InputError, match=words):
+        tr.Case.from_dict(values)
+
+
+def test_a_study_derives_the_axis_distance_in_each_case():
+    study = tr.load_study(
+        {
+            "name": "rim",
+            "base": {"outer_radius": "2.1 cm", "mu": 0.12},
+            "factors": {"groove_depth": {"values": [3.6, 4.1]}, "roller_profile_radius": {"values": [-6.5, -8]}},
+            "outputs": ["forces"],
+        }
+    )
+    design = study.design()
+    for i in range(4):
+        values = {name: float(design[name][i]) for name in ("roller_profile_radius", "groove_depth")}
+        case = tr.Case.from_dict({"outer_radius": 21.0, **values})
+        assert float(design["axis_distance"][i]) == pytest.approx(case.axis_distance, rel=1e-15)
+    assert set(design["friction_coefficient"].values) == {0.12}
+    again = tr.load_study(study.as_dict())
+    assert again.merged() == study.merged() and again.design().identical(design)
+    assert "axis_distance" not in study.config.not_given
+    for base in ({"outer_radius": 20, "groove_depth": 4, "axis_distance": 22}, {"groove_depth": 4}):
+        with pytest.raises(tr.InputError):
+            tr.load_study({"name": "x", "base": base, "outputs": ["forces"]})
+
+
+def test_files_and_set_take_the_names(tmp_path):
+    words = ("--set", "mu=0.07", "--set", "outer_radius=21", "--set", "groove_depth=4 mm", "--json")
+    told = trackroller(
+        "solve", *words, "--set", "contact_model=sliding", "--set", "outputs=forces", cwd=tmp_path
+    ).stdout
+    assert '"friction_coefficient": {"value": 0.07' in told and '"default": false' in told
+    (tmp_path / "cases.csv").write_text("mu,outer_radius\n0.1,20\n0.2,21\n")
+    (tmp_path / "t.yaml").write_text("{name: t, design: table, table: cases.csv, outputs: [forces]}")
+    with pytest.raises(tr.InputError, match="outer_radius"):
+        tr.load_study(tmp_path / "t.yaml").design()
+    (tmp_path / "cases.csv").write_text("mu\n0.1\n0.2\n")
+    assert tr.load_study(tmp_path / "t.yaml").design()["friction_coefficient"].values.tolist() == [0.1, 0.2]
+    assert renamed({"mu": 1}) == {"friction_coefficient": 1}

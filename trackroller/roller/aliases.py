@@ -1,0 +1,110 @@
+"""Names of a designer for the parameters of a case: aliases, and radii of the roller that give its axis distance.
+
+The groove of the roller consists of two arcs of the radius R = -r_C,TR, which touch the guide at the contact angle.
+They meet in the middle of the groove at the radius
+
+    A_T + (R - r_C,G) cos(alpha) - sqrt(R^2 - (R - r_C,G)^2 sin(alpha)^2).
+
+The outer radius of the roller lies above it by the depth of the groove; a relief cut in the middle does not count.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from trackroller.errors import InputError
+from trackroller.numerics.numbers import number_in
+from trackroller.parameters import PARAMETERS, expressions
+from trackroller.parameters.example import EXAMPLE
+from trackroller.roller.geometry import rolling_radius
+
+ALIASES = {"mu": "friction_coefficient"}
+RADII = ("outer_radius", "groove_depth")  # mm
+_ACROSS = "(abs(roller_profile_radius) - guide_profile_radius) * {}(radians(contact_angle))"
+AXIS_DISTANCE = (
+    f"where(roller_profile_radius < 0, outer_radius - groove_depth - {_ACROSS.format('cos')} "
+    f"+ sqrt(roller_profile_radius ** 2 - ({_ACROSS.format('sin')}) ** 2), sqrt(-1))"  # no groove: not a number
+)
+
+
+def renamed(values: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return values with the names of parameters in place of aliases; refuse a parameter that is given twice."""
+    out: dict[Any, Any] = {}
+    for key, value in values.items():
+        name = ALIASES.get(key, key)
+        if name in out or (name != key and name in values):
+            raise InputError(name, value, f"one value; {key} is another name of {name}", "Remove one of the two.")
+        out[name] = value
+    return out
+
+
+def radius(name: str, value: Any, where: str = "") -> float:
+    """Return an outer radius or the depth of a groove [mm]."""
+    field, allowed = f"{where}{name}", f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
+    return number_in(value, field, allowed, math.nextafter(0.0, 1.0), PARAMETERS["axis_distance"].upper, "mm")
+
+
+def check_radii(named: Mapping[str, Any]) -> bool:
+    """Return whether outer radius and depth of the groove are named; refuse one of them alone or beside axis_distance.
+
+    Raises
+    ------
+    InputError
+        If the two radii do not give the axis distance without ambiguity.
+    """
+    given = [name for name in RADII if name in named]
+    if not given:
+        return False
+    if "axis_distance" in named:
+        remedy = f"Remove {' and '.join(given)}, or axis_distance."
+        raise InputError("axis_distance", named["axis_distance"], "one description of the roller's size", remedy)
+    if len(given) < len(RADII):
+        allowed = "outer_radius together with groove_depth; both give the axis distance"
+        raise InputError(given[0], named[given[0]], allowed, "Add the other one, or give axis_distance.")
+    return True
+
+
+def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]:
+    """Return the values of one case with the axis distance in place of outer radius and depth of the groove.
+
+    Parameters
+    ----------
+    values : mapping
+        Values by name.
+    number : callable
+        Returns the number of a parameter, (name, value).
+    """
+    if not check_radii(values):
+        return dict(values)
+    shape = ("guide_profile_radius", "roller_profile_radius", "contact_angle")
+    known = {name: number(name, values.get(name, EXAMPLE[name])) for name in shape}
+    known |= {name: radius(name, values[name]) for name in RADII}
+    axis = float(expressions.evaluate(AXIS_DISTANCE, known))
+    if not math.isfinite(axis):
+        remedy = "Give axis_distance, or a groove: roller_profile_radius < 0."
+        raise InputError("outer_radius", values["outer_radius"], "the radius of a roller with a groove", remedy)
+    touching = float(rolling_radius(axis, known["guide_profile_radius"], math.radians(known["contact_angle"])))
+    if touching >= known["outer_radius"]:
+        allowed = f"a groove so deep that the contact at the radius {touching:.5g} mm lies below the outer radius"
+        raise InputError("groove_depth", values["groove_depth"], allowed, "Give a larger depth.")
+    return {name: value for name, value in values.items() if name not in RADII} | {"axis_distance": axis}
+
+
+def study_with_radii(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a study file with the axis distance as a factor that follows from outer radius and depth.
+
+    The two become factors of the study, also if they stand in `base`, and the expression `AXIS_DISTANCE` uses them.
+    """
+    base, factors = data.get("base"), data.get("factors")
+    base, factors = (dict(part) if isinstance(part, Mapping) else part for part in (base or {}, factors or {}))
+    if not isinstance(base, dict) or not isinstance(factors, dict):
+        return dict(data)
+    base, factors = renamed(base), renamed(factors)
+    derived = {"expression": AXIS_DISTANCE}
+    own = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
+    if check_radii({**base, **own}):
+        given = {name: {"values": [radius(name, base.pop(name), "base.")]} for name in RADII if name in base}
+        factors = given | factors | {"axis_distance": derived}
+    return {**data, **({"base": base} if base else {}), **({"factors": factors} if factors else {})}
