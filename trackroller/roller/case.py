@@ -32,17 +32,17 @@ from trackroller.roller.table import CaseTable, MaterialArrays
 __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "to_table"]
 
 
-_LimitFields = make_dataclass(
-    "_LimitFields",
-    [(name, Any, field(default=EXAMPLE.get(name))) for name in OF_LIMITS]
-    + [(name, Any, field(default=None)) for name in MAPPING_FIELDS if name not in MECHANICAL_MAPPINGS],
+_Numbers = make_dataclass(
+    "_Numbers",
+    [(name, Any, field(default=EXAMPLE.get(name), kw_only=name in OF_LIMITS)) for name in PARAMETERS]
+    + [(name, Any, field(default=EXAMPLE[name])) for name in MATERIAL_FIELDS]
+    + [(name, Any, field(default=None, kw_only=name not in MECHANICAL_MAPPINGS)) for name in MAPPING_FIELDS],
     frozen=True,
-    kw_only=True,
 )
 
 
 @dataclass(frozen=True)
-class Case(_LimitFields):  # type: ignore[misc, valid-type]
+class Case(_Numbers):  # type: ignore[misc, valid-type]
     """One locating-bearing track roller on its guideway.
 
     The defaults are the driven example of the publication. A plain mapping with the same keys is accepted wherever a
@@ -112,22 +112,6 @@ class Case(_LimitFields):  # type: ignore[misc, valid-type]
 >= 1e-06 deg, < 90 deg, finite
     """
 
-    axis_distance: float = EXAMPLE["axis_distance"]
-    guide_profile_radius: float = EXAMPLE["guide_profile_radius"]
-    roller_profile_radius: float = EXAMPLE["roller_profile_radius"]
-    guide_curve_radius: float = EXAMPLE["guide_curve_radius"]
-    contact_angle: float = EXAMPLE["contact_angle"]
-    radial_force: float = EXAMPLE["radial_force"]
-    axial_force: float = EXAMPLE["axial_force"]
-    motor_force: float = EXAMPLE["motor_force"]
-    friction_coefficient: float | str | None = EXAMPLE["friction_coefficient"]
-    velocity: float = EXAMPLE["velocity"]
-    guide_overrollings_per_hour: float | None = None
-    roller_material: Any = EXAMPLE["roller_material"]
-    guide_material: Any = EXAMPLE["guide_material"]
-    friction_law: Any = None
-    guide_profile: Any = None
-    roller_profile: Any = None
     not_given: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:

@@ -9,14 +9,15 @@ import numpy as np
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.rows import Rows
-from trackroller.parameters import MAPPING_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS
+from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 
 OPTIONAL_VALUES = tuple(name for name, value in PROPERTIES.items() if value.allow_missing)
 _OptionalValues = make_dataclass(
     "_OptionalValues", [(name, np.ndarray) for name in OPTIONAL_VALUES], bases=(Rows,), frozen=True
 )
-_OF_LIMITS = (*OF_LIMITS, *(name for name in MAPPING_FIELDS if name not in MECHANICAL_MAPPINGS))
-_LimitFields = make_dataclass("_LimitFields", [(name, np.ndarray) for name in _OF_LIMITS], bases=(Rows,), frozen=True)
+_Fields = make_dataclass(
+    "_Fields", [(name, np.ndarray) for name in (*PARAMETERS, *MAPPING_FIELDS)], bases=(Rows,), frozen=True
+)
 
 
 @dataclass(frozen=True)
@@ -61,29 +62,15 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 
 
 @dataclass(frozen=True)
-class CaseTable(_LimitFields):  # type: ignore[misc, valid-type]
+class CaseTable(_Fields):  # type: ignore[misc, valid-type]
     """Checked cases as arrays of shape (n,), with the units of `PARAMETERS` and the friction coefficient resolved.
 
-    The base class adds the fields that the limits declare.
-    The mappings of a case (friction law, drawn profiles) stand as canonical JSON in arrays of str objects, "" for none.
+    The base class has an array for each of `PARAMETERS` and `MAPPING_FIELDS`. The mappings of a case (friction law,
+    drawn profiles) stand as canonical JSON in arrays of str objects, "" for none.
     """
 
-    axis_distance: np.ndarray
-    guide_profile_radius: np.ndarray
-    roller_profile_radius: np.ndarray
-    guide_curve_radius: np.ndarray
-    contact_angle: np.ndarray
-    radial_force: np.ndarray
-    axial_force: np.ndarray
-    motor_force: np.ndarray
-    friction_coefficient: np.ndarray
-    velocity: np.ndarray
-    guide_overrollings_per_hour: np.ndarray
     roller: MaterialArrays
     guide: MaterialArrays
-    friction_law: np.ndarray
-    guide_profile: np.ndarray
-    roller_profile: np.ndarray
 
     def __len__(self) -> int:
         return len(self.axis_distance)
