@@ -9,6 +9,7 @@ import pytest
 from reference_cases import solve_sliding
 
 import trackroller as tr
+from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database, load_database
 
@@ -85,3 +86,13 @@ def test_a_life_follows_the_curve_as_entered():
     stress = float(ds.peak_stress.sel(body="roller").max())
     assert float(ds.life_cycles.sel(body="roller").min()) == pytest.approx(1e7 * (stress / 30.0) ** -8.0, rel=1e-9)
     assert math.isfinite(stress)
+
+
+@pytest.mark.parametrize("scatter", [2.5, 6.0])
+def test_lives_below_the_fatigue_limit_scatter_by_a_power_of_t_n(scatter):
+    """The scatter in stress stays, T_S = T_N^(1/k), and the slope grows to 2k - 1: T_S^(2k - 1)."""
+    curve = SNCurve(900.0, 400.0, 2e4, 3e6, "haibach", scatter)
+    late, early = (curve.changed(failure_probability=p) for p in (0.9, 0.1))
+    k = float(curve.exponent)
+    assert float(late.life_cycles(800.0) / early.life_cycles(800.0)) == pytest.approx(scatter)
+    assert float(late.life_cycles(200.0) / early.life_cycles(200.0)) == pytest.approx(scatter ** ((2 * k - 1) / k))
