@@ -44,10 +44,13 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], 
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
     values = ({} if path is None else parse_mapping(text, "case file")) | given
     with errors_by_line(text, given), files_beside(path):
-        case, options, duty = _checked_case(values)
-        for text in doubts_of_case(case, load_database()):
-            print_line(f"doubtful: {text}")
-        return case, options, duty
+        return _checked_case(values)
+
+
+def tell_doubts(case: Case) -> None:
+    """Print a line on stderr for each unusual value of a case."""
+    for text in doubts_of_case(case, load_database()):
+        print_line(f"doubtful: {text}")
 
 
 def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
@@ -78,6 +81,7 @@ def groups_of(words: str) -> tuple[str, ...]:
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
     """Solve the case of a case file and --set words; `more` are further options of `solve`."""
     case, options, duty = case_of(path, words)
+    tell_doubts(case)
     from trackroller.roller.options import Options  # heavy: numba
 
     Options(**options)  # refuses wrong options before the solver is imported

@@ -10,7 +10,7 @@ from typing import Any, TextIO
 import numpy as np
 from rich.filesize import decimal
 
-from trackroller.cli.case import case_of, is_study, writable, writable_page
+from trackroller.cli.case import case_of, is_study, tell_doubts, writable, writable_page
 from trackroller.cli.usage import print_line
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
@@ -226,6 +226,7 @@ def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO
 
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
     case, told, _ = case_of(path, words)
+    tell_doubts(case)
     values = case.as_dict()
     _print_not_given({name: values[name] for name in case.not_given}, values.keys() - set(case.not_given))
     if no_shortcuts:

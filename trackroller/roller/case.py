@@ -24,7 +24,7 @@ from trackroller.parameters import (
     PARAMETERS,
 )
 from trackroller.parameters.example import EXAMPLE, Default, DefaultName
-from trackroller.roller.aliases import renamed, with_axis_distance
+from trackroller.roller.aliases import RADII, renamed, with_axis_distance
 from trackroller.roller.fields import FIELDS, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.table import CaseTable, MaterialArrays
@@ -158,9 +158,11 @@ class Case(_Numbers):  # type: ignore[misc, valid-type]
         if not isinstance(values, Mapping):
             raise InputError("case", values, "a case is a mapping of parameter names to values")
         wrong = Collector()
-        values = with_axis_distance(renamed(values), number)
         with wrong.part():
-            check_names("case field", map(str, values), FIELDS)
+            values = renamed(values)
+            values = with_axis_distance(values, number)
+        with wrong.part():
+            check_names("case field", map(str, values), (*FIELDS, *RADII))
         with wrong.part():
             case = cls(**{str(k): v for k, v in values.items() if str(k) in FIELDS})
         wrong.check()

@@ -39,10 +39,14 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
 
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
+    wrong = Collector()
+    with wrong.part():
+        data = study_with_radii(data)
     try:
-        config: StudyFile = StudyFile.model_validate(study_with_radii(data))
+        config: StudyFile = StudyFile.model_validate(dict(data))
+        wrong.check()
     except ValidationError as error:
-        wrong, found = Collector(), error.errors()
+        found = error.errors()
         unknown = [str(one["loc"][-1]) for one in found if one["type"] == "extra_forbidden"]
         for one in found:
             if one["type"] != "missing" or not any(nearest(name, one["loc"][-1:]) for name in unknown):
