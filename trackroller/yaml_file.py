@@ -205,7 +205,8 @@ def errors_by_line(text: str, elsewhere: Collection[str] = ()) -> Iterator[None]
             parts = [part for part in re.split(r"[.\[\]\s:]+", one.field) if part]
             paths = [(*parts[:n], *own) for n in range(len(parts), -1, -1) for own in ((str(one.value),), ())]
             own = (path for path in paths if path in lines and path and path[0] not in elsewhere)
-            one.line = next((lines[path] for path in own), None)
+            named = (line for path, line in lines.items() if path and parts and path[-1] == parts[-1] != path[0])
+            one.line = next((lines[path] for path in own), next(named, None))
         wrong = Collector()
         wrong.errors = sorted(error.errors, key=lambda one: one.line or 0)
         wrong.check()
