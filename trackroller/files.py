@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import errno
 import hashlib
@@ -57,7 +58,7 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     Raises
     ------
     InputError
-        If the file is missing, no regular file, too large, unreadable or not UTF-8.
+        If the file is missing, no regular file, too large, unreadable or neither UTF-8 nor UTF-16 with its mark.
     """
     path = Path(path)
     try:
@@ -75,14 +76,18 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
         content = path.read_bytes()
         if (noted := _noted.get()) is not None:
             noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
-        return content.decode("utf-8-sig")
+        utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))  # Excel's "Unicode text"
+        text = content.decode("utf-16" if utf_16 else "utf-8-sig")
+        if "\0" in text:
+            raise InputError(what, str(path), "a text; this file holds zero bytes", "Save the file as UTF-8.")
+        return text
     except InputError:
         raise
     except FileNotFoundError:
         raise InputError(what, str(path), "a file that exists", "Check the path.") from None
     except UnicodeDecodeError as exc:
-        remedy = "Save the file as UTF-8."
-        raise InputError(what, str(path), f"UTF-8 text (byte {exc.start} is not)", remedy) from None
+        remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
+        raise InputError(what, str(path), f"{exc.encoding.upper()} text (byte {exc.start} is not)", remedy) from None
     except (OSError, ValueError) as exc:
         raise InputError(what, str(path), f"a readable file ({exc})", "Check path and rights.") from None
 

@@ -25,3 +25,22 @@ def test_a_message_names_the_line_of_the_file(text, line, why, tmp_path):
     (tmp_path / "t.csv").write_text(text)
     with pytest.raises(tr.InputError, match=f"t.csv, line {line}'.*{why}"):
         table(tmp_path / "t.csv")
+
+
+TEXT = "axial_force [N];friction_coefficient;Größe µ\r\n10,5;0,12;groß\r\n-20;0,3;klein\r\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_a_table_of_excel_is_read_in_each_unicode_encoding(encoding, tmp_path):
+    (tmp_path / "t.csv").write_bytes(TEXT.encode(encoding))
+    columns = table(tmp_path / "t.csv")[0]
+    assert columns["axial_force"].tolist() == [10.5, -20.0]
+    assert columns["friction_coefficient"].tolist() == [0.12, 0.3]
+    assert columns["Größe µ"].tolist() == ["groß", "klein"]
+
+
+@pytest.mark.parametrize("encoding", ["cp1252", "utf-16-le", "utf-32"])
+def test_a_table_in_another_encoding_is_refused_by_name(encoding, tmp_path):
+    (tmp_path / "t.csv").write_bytes(TEXT.encode(encoding))
+    with pytest.raises(tr.InputError, match=r"t\.csv.*UTF-8"):
+        table(tmp_path / "t.csv")
