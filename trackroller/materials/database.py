@@ -81,7 +81,7 @@ class MaterialDatabase:
             raise InputError("material", material, "a name of the database or a mapping with its values", remedy)
         if material in self.materials:
             return self.materials[material]
-        if akin := self.search(material):
+        if nearest(material, self.materials) is None and (akin := self.search(material)):
             remedy = f"Write the name of the material that is meant: {' or '.join(akin)}."
             raise InputError("material", material, "the name of a material of the database", remedy)
         raise unknown_name("material", material, self.materials)
