@@ -32,7 +32,7 @@ from trackroller.roller.table import CaseTable, MaterialArrays
 __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "to_table"]
 
 
-_Numbers = make_dataclass(
+_Numbers: Any = make_dataclass(
     "_Numbers",
     [(name, Any, field(default=EXAMPLE.get(name), kw_only=name in OF_LIMITS)) for name in PARAMETERS]
     + [(name, Any, field(default=EXAMPLE[name])) for name in MATERIAL_FIELDS]
@@ -42,7 +42,7 @@ _Numbers = make_dataclass(
 
 
 @dataclass(frozen=True)
-class Case(_Numbers):  # type: ignore[misc, valid-type]
+class Case(_Numbers):
     """One locating-bearing track roller on its guideway.
 
     The defaults are the driven example of the publication. A plain mapping with the same keys is accepted wherever a

@@ -81,14 +81,14 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     >>> round(high, 2)  # F_rad tan(alpha)
     115.47
     """
-    nominal = replace(case, guide_profile=None, roller_profile=None)
+    nominal = replace(case, **dict.fromkeys(("guide_profile", "roller_profile")))
     model = contact_model if law_of(case.friction_law).is_constant else "sliding"
     span = 4.0 * (abs(case.radial_force) + abs(case.axial_force))
 
     def holds(cases: list[Case]) -> dict[str, np.ndarray]:
         return _conditions(solve(cases, "forces", contact_model=model, accuracy="preview", database=database))
 
-    now, free = holds([nominal]), holds([replace(nominal, motor_force=0.0)])
+    now, free = holds([nominal]), holds([replace(nominal, **{"motor_force": 0.0})])
     lifted, rolls = not now["axial_force"][0], free["motor_force"][0]
     start = 0.0 if lifted else case.axial_force
     searches = [("axial_force", start, -span), ("axial_force", start, span), ("locking", 0.0, _FRICTION)]

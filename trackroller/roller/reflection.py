@@ -28,7 +28,8 @@ def handed(table: CaseTable) -> tuple[CaseTable, np.ndarray]:
         for text in dict.fromkeys(texts[mirrored].tolist()):
             if not treats_sides_alike(text):
                 mirrored &= texts != text
-    return replace(table, axial_force=np.where(mirrored, -table.axial_force, table.axial_force)), mirrored
+    loads = {"axial_force": np.where(mirrored, -table.axial_force, table.axial_force)}
+    return replace(table, **loads), mirrored
 
 
 def reflect(values: dict[str, np.ndarray], rows: np.ndarray) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, make_dataclass
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ OPTIONAL_VALUES = tuple(name for name, value in PROPERTIES.items() if value.allo
 _OptionalValues = make_dataclass(
     "_OptionalValues", [(name, np.ndarray) for name in OPTIONAL_VALUES], bases=(Rows,), frozen=True
 )
-_Fields = make_dataclass(
+_Fields: Any = make_dataclass(
     "_Fields", [(name, np.ndarray) for name in (*PARAMETERS, *MAPPING_FIELDS)], bases=(Rows,), frozen=True
 )
 
@@ -62,7 +63,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 
 
 @dataclass(frozen=True)
-class CaseTable(_Fields):  # type: ignore[misc, valid-type]
+class CaseTable(_Fields):
     """Checked cases as arrays of shape (n,), with the units of `PARAMETERS` and the friction coefficient resolved.
 
     The base class has an array for each of `PARAMETERS` and `MAPPING_FIELDS`. The mappings of a case (friction law,

@@ -121,7 +121,7 @@ def contents(view: StudyView) -> dict[str, Any]:
 def _doubts(view: StudyView) -> list[str]:
     """Return a sentence for each unusual value of the cases."""
     varied = {name: view.table[name].to_numpy() for name in view.table if name in parameters.PARAMETERS}
-    return doubts(view.base | varied, map(as_material, stored_materials(view.attrs).values()))
+    return doubts({**view.base, **varied}, map(as_material, stored_materials(view.attrs).values()))
 
 
 def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:

@@ -49,7 +49,7 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         found = error.errors()
         unknown = [str(one["loc"][-1]) for one in found if one["type"] == "extra_forbidden"]
         for one in found:
-            if one["type"] != "missing" or not any(nearest(name, one["loc"][-1:]) for name in unknown):
+            if one["type"] != "missing" or not any(nearest(name, map(str, one["loc"][-1:])) for name in unknown):
                 wrong.errors += _translated(one).errors
         wrong.check()
         raise

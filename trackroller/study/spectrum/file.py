@@ -75,7 +75,7 @@ class Block:
     @property
     def hours(self) -> float:
         """Return the hours of travel per shift at the velocity of the case [m/min]."""
-        return self.distance / (60.0 * self.case.velocity)
+        return self.distance / (60.0 * float(self.case.velocity))
 
 
 @dataclass(frozen=True)
