@@ -91,9 +91,9 @@ def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
     """Let a function of a `StudyView` or of the result of one case write lives with their years, if a duty is known."""
 
     @functools.wraps(function)
-    def on_its_duty(result: Any, *args: Any) -> Any:
+    def on_its_duty(result: Any, *args: Any, **settings: Any) -> Any:
         with on_duty(duty_of(result) if hasattr(result, "data_vars") else result.study.get("duty")):
-            return function(result, *args)
+            return function(result, *args, **settings)
 
     return on_its_duty
 
