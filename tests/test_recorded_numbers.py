@@ -14,6 +14,7 @@ from trackroller.parameters import CONTACT_MODELS, OPTIONS
 # Sums in another order (threads, processors, releases of NumPy and Numba) differ by 1e-15, and the iterations of the
 # solver pass on up to 1e5 times that. A change of a formula, a node or a draw differs by far more than 1e-9.
 TOLERANCE = 1e-9
+SINGLE = 1e-5  # stresses on planes below a patch are sums in single precision
 # Sentences may be rewritten without a change of any number.
 SENTENCES = ("note", "treatment", "needs", "reason")
 
@@ -33,7 +34,8 @@ def assert_same(name: str, now: dict[str, np.ndarray], before: dict[str, np.ndar
             np.testing.assert_array_equal(now[key], values, err_msg=key)
         else:
             scale = np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
-            np.testing.assert_allclose(now[key], values, rtol=TOLERANCE, atol=1e-12 * scale, err_msg=key)
+            tolerance = SINGLE if name.startswith("limits") else TOLERANCE
+            np.testing.assert_allclose(now[key], values, rtol=tolerance, atol=1e-12 * scale, err_msg=key)
 
 
 @pytest.mark.parametrize("name", names())
